@@ -1,0 +1,109 @@
+#include "base/csv.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/number.h"
+
+namespace flightwatt {
+namespace {
+
+/// One line into cells; `text` ends before the line break.
+std::vector<CsvTable::Cell> split_line(std::string_view text, const Location& where) {
+    std::vector<CsvTable::Cell> cells;
+    std::size_t p = 0;
+    while (true) {
+        CsvTable::Cell cell{"", p + 1};
+        if (p < text.size() && text[p] == '"') {
+            while (true) {
+                const auto quote = text.find('"', p + 1);
+                if (quote == std::string_view::npos) {
+                    throw InputError({where.file, where.line, cell.column}, "a quote is opened and not closed");
+                }
+                cell.text += text.substr(p + 1, quote - p - 1);
+                p = quote + 1;
+                if (p >= text.size() || text[p] != '"') break;
+                cell.text += '"';
+            }
+            if (p < text.size() && text[p] != ',') {
+                throw InputError({where.file, where.line, p + 1}, "text follows a closing quote",
+                                 "put a comma between the cells");
+            }
+        } else {
+            const auto comma = std::min(text.find(',', p), text.size());
+            cell.text = text.substr(p, comma - p);
+            p = comma;
+        }
+        cells.push_back(std::move(cell));
+        if (p >= text.size()) return cells;
+        ++p;
+    }
+}
+
+}  // namespace
+
+CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header) {
+    CsvTable table{file, {}, {}};
+    std::size_t line_number = 0;
+    std::size_t width = 0;
+    while (!text.empty()) {
+        const auto end = std::min(text.find('\n'), text.size());
+        auto line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        ++line_number;
+        if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+        if (line.empty() || line.front() == '#') continue;
+        auto cells = split_line(line, {file, line_number});
+        if (width == 0) {
+            width = cells.size();
+            if (header == CsvHeader::present) {
+                for (auto& cell : cells) table.columns.push_back(std::move(cell.text));
+                continue;
+            }
+        }
+        if (cells.size() != width) {
+            throw InputError({file, line_number},
+                             fmt::format("{} cells, expected {} as in the first line", cells.size(), width));
+        }
+        table.rows.push_back({line_number, std::move(cells)});
+    }
+    if (width == 0) throw InputError({file}, "is empty, expected a CSV table");
+    return table;
+}
+
+CsvTable read_csv(const std::filesystem::path& path, CsvHeader header) {
+    return parse_csv(read_file(path), path.string(), header);
+}
+
+std::size_t column_index(const CsvTable& table, std::string_view name) {
+    const auto found = std::find(table.columns.begin(), table.columns.end(), name);
+    if (found == table.columns.end()) {
+        throw InputError({table.file, 1}, fmt::format("has no column '{}'", name),
+                         fmt::format("its columns are {}", fmt::join(table.columns, ", ")));
+    }
+    return static_cast<std::size_t>(found - table.columns.begin());
+}
+
+double cell_number(const CsvTable& table, const CsvTable::Row& row, std::size_t column) {
+    const auto& cell = row.cells.at(column);
+    if (const auto value = parse_number(cell.text)) return *value;
+    const auto name = table.columns.empty() ? fmt::format("column {}", column + 1) : table.columns[column];
+    throw InputError({table.file, row.line, cell.column},
+                     fmt::format("{} is not a finite number: '{}'", name, cell.text));
+}
+
+std::string csv_cell(std::string_view text) {
+    if (text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"') quoted += '"';
+        quoted += c;
+    }
+    return quoted + '"';
+}
+
+}  // namespace flightwatt

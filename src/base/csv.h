@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flightwatt {
+
+/// A CSV file as text cells, with the line that each row stood on. Lines that begin with '#' and blank lines
+/// are passed over; cells may be quoted with '"' (RFC 4180).
+struct CsvTable {
+    struct Cell {
+        std::string text;
+        std::size_t column;  ///< where the cell begins in its line, from 1
+    };
+    struct Row {
+        std::size_t line;
+        std::vector<Cell> cells;
+    };
+    std::string file;
+    std::vector<std::string> columns;  ///< empty if read without a header
+    std::vector<Row> rows;
+};
+
+enum class CsvHeader { present, absent };
+
+/// Throws InputError (file:line:column) for an empty file, a row of another length than the header, or an
+/// open quote.
+CsvTable read_csv(const std::filesystem::path& path, CsvHeader header = CsvHeader::present);
+CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header = CsvHeader::present);
+
+/// The index of a named column. Throws InputError that lists the columns there are.
+std::size_t column_index(const CsvTable& table, std::string_view name);
+
+/// The number in a cell. Throws InputError "power_w is not a finite number: 'nan'" with its place.
+double cell_number(const CsvTable& table, const CsvTable::Row& row, std::size_t column);
+
+/// `text` as one CSV cell: quoted if it holds a comma, a quote or a line break.
+std::string csv_cell(std::string_view text);
+
+}  // namespace flightwatt

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace flightwatt {
+
+namespace detail {
+inline constexpr double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                           1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                           1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+/// The general case: exponents, 19 digits and more, and everything that is not a number.
+inline std::optional<double> parse_number_slowly(std::string_view text) {
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    double value = 0.0;
+    const char* end = text.data() + text.size();
+    const auto [stop, status] = std::from_chars(text.data(), end, value);
+    if (status != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+}  // namespace detail
+
+/// The number that the whole of `text` spells, correctly rounded; std::nullopt for anything else: an empty
+/// field, "12,5", "12.5x", "nan", "inf", " 1". OCaml's "235." and "-0." are numbers. Hot path of the log
+/// reader: short decimals are exact as integer / power of ten (both below 2^53), the rest goes to from_chars.
+inline std::optional<double> parse_number(std::string_view text) {
+    const char* p = text.data();
+    const char* const end = p + text.size();
+    const bool negative = p != end && *p == '-';
+    if (negative) ++p;
+    std::uint64_t digits = 0;
+    const char* const first = p;
+    while (p != end && static_cast<unsigned char>(*p - '0') < 10) {
+        digits = digits * 10 + static_cast<std::uint64_t>(*p++ - '0');
+    }
+    auto count = p - first;
+    std::ptrdiff_t decimals = 0;
+    if (p != end && *p == '.') {
+        const char* const point = p++;
+        while (p != end && static_cast<unsigned char>(*p - '0') < 10) {
+            digits = digits * 10 + static_cast<std::uint64_t>(*p++ - '0');
+        }
+        decimals = p - point - 1;
+        count += decimals;
+    }
+    if (p != end || count == 0 || count > 15) return detail::parse_number_slowly(text);
+    const double magnitude = static_cast<double>(digits) / detail::powers_of_ten[decimals];
+    return negative ? -magnitude : magnitude;
+}
+
+/// The whole of `text` as a non-negative integer; std::nullopt for anything else.
+inline std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
+    std::uint64_t value = 0;
+    const auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (status != std::errc{} || stop != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+}  // namespace flightwatt

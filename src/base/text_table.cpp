@@ -1,0 +1,88 @@
+#include "base/text_table.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
+#include "base/csv.h"
+#include "base/number.h"
+
+namespace flightwatt {
+namespace {
+
+std::size_t width_of(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+bool is_numeric_column(const TextTable& table, std::size_t column) {
+    return std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+        std::string_view cell = row[column];
+        if (!cell.empty() && (cell.back() == '%' || cell.back() == '*')) cell.remove_suffix(1);
+        return cell.empty() || cell == "-" || parse_number(cell).has_value();
+    });
+}
+
+std::string padded(const std::string& cell, std::size_t width, bool right) {
+    const std::string blanks(width - std::min(width, width_of(cell)), ' ');
+    return right ? blanks + cell : cell + blanks;
+}
+
+}  // namespace
+
+std::string to_text(const TextTable& table) {
+    std::vector<std::size_t> widths;
+    std::vector<bool> right;
+    for (std::size_t column = 0; column < table.header.size(); ++column) {
+        std::size_t width = width_of(table.header[column]);
+        for (const auto& row : table.rows) width = std::max(width, width_of(row[column]));
+        widths.push_back(width);
+        right.push_back(is_numeric_column(table, column));
+    }
+    std::string text;
+    const auto add_row = [&](const std::vector<std::string>& row) {
+        std::string line;
+        for (std::size_t column = 0; column < row.size(); ++column) {
+            if (column > 0) line += "  ";
+            line += padded(row[column], widths[column], right[column]);
+        }
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += line + '\n';
+    };
+    add_row(table.header);
+    for (const auto& row : table.rows) add_row(row);
+    return text;
+}
+
+std::string to_markdown(const TextTable& table) {
+    std::string text;
+    const auto add_row = [&](const std::vector<std::string>& row) {
+        text += '|';
+        for (const auto& cell : row) text += ' ' + cell + " |";
+        text += '\n';
+    };
+    add_row(table.header);
+    text += '|';
+    for (std::size_t column = 0; column < table.header.size(); ++column) {
+        text += is_numeric_column(table, column) ? "---:|" : "---|";
+    }
+    text += '\n';
+    for (const auto& row : table.rows) add_row(row);
+    return text;
+}
+
+std::string to_csv(const TextTable& table) {
+    std::string text;
+    const auto add_row = [&](const std::vector<std::string>& row) {
+        for (std::size_t column = 0; column < row.size(); ++column) {
+            if (column > 0) text += ',';
+            text += csv_cell(row[column]);
+        }
+        text += '\n';
+    };
+    add_row(table.header);
+    for (const auto& row : table.rows) add_row(row);
+    return text;
+}
+
+}  // namespace flightwatt

@@ -1,0 +1,204 @@
+#include "base/toml_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/atomic_file.h"
+
+namespace flightwatt {
+namespace {
+
+Location location_of(const std::string& file, const toml::source_region& region) {
+    return {file, region.begin.line, region.begin.column};
+}
+
+[[noreturn]] void wrong_type(const std::string& file, const toml::node& node, std::string_view key,
+                             std::string_view expected) {
+    std::ostringstream type;
+    type << node.type();
+    throw InputError(location_of(file, node.source()),
+                     fmt::format("'{}' is a TOML {}, expected {}", key, type.str(), expected));
+}
+
+double finite_number(const std::string& file, const toml::node& node, std::string_view key) {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!value || !std::isfinite(*value)) wrong_type(file, node, key, "a finite number");
+    return *value;
+}
+
+std::string text_of(const std::string& file, const toml::node& node, std::string_view key) {
+    if (!node.is_string()) wrong_type(file, node, key, "a string");
+    return *node.value<std::string>();
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const auto substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
+    std::string nearest;
+    std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
+    for (const auto& candidate : known) {
+        const auto distance = edit_distance(word, candidate);
+        if (distance < best) {
+            best = distance;
+            nearest = candidate;
+        }
+    }
+    return nearest;
+}
+
+TomlTable::TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file)
+    : root_(std::move(root)),
+      table_(table),
+      file_(std::move(file)),
+      asked_(std::make_shared<std::set<std::string, std::less<>>>()) {}
+
+TomlTable parse_toml(std::string_view text, const std::string& file) {
+    try {
+        auto root = std::make_shared<const toml::table>(toml::parse(text, file));
+        return {root, root.get(), file};
+    } catch (const toml::parse_error& error) {
+        throw InputError(location_of(file, error.source()),
+                         fmt::format("is not TOML: {}", error.description()));
+    }
+}
+
+TomlTable read_toml(const std::filesystem::path& path) {
+    return parse_toml(read_file(path), path.string());
+}
+
+const toml::node* TomlTable::find(std::string_view key) const {
+    asked_->emplace(key);
+    return table_->get(key);
+}
+
+const toml::node& TomlTable::require(std::string_view key) const {
+    if (const auto* node = find(key)) return *node;
+    // A misspelt key is more probable than a forgotten one.
+    std::vector<std::string> unknown;
+    for (const auto& name : keys()) {
+        if (!asked_->contains(name)) unknown.push_back(name);
+    }
+    const auto near = nearest_word(key, unknown);
+    throw InputError(near.empty() ? where() : where(near), fmt::format("has no key '{}'", key),
+                     near.empty() ? "" : fmt::format("'{}' is here; was that meant?", near));
+}
+
+bool TomlTable::has(std::string_view key) const { return find(key) != nullptr; }
+
+double TomlTable::number(std::string_view key) const { return finite_number(file_, require(key), key); }
+
+std::optional<double> TomlTable::optional_number(std::string_view key) const {
+    return has(key) ? std::optional(number(key)) : std::nullopt;
+}
+
+std::string TomlTable::string(std::string_view key) const { return text_of(file_, require(key), key); }
+
+std::optional<std::string> TomlTable::optional_string(std::string_view key) const {
+    return has(key) ? std::optional(string(key)) : std::nullopt;
+}
+
+std::optional<bool> TomlTable::optional_boolean(std::string_view key) const {
+    const auto* node = find(key);
+    if (node == nullptr) return std::nullopt;
+    if (!node->is_boolean()) wrong_type(file_, *node, key, "true or false");
+    return node->value<bool>();
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key) const {
+    const auto& node = require(key);
+    if (!node.is_array()) wrong_type(file_, node, key, "an array of numbers");
+    std::vector<double> values;
+    for (const auto& element : *node.as_array()) values.push_back(finite_number(file_, element, key));
+    return values;
+}
+
+std::vector<std::string> TomlTable::strings(std::string_view key) const {
+    const auto& node = require(key);
+    if (!node.is_array()) wrong_type(file_, node, key, "an array of strings");
+    std::vector<std::string> values;
+    for (const auto& element : *node.as_array()) values.push_back(text_of(file_, element, key));
+    return values;
+}
+
+TomlTable TomlTable::table(std::string_view key) const {
+    const auto& node = require(key);
+    if (!node.is_table()) wrong_type(file_, node, key, "a table");
+    return {root_, node.as_table(), file_};
+}
+
+std::optional<TomlTable> TomlTable::optional_table(std::string_view key) const {
+    return has(key) ? std::optional(table(key)) : std::nullopt;
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
+    const auto* node = find(key);
+    if (node == nullptr) return {};
+    if (!node->is_array()) wrong_type(file_, *node, key, "an array of tables ([[...]])");
+    std::vector<TomlTable> result;
+    for (const auto& element : *node->as_array()) {
+        if (!element.is_table()) wrong_type(file_, element, key, "a table");
+        result.push_back(TomlTable(root_, element.as_table(), file_));
+    }
+    return result;
+}
+
+std::vector<std::string> TomlTable::keys() const {
+    std::vector<std::pair<toml::source_position, std::string>> placed;
+    for (const auto& [key, node] : *table_) placed.emplace_back(key.source().begin, std::string(key.str()));
+    std::sort(placed.begin(), placed.end());
+    std::vector<std::string> names;
+    for (auto& [position, name] : placed) names.push_back(std::move(name));
+    return names;
+}
+
+bool TomlTable::is_number(std::string_view key) const {
+    const auto* node = table_->get(key);
+    return node != nullptr && node->is_number();
+}
+
+bool TomlTable::is_table(std::string_view key) const {
+    const auto* node = table_->get(key);
+    return node != nullptr && node->is_table();
+}
+
+void TomlTable::refuse_unknown_keys() const {
+    for (const auto& name : keys()) {
+        if (asked_->contains(name)) continue;
+        const std::vector<std::string> known(asked_->begin(), asked_->end());
+        const auto near = nearest_word(name, known);
+        throw InputError(where(name), fmt::format("unknown key '{}'", name),
+                         near.empty() ? fmt::format("known keys: {}", fmt::join(known, ", "))
+                                      : fmt::format("did you mean '{}'?", near));
+    }
+}
+
+Location TomlTable::where() const { return location_of(file_, table_->source()); }
+
+Location TomlTable::where(std::string_view key) const {
+    for (const auto& [name, node] : *table_) {
+        if (name.str() == key) return location_of(file_, name.source());
+    }
+    return where();
+}
+
+}  // namespace flightwatt

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+
+namespace toml {
+inline namespace v3 {
+class node;
+class table;
+}  // namespace v3
+}  // namespace toml
+
+namespace flightwatt {
+
+/// One table of a TOML file, read strictly: every key that is there must be asked for, and has the type that
+/// is asked for, or InputError with file, line and column. Copies are cheap and share the parsed file.
+class TomlTable {
+  public:
+    bool has(std::string_view key) const;
+    /// Finite; integers count as numbers.
+    double number(std::string_view key) const;
+    std::optional<double> optional_number(std::string_view key) const;
+    std::string string(std::string_view key) const;
+    std::optional<std::string> optional_string(std::string_view key) const;
+    std::optional<bool> optional_boolean(std::string_view key) const;
+    std::vector<double> numbers(std::string_view key) const;
+    std::vector<std::string> strings(std::string_view key) const;
+    TomlTable table(std::string_view key) const;
+    std::optional<TomlTable> optional_table(std::string_view key) const;
+    /// An array of tables; empty if the key is not there.
+    std::vector<TomlTable> tables(std::string_view key) const;
+    /// Every key of this table, in the order of the file.
+    std::vector<std::string> keys() const;
+    bool is_number(std::string_view key) const;
+    bool is_table(std::string_view key) const;
+
+    /// Throws InputError at the first key that nobody asked for, with the nearest key that somebody did.
+    void refuse_unknown_keys() const;
+
+    const std::string& file() const { return file_; }
+    /// Where this table, or one of its keys, stands.
+    Location where() const;
+    Location where(std::string_view key) const;
+
+  private:
+    friend TomlTable parse_toml(std::string_view text, const std::string& file);
+    TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file);
+
+    const toml::node& require(std::string_view key) const;
+    const toml::node* find(std::string_view key) const;
+
+    std::shared_ptr<const toml::table> root_;
+    const toml::table* table_;
+    std::string file_;
+    std::shared_ptr<std::set<std::string, std::less<>>> asked_;
+};
+
+/// Throws InputError with line and column where the text is not TOML.
+TomlTable read_toml(const std::filesystem::path& path);
+TomlTable parse_toml(std::string_view text, const std::string& file);
+
+/// The word among `known` that `word` was probably meant to be; empty if none is near.
+std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace flightwatt

@@ -1,0 +1,62 @@
+#include "base/units.h"
+
+#include <array>
+#include <charconv>
+
+namespace flightwatt::units {
+namespace {
+
+struct NamedUnit {
+    std::string_view name;
+    Unit unit;
+};
+
+constexpr std::array named_units{
+    NamedUnit{"V", {Quantity::volt, 1.0}},
+    NamedUnit{"volt", {Quantity::volt, 1.0}},
+    NamedUnit{"mV", {Quantity::volt, 1e-3}},
+    NamedUnit{"dV", {Quantity::volt, 0.1}},
+    NamedUnit{"decivolt", {Quantity::volt, 0.1}},
+    NamedUnit{"cV", {Quantity::volt, 0.01}},
+    NamedUnit{"A", {Quantity::ampere, 1.0}},
+    NamedUnit{"amp", {Quantity::ampere, 1.0}},
+    NamedUnit{"mA", {Quantity::ampere, 1e-3}},
+    NamedUnit{"cA", {Quantity::ampere, 0.01}},
+    NamedUnit{"W", {Quantity::watt, 1.0}},
+    NamedUnit{"mW", {Quantity::watt, 1e-3}},
+    NamedUnit{"kW", {Quantity::watt, 1e3}},
+    NamedUnit{"Ah", {Quantity::ampere_hour, 1.0}},
+    NamedUnit{"mAh", {Quantity::ampere_hour, 1e-3}},
+    NamedUnit{"Wh", {Quantity::watt_hour, 1.0}},
+    NamedUnit{"mWh", {Quantity::watt_hour, 1e-3}},
+    NamedUnit{"J", {Quantity::watt_hour, 1.0 / seconds_per_hour}},
+    NamedUnit{"m", {Quantity::metre, 1.0}},
+    NamedUnit{"meter", {Quantity::metre, 1.0}},
+    NamedUnit{"dm", {Quantity::metre, 0.1}},
+    NamedUnit{"cm", {Quantity::metre, 0.01}},
+    NamedUnit{"mm", {Quantity::metre, 1e-3}},
+    NamedUnit{"m/s", {Quantity::metre_per_second, 1.0}},
+    NamedUnit{"cm/s", {Quantity::metre_per_second, 0.01}},
+    NamedUnit{"mm/s", {Quantity::metre_per_second, 1e-3}},
+    NamedUnit{"s", {Quantity::second, 1.0}},
+    NamedUnit{"ms", {Quantity::second, 1e-3}},
+    NamedUnit{"%", {Quantity::percent, 1.0}},
+    NamedUnit{"percent", {Quantity::percent, 1.0}},
+    NamedUnit{"pprz", {Quantity::percent, percent_per_whole / pprz_full_scale}},
+};
+
+}  // namespace
+
+std::optional<Unit> parse_unit(std::string_view text) {
+    // A number in front scales the unit behind it: "1e-1V", "0.01A".
+    double scale = 1.0;
+    const auto number = std::from_chars(text.data(), text.data() + text.size(), scale);
+    if (number.ec == std::errc{}) text.remove_prefix(static_cast<std::size_t>(number.ptr - text.data()));
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    for (const auto& [name, unit] : named_units) {
+        if (name == text) return Unit{unit.quantity, unit.factor * scale};
+    }
+    return std::nullopt;
+}
+
+}  // namespace flightwatt::units

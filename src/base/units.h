@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+/// The only place that holds a conversion factor.
+namespace flightwatt::units {
+
+inline constexpr double seconds_per_hour = 3600.0;
+inline constexpr double pprz_full_scale = 9600.0;  ///< Paparazzi's MAX_PPRZ: full throttle in "pprz"
+inline constexpr double percent_per_whole = 100.0;
+
+constexpr double wh_from_joule(double energy_j) { return energy_j / seconds_per_hour; }
+constexpr double joule_from_wh(double energy_wh) { return energy_wh * seconds_per_hour; }
+constexpr double percent_from_pprz(double throttle_pprz) { return throttle_pprz / pprz_full_scale * percent_per_whole; }
+constexpr double pprz_from_percent(double throttle_percent) {
+    return throttle_percent / percent_per_whole * pprz_full_scale;
+}
+
+/// What a declared unit measures; the base unit of each is the suffix used in names.
+enum class Quantity { volt, ampere, watt, ampere_hour, watt_hour, metre, metre_per_second, second, percent };
+
+struct Unit {
+    Quantity quantity;
+    double factor;  ///< value in the base unit = factor * raw value
+};
+
+/// Reads a unit as Paparazzi message definitions write it: "V", "1e-1V", "decivolt", "mAh", "cm/s", "pprz".
+/// std::nullopt if it is none of the quantities above.
+std::optional<Unit> parse_unit(std::string_view text);
+
+}  // namespace flightwatt::units

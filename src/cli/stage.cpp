@@ -1,0 +1,112 @@
+#include "cli/stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+
+#include "base/error.h"
+
+namespace flightwatt::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr const char* inputs_option = "inputs";
+
+/// Errors stay on one line, whatever a file's content put into them.
+std::string one_line(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+    return text;
+}
+
+void print_error(const std::string& program, const std::string& where, const std::string& message) {
+    const auto place = where.empty() ? "" : where + ": ";
+    fmt::print(stderr, "{}: {}error: {}\n", program, one_line(place), one_line(message));
+}
+
+StageCall parse(int argc, char** argv, const StageDefinition& definition, po::options_description& visible) {
+    StageCall call;
+    call.program = "flightwatt-" + definition.name;
+    visible.add_options()("output,o", po::value<std::string>()->value_name("FILE"),
+                          definition.output_help.c_str())("json", "print the summary as JSON")(
+        "help,h", "show this help")("version", "show the version");
+    po::options_description all = visible;
+    all.add_options()(inputs_option, po::value<std::vector<std::string>>());
+    po::positional_options_description positional;
+    positional.add(inputs_option, -1);
+    const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
+    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).style(style).run(),
+              call.options);
+    po::notify(call.options);
+    call.json = call.has("json");
+    call.output = call.maybe<std::string>("output");
+    if (call.has(inputs_option)) call.inputs = call.get<std::vector<std::string>>(inputs_option);
+    return call;
+}
+
+std::string usage_line(const StageDefinition& definition) {
+    return fmt::format("usage: flightwatt {} {} [options]", definition.name, definition.arguments);
+}
+
+int run(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
+    po::options_description visible = definition.options;
+    const auto call = parse(argc, argv, definition, visible);
+    if (call.has("help")) {
+        std::ostringstream options;
+        options << visible;
+        print(fmt::format("{}\n\n{}\n\n{}", usage_line(definition), definition.description, options.str()));
+        return ok;
+    }
+    if (call.has("version")) {
+        print(fmt::format("{} {}\n", call.program, FLIGHTWATT_VERSION));
+        return ok;
+    }
+    if (call.inputs.size() < definition.min_inputs) {
+        throw UsageError(fmt::format("no input given; {}", usage_line(definition)));
+    }
+    if (call.inputs.size() > definition.max_inputs) {
+        throw UsageError(fmt::format("unexpected argument '{}'; {}", call.inputs[definition.max_inputs],
+                                     usage_line(definition)));
+    }
+    return body(call);
+}
+
+}  // namespace
+
+int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
+    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is then a failed write, reported below
+    const std::string program = "flightwatt-" + definition.name;
+    try {
+        const int code = run(argc, argv, definition, body);
+        if (std::fflush(stdout) != 0 || std::fclose(stdout) != 0) {
+            throw OutputError(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
+        }
+        return code;
+    } catch (const InputError& error) {
+        const auto hint = error.hint().empty() ? "" : "; " + error.hint();
+        print_error(program, to_string(error.where()), error.what() + hint);
+        return input_rejected;
+    } catch (const NoAnswerError& error) {
+        print_error(program, "", error.what());
+        return no_answer;
+    } catch (const UsageError& error) {
+        print_error(program, "", error.what());
+        return usage_error;
+    } catch (const po::error& error) {
+        print_error(program, "", fmt::format("{}; see --help", error.what()));
+        return usage_error;
+    } catch (const OutputError& error) {
+        print_error(program, "", error.what());
+        return internal_error;
+    } catch (const std::exception& error) {
+        print_error(program, "", fmt::format("internal error: {}", error.what()));
+        return internal_error;
+    }
+}
+
+}  // namespace flightwatt::cli

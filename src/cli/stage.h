@@ -1,0 +1,61 @@
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flightwatt::cli {
+
+enum ExitCode : int { ok = 0, internal_error = 1, usage_error = 2, input_rejected = 3, no_answer = 4 };
+
+/// What a stage program is called and accepts beyond --help, --version, --json and --output.
+struct StageDefinition {
+    std::string name;         ///< "fit"; the program is flightwatt-fit
+    std::string arguments;    ///< shown in the usage line: "FLIGHT..."
+    std::string description;  ///< what it does, for --help
+    boost::program_options::options_description options{"Options"};
+    std::size_t min_inputs = 1;
+    std::size_t max_inputs = 1000000;
+    std::string output_help = "write the result to FILE instead of the standard output";
+};
+
+/// What the user gave.
+struct StageCall {
+    std::string program;  ///< "flightwatt-fit", for diagnostics
+    boost::program_options::variables_map options;
+    std::vector<std::string> inputs;
+    bool json = false;
+    std::optional<std::string> output;
+
+    bool has(const std::string& option) const { return options.count(option) > 0; }
+    template <typename T>
+    T get(const std::string& option) const {
+        return options[option].as<T>();
+    }
+    /// The option's value, if it was given.
+    template <typename T>
+    std::optional<T> maybe(const std::string& option) const {
+        return has(option) ? std::optional<T>(get<T>(option)) : std::nullopt;
+    }
+};
+
+using StageBody = std::function<int(const StageCall&)>;
+
+/// The frame of every stage program: parses options, runs the body, turns exceptions into one line on the
+/// standard error and the exit code of the house, and makes sure that the standard output was written.
+int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body);
+
+/// The result to --output's file (atomically), or to the standard output unless --json claims that.
+void write_result(const StageCall& call, std::string_view content);
+
+/// To the standard output. Throws OutputError (full disk, closed pipe).
+void print(std::string_view text);
+
+/// A line on the standard error: "flightwatt-fit: warning: ...".
+void warn(const StageCall& call, std::string_view message);
+void note(const StageCall& call, std::string_view message);
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include "base/toml_reader.h"
+#include "base/toml_text.h"
+#include "mechanical/mechanical_model.h"
+
+namespace flightwatt {
+namespace {
+
+double positive_number(const TomlTable& table, std::string_view key) {
+    const double value = table.number(key);
+    if (value <= 0.0) {
+        throw InputError(table.where(key), fmt::format("{} = {} is not positive", key, value));
+    }
+    return value;
+}
+
+FrequencyRange read_range(const TomlTable& table) {
+    FrequencyRange range{table.number("low_rad"), table.number("high_rad"), table.string("at_bound")};
+    table.refuse_unknown_keys();
+    return range;
+}
+
+PhaseModel read_phase(const TomlTable& table) {
+    PhaseModel phase;
+    phase.duration_s = positive_number(table, "duration_s");
+    phase.fourier.omega_rad_per_s = positive_number(table, "omega_rad_per_s");
+    phase.fourier.a0_w = table.number("a0_w");
+    phase.fourier.cos_w = table.numbers("cos_w");
+    phase.fourier.sin_w = table.numbers("sin_w");
+    if (phase.fourier.cos_w.size() != phase.fourier.sin_w.size()) {
+        throw InputError(table.where("sin_w"),
+                         fmt::format("sin_w has {} coefficients and cos_w {}, expected as many of each",
+                                     phase.fourier.sin_w.size(), phase.fourier.cos_w.size()));
+    }
+    phase.rms_w = table.optional_number("rms_w");
+    phase.samples = static_cast<std::size_t>(table.optional_number("samples").value_or(0.0));
+    phase.flights = static_cast<std::size_t>(table.optional_number("flights").value_or(0.0));
+    if (const auto range = table.optional_table("omega_duration")) phase.range = read_range(*range);
+    table.refuse_unknown_keys();
+    return phase;
+}
+
+PhaseContribution read_contribution(const TomlTable& table) {
+    PhaseContribution part{table.number("weight"), table.number("duration_s"), table.number("rms_w"),
+                           static_cast<std::size_t>(table.number("samples"))};
+    table.refuse_unknown_keys();
+    return part;
+}
+
+FlightContribution read_flight(const TomlTable& table) {
+    FlightContribution flight;
+    flight.flight = table.string("flight");
+    for (const auto phase : all_phases) {
+        if (const auto part = table.optional_table(to_string(phase))) {
+            flight.phases[phase] = read_contribution(*part);
+        }
+    }
+    table.refuse_unknown_keys();
+    return flight;
+}
+
+std::string phase_toml(Phase name, const PhaseModel& phase) {
+    std::string text = fmt::format("\n[{}]\nduration_s = {}\nomega_rad_per_s = {}\n", to_string(name),
+                                   toml_real(phase.duration_s), toml_real(phase.fourier.omega_rad_per_s));
+    if (phase.range) {
+        text += fmt::format("omega_duration = {{ low_rad = {}, high_rad = {}, at_bound = {} }}\n",
+                            toml_real(phase.range->low_rad), toml_real(phase.range->high_rad),
+                            toml_string(phase.range->at_bound));
+    }
+    text += fmt::format("a0_w = {}\ncos_w = {}\nsin_w = {}\n", toml_real(phase.fourier.a0_w),
+                        toml_reals(phase.fourier.cos_w), toml_reals(phase.fourier.sin_w));
+    if (phase.rms_w) text += fmt::format("rms_w = {}\n", toml_real(*phase.rms_w));
+    if (phase.samples > 0) text += fmt::format("samples = {}\n", phase.samples);
+    if (phase.flights > 0) text += fmt::format("flights = {}\n", phase.flights);
+    return text;
+}
+
+std::string flight_toml(const FlightContribution& flight) {
+    std::string text = fmt::format("\n[[flights]]\nflight = {}\n", toml_string(flight.flight));
+    for (const auto phase : all_phases) {
+        if (const auto& part = flight.phases[phase]) {
+            text += fmt::format("{} = {{ weight = {}, duration_s = {}, rms_w = {}, samples = {} }}\n",
+                                to_string(phase), toml_real(part->weight), toml_real(part->duration_s),
+                                toml_real(part->rms_w), part->samples);
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
+    const auto root = read_toml(path);
+    MechanicalModel model;
+    model.name = root.string("name");
+    model.description = root.optional_string("description").value_or("");
+    model.weighting = root.optional_string("weighting").value_or("");
+    for (const auto phase : all_phases) model.phases[phase] = read_phase(root.table(to_string(phase)));
+    for (const auto& flight : root.tables("flights")) model.flights.push_back(read_flight(flight));
+    root.refuse_unknown_keys();
+    return model;
+}
+
+std::string to_toml(const MechanicalModel& model) {
+    std::string text =
+        "# Mechanical power of a flight, one Fourier series a phase (t in seconds since the phase began):\n"
+        "#   power_w(t) = a0_w + sum over n of cos_w[n] cos(n omega t) + sin_w[n] sin(n omega t)\n";
+    text += fmt::format("name = {}\ndescription = {}\nweighting = {}\n", toml_string(model.name),
+                        toml_string(model.description), toml_string(model.weighting));
+    for (const auto phase : all_phases) text += phase_toml(phase, model.phases[phase]);
+    for (const auto& flight : model.flights) text += flight_toml(flight);
+    return text;
+}
+
+}  // namespace flightwatt
