@@ -1,0 +1,90 @@
+#include "flight/flight_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "flight/track.h"
+
+namespace flightwatt {
+namespace {
+
+/// Running median of five: takes out spikes of up to two samples and leaves climbs as they are.
+std::vector<double> without_spikes(const std::vector<double>& values) {
+    std::vector<double> smooth = values;
+    for (std::size_t i = 2; i + 2 < values.size(); ++i) {
+        std::array<double, 5> near{values[i - 2], values[i - 1], values[i], values[i + 1], values[i + 2]};
+        std::nth_element(near.begin(), near.begin() + 2, near.end());
+        smooth[i] = near[2];
+    }
+    return smooth;
+}
+
+Track series_track(const FlightSeries& series, const std::vector<double>& channel) {
+    return channel.empty() ? Track{} : Track{series.time_s, channel};
+}
+
+}  // namespace
+
+FlightGrid make_grid(const FlightSeries& series) {
+    const auto altitude =
+        series.altitude_track.empty() ? series_track(series, series.altitude_m) : series.altitude_track;
+    if (altitude.empty()) {
+        throw InputError({series.flight}, "has no altitude, so its phases cannot be told apart",
+                         "expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m");
+    }
+    FlightGrid grid;
+    grid.begin_s = series.time_s.front();
+    const double span_s = series.time_s.back() - grid.begin_s;
+    const auto count = static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
+    std::vector<double> time_s(count);
+    for (std::size_t i = 0; i < count; ++i) time_s[i] = grid.time_s(i);
+    grid.altitude_m = without_spikes(resample(altitude, time_s));
+    if (const auto throttle = series_track(series, series.throttle_percent); !throttle.empty()) {
+        grid.throttle_percent = resample(throttle, time_s);
+    }
+    const auto speed = series.ground_speed_track.empty() ? series_track(series, series.ground_speed_m_per_s)
+                                                         : series.ground_speed_track;
+    if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes(resample(speed, time_s));
+    return grid;
+}
+
+std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptions& options) {
+    const auto within = [&](const std::vector<double>& channel, std::size_t i, double limit) {
+        return channel.empty() || channel[i] <= limit;
+    };
+    const auto window = grid.steps(options.rest_s);
+    std::vector<bool> resting(grid.size(), false);
+    for (std::size_t begin = 0; begin + window < grid.size(); ++begin) {
+        double low = grid.altitude_m[begin];
+        double high = low;
+        bool still = true;
+        for (std::size_t i = begin; still && i <= begin + window; ++i) {
+            low = std::min(low, grid.altitude_m[i]);
+            high = std::max(high, grid.altitude_m[i]);
+            still = high - low <= options.rest_height_m &&
+                    within(grid.throttle_percent, i, options.idle_throttle_percent) &&
+                    within(grid.ground_speed_m_per_s, i, options.rest_speed_m_per_s);
+        }
+        if (!still) continue;
+        std::fill_n(resting.begin() + static_cast<std::ptrdiff_t>(begin), window + 1, true);
+    }
+    std::vector<GridSpan> rests;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        if (!resting[i]) continue;
+        if (rests.empty() || rests.back().end != i) rests.push_back({i, i});
+        rests.back().end = i + 1;
+    }
+    return rests;
+}
+
+double median_altitude_m(const FlightGrid& grid, GridSpan span) {
+    std::vector<double> values(grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(span.begin),
+                               grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(span.end));
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace flightwatt

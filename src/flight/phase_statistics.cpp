@@ -1,0 +1,110 @@
+#include "flight/phase_statistics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+
+namespace flightwatt {
+namespace {
+
+std::size_t first_at_or_after(const std::vector<double>& time_s, double t) {
+    return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), t) - time_s.begin());
+}
+
+/// Linear between samples, the first and last value outside of them.
+double interpolated(const std::vector<double>& time_s, const std::vector<double>& values, double t) {
+    const auto after = first_at_or_after(time_s, t);
+    if (after == 0) return values.front();
+    if (after == time_s.size()) return values.back();
+    const double part = (t - time_s[after - 1]) / (time_s[after] - time_s[after - 1]);
+    return std::lerp(values[after - 1], values[after], part);
+}
+
+std::string optional_cell(const auto& value) { return value ? fmt::format("{}", *value) : ""; }
+
+std::string edge_cells(const PhaseEdge& edge) {
+    return fmt::format("{:.2f},{},{},{},{}", edge.altitude_m, optional_cell(edge.throttle_percent),
+                       optional_cell(edge.mode), optional_cell(edge.block), optional_cell(edge.takeoff_after_s));
+}
+
+}  // namespace
+
+double usual_interval_s(const FlightSeries& series) {
+    std::vector<double> intervals;
+    for (std::size_t i = 1; i < series.time_s.size(); ++i) {
+        intervals.push_back(series.time_s[i] - series.time_s[i - 1]);
+    }
+    if (intervals.empty()) return 0.0;
+    const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+    std::nth_element(intervals.begin(), middle, intervals.end());
+    return *middle;
+}
+
+double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s) {
+    const auto& time_s = series.time_s;
+    const auto at = [&](double t) { return interpolated(time_s, series.power_w, t); };
+    double energy_j = 0.0;
+    double last_s = start_s;
+    double last_w = at(start_s);
+    for (auto i = first_at_or_after(time_s, start_s); i < time_s.size() && time_s[i] < end_s; ++i) {
+        energy_j += 0.5 * (last_w + series.power_w[i]) * (time_s[i] - last_s);
+        last_s = time_s[i];
+        last_w = series.power_w[i];
+    }
+    energy_j += 0.5 * (last_w + at(end_s)) * (end_s - last_s);
+    return units::wh_from_joule(energy_j);
+}
+
+PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s) {
+    PhaseStatistics statistics;
+    const double gap_s = 3.0 * usual_interval_s(series);
+    double last_s = start_s;
+    const auto count_gap = [&](double until_s) {
+        const double interval_s = until_s - last_s;
+        statistics.longest_gap_s = std::max(statistics.longest_gap_s, interval_s);
+        if (interval_s > gap_s) ++statistics.gaps;
+        last_s = until_s;
+    };
+    double sum_w = 0.0;
+    const auto& time_s = series.time_s;
+    for (auto i = first_at_or_after(time_s, start_s); i < time_s.size() && time_s[i] <= end_s; ++i) {
+        count_gap(time_s[i]);
+        sum_w += series.power_w[i];
+        ++statistics.samples;
+    }
+    count_gap(end_s);
+    if (statistics.samples > 0) statistics.mean_power_w = sum_w / static_cast<double>(statistics.samples);
+    statistics.energy_wh = integrated_energy_wh(series, start_s, end_s);
+    if (!series.energy_wh.empty()) {
+        statistics.counter_energy_wh = interpolated(time_s, series.energy_wh, end_s) -
+                                       interpolated(time_s, series.energy_wh, start_s);
+    }
+    return statistics;
+}
+
+std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
+    std::string text =
+        "sortie,phase,start_s,end_s,duration_s,samples,mean_power_w,energy_wh,counter_energy_wh,gaps,"
+        "longest_gap_s,complete";
+    for (const auto* edge : {"start", "end"}) {
+        text += fmt::format(",{0}_altitude_m,{0}_throttle_percent,{0}_mode,{0}_block,{0}_to_takeoff_message_s", edge);
+    }
+    text += '\n';
+    for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
+        for (const auto& span : phases.sorties[s].phases) {
+            const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
+            text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", s + 1, to_string(span.phase),
+                                span.start.time_s, span.end.time_s, span.duration_s(), statistics.samples,
+                                statistics.mean_power_w, statistics.energy_wh,
+                                optional_cell(statistics.counter_energy_wh), statistics.gaps,
+                                statistics.longest_gap_s, span.complete, edge_cells(span.start),
+                                edge_cells(span.end));
+        }
+    }
+    return text;
+}
+
+}  // namespace flightwatt

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "flight/flight_series.h"
+#include "telemetry/telemetry_log.h"
+
+namespace flightwatt {
+
+/// Measured electrical power over time, and where it came from.
+struct MeasuredPower {
+    Track power_w;
+    std::string source;  ///< "ENERGY.power"
+};
+
+/// The power of one aircraft: ENERGY.power, else voltage times current (ENERGY, then BAT), else the ESCs' or
+/// power devices' sum. A source that reads 0 throughout measures nothing and is passed over. Returns an empty
+/// track if there is none; `passed_over` says what was looked at and why it was not taken.
+MeasuredPower choose_power(const SenderLog& sender, std::vector<std::string>& passed_over);
+
+}  // namespace flightwatt

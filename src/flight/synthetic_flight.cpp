@@ -1,0 +1,114 @@
+#include "flight/synthetic_flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "flight/segmentation.h"
+
+namespace flightwatt {
+namespace {
+
+constexpr double spool_up_s = 3.0;       // full power before the aircraft leaves the ground
+constexpr double ground_run_s = 1.0;     // from standing to lift-off height
+constexpr double flare_s = 2.0;          // from touchdown height to standing
+constexpr double motor_off_after_s = 3.0;
+constexpr double run_up_s = 4.0;
+constexpr double run_up_power_w = 35.0;
+constexpr double settling_s = 4.0;       // how slowly the climb ends in the cruise height
+constexpr double oscillation = 0.008;    // of the height, while the autopilot holds it
+constexpr double oscillation_period_s = 47.0;
+
+/// Height above the ground. Phases begin and end where the segmentation's definitions put them: take-off at
+/// its fraction of the height for the ground and at that of the height held, which the oscillation raises.
+double height_m(const SyntheticFlight& flight, double time_s) {
+    const SegmentationOptions definition;
+    const double ground = definition.ground_fraction;
+    const double reached = definition.cruise_fraction * (1.0 + oscillation);
+    const double lift_off = flight.lift_off_s;
+    const double climbed = flight.end_s(Phase::takeoff);
+    const double descent = flight.start_s(Phase::landing);
+    const double touchdown = flight.end_s(Phase::landing);
+    double fraction = 0.0;
+    if (time_s < lift_off) {
+        fraction = ground * std::clamp(1.0 - (lift_off - time_s) / ground_run_s, 0.0, 1.0);
+    } else if (time_s < climbed) {
+        fraction = std::lerp(ground, reached, (time_s - lift_off) / (climbed - lift_off));
+    } else if (time_s < descent) {
+        const double rise = std::exp(-(time_s - climbed) / settling_s);
+        const double fall = std::exp(-(descent - time_s) / settling_s);
+        const double held = 1.0 + oscillation * std::sin(2.0 * std::numbers::pi * (time_s - climbed) / oscillation_period_s);
+        fraction = held - (held - reached) * (rise + fall);
+    } else if (time_s < touchdown) {
+        fraction = std::lerp(reached, ground, (time_s - descent) / (touchdown - descent));
+    } else {
+        fraction = ground * std::clamp(1.0 - (time_s - touchdown) / flare_s, 0.0, 1.0);
+    }
+    return fraction * flight.height_m;
+}
+
+double power_w_at(const SyntheticFlight& flight, double time_s) {
+    const double touchdown = flight.end_s(Phase::landing);
+    if (time_s >= flight.motor_run_up_s && time_s < flight.motor_run_up_s + run_up_s) return run_up_power_w;
+    if (time_s < flight.lift_off_s - spool_up_s || time_s > touchdown + motor_off_after_s) return 0.0;
+    for (const auto phase : all_phases) {
+        const double tau = (time_s - flight.start_s(phase)) / flight.duration_s[phase];
+        if (tau < 1.0 || phase == Phase::landing) return flight.power_w(phase, std::clamp(tau, 0.0, 1.0));
+    }
+    return 0.0;
+}
+
+/// Propeller power grows about with the cube of its speed.
+double throttle_for(double power_w) {
+    constexpr double full_power_w = 95.0;
+    return 100.0 * std::cbrt(std::clamp(power_w / full_power_w, 0.0, 1.0));
+}
+
+}  // namespace
+
+double SyntheticFlight::start_s(Phase phase) const {
+    double start = lift_off_s;
+    for (const auto earlier : all_phases) {
+        if (earlier == phase) break;
+        start += duration_s[earlier];
+    }
+    return start;
+}
+
+SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
+    SyntheticState state;
+    constexpr double half_step_s = 0.05;
+    const double height = height_m(flight, time_s);
+    state.altitude_m = flight.ground_altitude_m + height;
+    state.climb_m_per_s =
+        (height_m(flight, time_s + half_step_s) - height_m(flight, time_s - half_step_s)) / (2.0 * half_step_s);
+    state.power_w = power_w_at(flight, time_s);
+    state.throttle_percent = throttle_for(state.power_w);
+    state.airborne = time_s >= flight.lift_off_s && time_s < flight.end_s(Phase::landing);
+    const double flown_s = std::clamp(time_s, flight.lift_off_s, flight.end_s(Phase::landing)) - flight.lift_off_s;
+    const double angle = flown_s * flight.airspeed_m_per_s / flight.circle_radius_m;
+    state.east_m = flight.circle_radius_m * std::sin(angle);
+    state.north_m = flight.circle_radius_m * (1.0 - std::cos(angle));
+    state.course_rad = std::fmod(0.5 * std::numbers::pi - angle + 2000.0 * std::numbers::pi, 2.0 * std::numbers::pi);
+    if (state.airborne) {
+        state.ground_speed_m_per_s =
+            std::hypot(flight.airspeed_m_per_s * std::sin(state.course_rad) + flight.wind_east_m_per_s,
+                       flight.airspeed_m_per_s * std::cos(state.course_rad) + flight.wind_north_m_per_s);
+    }
+    constexpr double auto1_before_s = 5.0;
+    constexpr double auto2_after_s = 15.0;
+    constexpr double manual_landing_s = 15.0;
+    const double touchdown = flight.end_s(Phase::landing);
+    if (time_s > flight.lift_off_s - auto1_before_s) state.mode = 1;
+    if (time_s > flight.lift_off_s + auto2_after_s) state.mode = 2;
+    if (time_s > touchdown - manual_landing_s) state.mode = 1;
+    if (time_s > touchdown + motor_off_after_s) state.mode = 0;
+    state.block = 2;
+    if (time_s > flight.motor_run_up_s + run_up_s + 5.0) state.block = 3;
+    if (time_s > flight.lift_off_s + 10.0) state.block = 4;
+    if (time_s > flight.end_s(Phase::takeoff)) state.block = 5;
+    if (time_s > flight.start_s(Phase::landing)) state.block = 6;
+    return state;
+}
+
+}  // namespace flightwatt

@@ -1,0 +1,275 @@
+#include "flight/synthetic_log.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "base/units.h"
+#include "telemetry/log_writer.h"
+
+namespace flightwatt {
+namespace {
+
+constexpr double tick_s = 0.05;
+constexpr auto aircraft_id = "7";
+constexpr double reference_east_m = 588000.0;
+constexpr double reference_north_m = 6148000.0;
+constexpr double log_begin_s = 8.0;  // the server's clock starts before the first message comes in
+
+/// Everything that a message can tell at one moment.
+struct Moment {
+    double time_s = 0.0;
+    SyntheticState state;
+    double voltage_v = 0.0;
+    double current_a = 0.0;
+    double charge_ah = 0.0;
+    double energy_wh = 0.0;
+    double altitude_m = 0.0;  ///< as the estimator sees it
+    double flight_time_s = 0.0;
+};
+
+/// A periodic telemetry message: its definition and how its fields are written.
+struct Report {
+    double period_s;
+    MessageDefinition definition;
+    std::function<std::vector<std::string>(const Moment&)> fields;
+};
+
+MessageDefinition message(const char* name, std::vector<FieldDefinition> fields) {
+    return {name, std::move(fields), ".log"};
+}
+
+std::string whole(double value) { return fmt::format("{}", std::llround(value)); }
+
+/// Messages that power and phases are read from.
+std::vector<Report> flight_reports() {
+    return {
+        {1.1,
+         message("ENERGY", {{"throttle", "uint8", "%", "", {}},
+                            {"voltage", "float", "V", "", {}},
+                            {"current", "float", "A", "", {}},
+                            {"power", "float", "W", "", {}},
+                            {"charge", "float", "Ah", "", {}},
+                            {"energy", "float", "Wh", "", {}}}),
+         [](const Moment& m) {
+             return std::vector{whole(m.state.throttle_percent), ocaml_float(m.voltage_v), ocaml_float(m.current_a),
+                                ocaml_float(m.voltage_v * m.current_a), ocaml_float(m.charge_ah),
+                                ocaml_float(m.energy_wh)};
+         }},
+        {0.5, message("ESTIMATOR", {{"z", "float", "m", "", {}}, {"z_dot", "float", "m/s", "", {}}}),
+         [](const Moment& m) {
+             return std::vector{ocaml_float(m.altitude_m),
+                                ocaml_float(std::round(m.state.climb_m_per_s * 100.0) / 100.0)};
+         }},
+        {0.5,
+         message("NAVIGATION", {{"cur_block", "uint8", "", "", {}},
+                                {"cur_stage", "uint8", "", "", {}},
+                                {"pos_x", "float", "m", "", {}},
+                                {"pos_y", "float", "m", "", {}},
+                                {"dist_wp", "float", "m", "", {}},
+                                {"dist_home", "float", "m", "", {}},
+                                {"flight_time", "uint16", "s", "", {}}}),
+         [](const Moment& m) {
+             const auto tenths = [](double value) { return ocaml_float(std::round(value * 10.0) / 10.0); };
+             return std::vector{std::to_string(m.state.block),
+                                std::string("0"),
+                                tenths(m.state.east_m),
+                                tenths(m.state.north_m),
+                                tenths(0.0),
+                                tenths(std::hypot(m.state.east_m, m.state.north_m)),
+                                whole(m.flight_time_s)};
+         }},
+        {5.0,
+         message("PPRZ_MODE", {{"ap_mode", "uint8", "", "", {}},
+                               {"ap_gaz", "uint8", "", "", {}},
+                               {"ap_lateral", "uint8", "", "", {}},
+                               {"ap_horizontal", "uint8", "", "", {}},
+                               {"if_calib_mode", "uint8", "", "", {}},
+                               {"mcu1_status", "uint8", "", "", {}}}),
+         [](const Moment& m) {
+             const std::string automatic = m.state.mode == 2 ? "3" : "0";
+             return std::vector{std::to_string(m.state.mode), automatic,        automatic,
+                                std::string("2"),             std::string("0"), std::string("17")};
+         }},
+    };
+}
+
+/// Messages that fill a real log too.
+std::vector<Report> other_reports() {
+    return {
+        {0.4,
+         message("ATTITUDE", {{"phi", "float", "rad", "", {}}, {"psi", "float", "rad", "", {}}, {"theta", "float", "rad", "", {}}}),
+         [](const Moment& m) {
+             const double heading = std::remainder(m.state.course_rad, 2.0 * std::numbers::pi);
+             return std::vector{ocaml_float(m.state.airborne ? -0.21 : 0.0), ocaml_float(heading),
+                                ocaml_float(m.state.climb_m_per_s / 20.0)};
+         }},
+        {0.5,
+         message("GPS", {{"mode", "uint8", "byte_mask", "", {}},
+                         {"utm_east", "int32", "cm", "", {}},
+                         {"utm_north", "int32", "cm", "", {}},
+                         {"course", "int16", "decideg", "", {}},
+                         {"alt", "int32", "mm", "", {}},
+                         {"speed", "uint16", "cm/s", "", {}},
+                         {"climb", "int16", "cm/s", "", {}},
+                         {"week", "uint16", "weeks", "", {}},
+                         {"itow", "uint32", "ms", "", {}},
+                         {"utm_zone", "uint8", "", "", {}},
+                         {"gps_nb_err", "uint8", "", "", {}}}),
+         [](const Moment& m) {
+             return std::vector{std::string("3"),
+                                whole((reference_east_m + m.state.east_m) * 100.0),
+                                whole((reference_north_m + m.state.north_m) * 100.0),
+                                whole(m.state.course_rad * 1800.0 / std::numbers::pi),
+                                whole(m.altitude_m * 1000.0),
+                                whole(m.state.ground_speed_m_per_s * 100.0),
+                                whole(m.state.climb_m_per_s * 100.0),
+                                std::string("2112"),
+                                whole(378000000.0 + m.time_s * 1000.0),
+                                std::string("32"),
+                                std::string("0")};
+         }},
+        {2.0,
+         message("FBW_STATUS", {{"rc_status", "uint8", "", "", {}},
+                                {"frame_rate", "uint8", "Hz", "", {}},
+                                {"mode", "uint8", "", "", {}},
+                                {"vsupply", "float", "V", "", {}},
+                                {"current", "float", "A", "", {}}}),
+         [](const Moment& m) {
+             return std::vector{std::string("0"), std::string("61"), std::string("0"), ocaml_float(m.voltage_v),
+                                ocaml_float(m.current_a)};
+         }},
+        {5.1, message("ALIVE", {{"md5sum", "uint8[]", "", "", {}}}),
+         [](const Moment&) { return std::vector{std::string("104,72,204,189,120,93,193,159,136,145,150,137,96,217,124,229")}; }},
+        {5.0, message("PONG", {}), [](const Moment&) { return std::vector<std::string>{}; }},
+        {7.1, message("LOGGER_STATUS", {{"status", "uint8", "", "", {}}, {"errno", "uint8", "", "", {}},
+                                        {"used", "uint32", "", "", {}}, {"logfile", "char[]", "", "", {}}}),
+         [](const Moment& m) {
+             return std::vector{std::string("1"), std::string("0"), whole(m.time_s * 512.0),
+                                std::string(", FLIGHT_RECORDER\\fr_0001.LOG")};
+         }},
+    };
+}
+
+/// Pack voltage at rest, by the charge taken out of it: a line through a 3-cell pack's usual values.
+double rest_voltage_v(double charge_ah, double capacity_ah) { return 12.5 - 1.4 * charge_ah / capacity_ah; }
+
+/// Sensors and counters, stepped through the flight.
+class Simulation {
+  public:
+    Simulation(const SyntheticFlight& flight, const SyntheticSensors& sensors, std::mt19937_64& random)
+        : flight_(flight), sensors_(sensors), random_(random) {}
+
+    Moment step(double time_s) {
+        Moment moment;
+        moment.time_s = time_s;
+        moment.state = state_at(flight_, time_s);
+        const double rest_v = rest_voltage_v(charge_ah_, sensors_.pack_capacity_ah);
+        const double true_current_a = moment.state.power_w / rest_v;
+        moment.voltage_v = rest_v - sensors_.pack_resistance_ohm * true_current_a;
+        // The phases' power is what reaches the sensors: voltage times current.
+        const double current_a = moment.state.power_w / moment.voltage_v;
+        charge_ah_ += (current_a + idle_a(moment)) * tick_s / units::seconds_per_hour;
+        energy_wh_ += (current_a + idle_a(moment)) * moment.voltage_v * tick_s / units::seconds_per_hour;
+        moment.charge_ah = charge_ah_;
+        moment.energy_wh = energy_wh_;
+        constexpr double adc_step_a = 0.00414;
+        const double noisy_a = current_a + idle_a(moment) + sensors_.current_noise_a * normal_(random_);
+        moment.current_a = std::round(noisy_a / adc_step_a) * adc_step_a;
+        moment.altitude_m = moment.state.altitude_m + sensors_.altitude_noise_m * normal_(random_);
+        moment.flight_time_s = std::max(0.0, time_s - flight_.lift_off_s);
+        return moment;
+    }
+
+  private:
+    double idle_a(const Moment& moment) const { return moment.state.power_w > 0.0 ? 0.0 : sensors_.idle_current_a; }
+
+    const SyntheticFlight& flight_;
+    const SyntheticSensors& sensors_;
+    std::mt19937_64& random_;
+    std::normal_distribution<double> normal_{0.0, 1.0};
+    double charge_ah_ = 0.0;
+    double energy_wh_ = 0.0;
+};
+
+/// A link that loses single lines and, now and then, all of them for some seconds.
+class LossyLink {
+  public:
+    LossyLink(double lost_fraction, std::mt19937_64& random) : lost_fraction_(lost_fraction), random_(random) {}
+
+    bool loses(double time_s) {
+        constexpr double mean_burst_s = 2.5;
+        if (time_s >= next_burst_s_) {
+            burst_end_s_ = time_s + mean_burst_s * exponential_(random_);
+            const double mean_pause_s = mean_burst_s / std::max(lost_fraction_ / 2.0, 1e-9);
+            next_burst_s_ = burst_end_s_ + mean_pause_s * exponential_(random_);
+        }
+        return time_s < burst_end_s_ || uniform_(random_) < lost_fraction_ / 2.0;
+    }
+
+  private:
+    double lost_fraction_;
+    std::mt19937_64& random_;
+    std::exponential_distribution<double> exponential_{1.0};
+    std::uniform_real_distribution<double> uniform_{0.0, 1.0};
+    double next_burst_s_ = 30.0;
+    double burst_end_s_ = 0.0;
+};
+
+std::string log_document(const SyntheticFlight& flight, const std::vector<Report>& reports, const std::string& name,
+                         const std::string& made_by) {
+    LogDocument document;
+    document.comment = fmt::format(" SYNTHETIC: no aircraft flew this. {} ", made_by);
+    document.time_of_day_s = 1577872800.0;
+    document.data_file = name + ".data";
+    document.aircraft.id = aircraft_id;
+    document.aircraft.name = "Opterra_synthetic";
+    document.aircraft.ground_altitude_m = flight.ground_altitude_m;
+    document.aircraft.block_names = {{0, "Wait GPS"}, {1, "Geo init"}, {2, "Holding point"}, {3, "Takeoff"},
+                                     {4, "Standby"},  {5, "Survey"},   {6, "Land Right AF-TD"}};
+    document.aircraft.current_origin = CurrentOrigin::sensor;
+    for (const auto& report : reports) document.telemetry.push_back(report.definition);
+    document.telemetry.push_back(message("TAKEOFF", {{"cpu_time", "uint16", "s", "", {}}}));
+    document.telemetry.push_back(message("INFO_MSG", {{"msg", "char[]", "", "", {}}}));
+    return to_log_xml(document);
+}
+
+}  // namespace
+
+SyntheticLog make_synthetic_log(const SyntheticFlight& flight, const SyntheticSensors& sensors,
+                                const std::string& name, const std::string& made_by, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    auto reports = flight_reports();
+    for (auto& report : other_reports()) reports.push_back(std::move(report));
+    Simulation simulation(flight, sensors, random);
+    LossyLink link(sensors.lost_fraction, random);
+    std::vector<double> due_s;
+    for (std::size_t i = 0; i < reports.size(); ++i) due_s.push_back(log_begin_s + 0.05 * static_cast<double>(i));
+    SyntheticLog log;
+    log.data = data_line(log_begin_s, "ground", "INFO_MSG",
+                         {fmt::format("\"SYNTHETIC: no aircraft flew this. {}\"", made_by)});
+    bool takeoff_sent = false;
+    const auto ticks = static_cast<std::size_t>(flight.log_end_s() / tick_s);
+    for (std::size_t tick = 0; tick <= ticks; ++tick) {
+        const double time_s = static_cast<double>(tick) * tick_s;
+        const auto moment = simulation.step(time_s);
+        if (!takeoff_sent && moment.state.airborne) {
+            log.data += data_line(time_s, aircraft_id, "TAKEOFF", {whole(time_s - log_begin_s)});
+            takeoff_sent = true;
+        }
+        for (std::size_t i = 0; i < reports.size(); ++i) {
+            if (time_s + 1e-9 < due_s[i]) continue;
+            due_s[i] += reports[i].period_s;
+            if (link.loses(time_s)) continue;
+            log.data += data_line(time_s, aircraft_id, reports[i].definition.name, reports[i].fields(moment));
+        }
+    }
+    log.log = log_document(flight, reports, name, made_by);
+    return log;
+}
+
+}  // namespace flightwatt

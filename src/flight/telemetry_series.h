@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "flight/flight_series.h"
+#include "telemetry/telemetry_log.h"
+
+namespace flightwatt {
+
+/// The messages and fields that a FlightSeries is made of.
+std::vector<MessageRequest> flight_messages();
+
+/// The ids of the aircraft that flew in the log: they sent altitude or power, and their altitude changed by
+/// more than 10 m with the motor on (where throttle is known). If none flew, those that sent such messages.
+std::vector<std::string> flown_aircraft(const TelemetryLog& log);
+
+/// The channels of one aircraft on the clock of its power samples. Throws InputError where it measured no
+/// power, naming what was looked at and what the log holds.
+FlightSeries flight_series(const TelemetryLog& log, const std::string& aircraft_id);
+
+}  // namespace flightwatt

@@ -1,0 +1,70 @@
+#include "flight/track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace flightwatt {
+namespace {
+
+double interpolate(const Track& track, std::size_t after, double time_s) {
+    if (after == 0) return track.value.front();
+    if (after == track.time_s.size()) return track.value.back();
+    const double begin_s = track.time_s[after - 1];
+    const double part = (time_s - begin_s) / (track.time_s[after] - begin_s);
+    return std::lerp(track.value[after - 1], track.value[after], part);
+}
+
+}  // namespace
+
+Track make_track(const std::vector<double>& time_s, const std::vector<double>& values, Merge merge) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isfinite(values[i])) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
+    Track track;
+    std::size_t merged = 0;  // how many rows the last point is made of
+    for (const auto i : order) {
+        if (!track.empty() && track.time_s.back() == time_s[i]) {
+            ++merged;
+            auto& value = track.value.back();
+            value = merge == Merge::latest ? values[i] : value + (values[i] - value) / static_cast<double>(merged);
+            continue;
+        }
+        merged = 1;
+        track.time_s.push_back(time_s[i]);
+        track.value.push_back(values[i]);
+    }
+    return track;
+}
+
+double value_at(const Track& track, double time_s) {
+    const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), time_s);
+    return interpolate(track, static_cast<std::size_t>(after - track.time_s.begin()), time_s);
+}
+
+double state_at(const Track& track, double time_s) {
+    const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), time_s);
+    const auto index = static_cast<std::size_t>(after - track.time_s.begin());
+    return track.value[index == 0 ? 0 : index - 1];
+}
+
+std::vector<double> resample(const Track& track, const std::vector<double>& time_s) {
+    std::vector<double> values;
+    values.reserve(time_s.size());
+    std::size_t after = 0;
+    for (const double t : time_s) {
+        while (after < track.time_s.size() && track.time_s[after] <= t) ++after;
+        values.push_back(interpolate(track, after, t));
+    }
+    return values;
+}
+
+bool is_constant(const Track& track) {
+    return std::all_of(track.value.begin(), track.value.end(),
+                       [&](double value) { return value == track.value.front(); });
+}
+
+}  // namespace flightwatt

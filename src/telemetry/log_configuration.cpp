@@ -1,0 +1,188 @@
+#include "telemetry/log_configuration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <pugixml.hpp>
+#include <string_view>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/number.h"
+
+namespace flightwatt {
+namespace {
+
+/// Attributes are upper case, lower case, or both in one file.
+std::string attribute(const pugi::xml_node& node, std::string_view lower) {
+    std::string upper(lower);
+    std::transform(upper.begin(), upper.end(), upper.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    const auto found = node.attribute(std::string(lower).c_str());
+    return found ? found.value() : node.attribute(upper.c_str()).value();
+}
+
+std::size_t line_of(std::string_view text, std::size_t offset) {
+    const auto* begin = text.data();
+    return 1 + static_cast<std::size_t>(std::count(begin, begin + std::min(offset, text.size()), '\n'));
+}
+
+MessageDefinition read_message(const pugi::xml_node& node) {
+    MessageDefinition message{attribute(node, "name"), {}, ".log"};
+    for (const auto& field : node.children("field")) {
+        message.fields.push_back({attribute(field, "name"), attribute(field, "type"), attribute(field, "unit"),
+                                  attribute(field, "alt_unit"),
+                                  parse_number(attribute(field, "alt_unit_coef"))});
+    }
+    return message;
+}
+
+/// The messages that an aircraft sends stand in class "telemetry"; other classes may reuse their names.
+void read_protocol(const pugi::xml_node& protocol, LogConfiguration& configuration) {
+    for (const bool telemetry : {true, false}) {
+        for (const auto& node : protocol.children()) {
+            const std::string_view tag = node.name();
+            if (tag != "class" && tag != "msg_class") continue;
+            if ((attribute(node, "name") == "telemetry") != telemetry) continue;
+            for (const auto& message : node.children("message")) {
+                auto definition = read_message(message);
+                auto name = definition.name;
+                configuration.messages.emplace(std::move(name), std::move(definition));
+            }
+        }
+    }
+}
+
+/// The end of the tag that opens at `begin` (at its '>'), passing over quoted values and their escaped quotes.
+std::size_t tag_end(std::string_view text, std::size_t begin) {
+    char quote = '\0';
+    for (std::size_t i = begin; i < text.size(); ++i) {
+        const char c = text[i];
+        if (quote != '\0') {
+            if (c == '\\') ++i;
+            else if (c == quote) quote = '\0';
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (c == '>') {
+            return i;
+        }
+    }
+    return std::string_view::npos;
+}
+
+/// Calls `use` with each opening tag `name` in `text`, read as an element of its own.
+template <typename Use>
+void for_each_tag(std::string_view text, std::string_view name, Use&& use) {
+    const std::string opening = fmt::format("<{}", name);
+    for (auto at = text.find(opening); at != std::string_view::npos; at = text.find(opening, at + 1)) {
+        const auto after = at + opening.size();
+        if (after >= text.size() || (text[after] != ' ' && text[after] != '\t' && text[after] != '\n')) continue;
+        const auto end = tag_end(text, at);
+        if (end == std::string_view::npos) return;
+        std::string tag(text.substr(at, end - at));
+        if (tag.back() != '/') tag += '/';
+        tag += '>';
+        pugi::xml_document document;
+        if (document.load_string(tag.c_str())) use(document.document_element());
+    }
+}
+
+AircraftConfiguration read_aircraft(std::string_view text, const pugi::xml_node& node) {
+    AircraftConfiguration aircraft;
+    aircraft.id = attribute(node, "ac_id");
+    aircraft.name = attribute(node, "name");
+    for_each_tag(text, "flight_plan", [&](const pugi::xml_node& plan) {
+        if (!aircraft.ground_altitude_m) aircraft.ground_altitude_m = parse_number(attribute(plan, "ground_alt"));
+    });
+    int position = 0;
+    for_each_tag(text, "block", [&](const pugi::xml_node& block) {
+        const auto number = parse_unsigned(attribute(block, "no"));
+        aircraft.block_names.emplace(number ? static_cast<int>(*number) : position, attribute(block, "name"));
+        ++position;
+    });
+    for_each_tag(text, "define", [&](const pugi::xml_node& define) {
+        const auto name = attribute(define, "name");
+        if (name.starts_with("MilliAmpereOfAdc")) {
+            aircraft.current_origin = CurrentOrigin::sensor;
+        } else if (name.starts_with("MILLIAMP_AT_FULL_THROTTLE") &&
+                   aircraft.current_origin == CurrentOrigin::unknown) {
+            aircraft.current_origin = CurrentOrigin::throttle;
+        }
+    });
+    return aircraft;
+}
+
+void read_all_aircraft(std::string_view text, LogConfiguration& configuration) {
+    constexpr std::string_view closing = "</aircraft>";
+    std::size_t at = 0;
+    while ((at = text.find("<aircraft ", at)) != std::string_view::npos) {
+        const auto end = std::min(text.find(closing, at), text.size());
+        const auto element = text.substr(at, end - at);
+        for_each_tag(element.substr(0, tag_end(element, 0) + 1), "aircraft", [&](const pugi::xml_node& node) {
+            auto aircraft = read_aircraft(element, node);
+            auto id = aircraft.id;
+            configuration.aircraft.emplace(std::move(id), std::move(aircraft));
+        });
+        at = end;
+    }
+}
+
+}  // namespace
+
+LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file) {
+    LogConfiguration configuration;
+    configuration.file = file;
+    const auto begin = text.find("<protocol");
+    constexpr std::string_view closing = "</protocol>";
+    const auto end = begin == std::string::npos ? begin : text.find(closing, begin);
+    if (end == std::string::npos) {
+        throw InputError({file.string()}, "holds no <protocol> element with message definitions",
+                         "expected the .log that Paparazzi's server wrote beside the .data");
+    }
+    pugi::xml_document document;
+    const auto parsed = document.load_buffer(text.data() + begin, end + closing.size() - begin);
+    if (!parsed) {
+        const auto offset = begin + static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0));
+        throw InputError({file.string(), line_of(text, offset)},
+                         fmt::format("its <protocol> is not XML: {}", parsed.description()));
+    }
+    read_protocol(document.child("protocol"), configuration);
+    if (configuration.messages.empty()) {
+        throw InputError({file.string(), line_of(text, begin)}, "its <protocol> defines no message");
+    }
+    read_all_aircraft(text, configuration);
+    return configuration;
+}
+
+LogConfiguration read_log_configuration(const std::filesystem::path& path) {
+    return parse_log_configuration(read_file(path), path);
+}
+
+std::string flight_name(const std::filesystem::path& data_file) {
+    auto name = data_file.filename().string();
+    constexpr std::array<std::string_view, 4> compressed{".gz", ".bz2", ".xz", ".zst"};
+    for (const auto ending : compressed) {
+        if (name.ends_with(ending)) name.resize(name.size() - ending.size());
+    }
+    for (const std::string_view ending : {".series.csv", ".data", ".csv"}) {
+        if (name.ends_with(ending)) {
+            name.resize(name.size() - ending.size());
+            break;
+        }
+    }
+    return name;
+}
+
+std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& data_file) {
+    const auto flight = flight_name(data_file);
+    std::vector<std::string> stems{flight};
+    if (flight.ends_with("_SD")) stems.push_back(flight.substr(0, flight.size() - 3));
+    for (const auto& stem : stems) {
+        const auto candidate = data_file.parent_path() / (stem + ".log");
+        if (std::filesystem::is_regular_file(candidate)) return candidate;
+    }
+    return std::nullopt;
+}
+
+}  // namespace flightwatt

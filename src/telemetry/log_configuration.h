@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "telemetry/message_definition.h"
+
+namespace flightwatt {
+
+/// Where the autopilot's current came from.
+enum class CurrentOrigin {
+    unknown,
+    sensor,    ///< the airframe converts an ADC reading: MilliAmpereOfAdc
+    throttle,  ///< computed from throttle: MILLIAMP_AT_FULL_THROTTLE alone
+};
+
+/// One aircraft of the configuration that a .log embeds.
+struct AircraftConfiguration {
+    std::string id;
+    std::string name;
+    std::optional<double> ground_altitude_m;
+    std::map<int, std::string> block_names;
+    CurrentOrigin current_origin = CurrentOrigin::unknown;
+};
+
+/// What a Paparazzi .log says: message definitions by name, and the aircraft by id.
+struct LogConfiguration {
+    std::filesystem::path file;
+    std::map<std::string, MessageDefinition, std::less<>> messages;
+    std::map<std::string, AircraftConfiguration> aircraft;
+};
+
+/// Reads a .log. Such files are often not well-formed XML ("&&", bare "<", escaped quotes in flight plans), so
+/// only the <protocol> element is read as XML; of the aircraft, single tags. Throws InputError where there is
+/// no <protocol>, it holds no message, or it cannot be read.
+LogConfiguration read_log_configuration(const std::filesystem::path& path);
+LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file);
+
+/// The .log that belongs to a .data file ("X.data", "X.data.gz", "X_SD.data"): "X.log" beside it.
+std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& data_file);
+
+/// "20_07_03__12_17_45" for "logs/20_07_03__12_17_45.data.gz": the name without folder and endings.
+std::string flight_name(const std::filesystem::path& data_file);
+
+}  // namespace flightwatt

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/units.h"
+
+namespace flightwatt {
+
+/// One field of a message as the flight's own .log declares it. Arrays are one field.
+struct FieldDefinition {
+    std::string name;
+    std::string type;
+    std::string unit;
+    std::string alt_unit;
+    std::optional<double> alt_unit_coef;
+};
+
+struct MessageDefinition {
+    std::string name;
+    std::vector<FieldDefinition> fields;
+    std::string origin;  ///< ".log", or which built-in definition was assumed
+};
+
+/// What turns a field's raw value into the base unit of its quantity.
+struct FieldConversion {
+    std::optional<units::Quantity> quantity;  ///< absent: a number without a unit, such as a mode or a block
+    double factor = 1.0;
+};
+
+/// By the declared unit, else by the alternative unit and its coefficient (ROTORCRAFT_FP.up: 2^-8 m).
+/// BAT.amps, an integer declared "A", counts 0.01 A in every version of Paparazzi.
+FieldConversion conversion_of(std::string_view message, const FieldDefinition& field);
+
+/// Index of a field; std::nullopt if the message has none of that name.
+std::optional<std::size_t> field_index(const MessageDefinition& definition, std::string_view field);
+
+/// Built-in definitions of the messages that FlightWatt reads, for logs that come without a .log: every
+/// layout of `message` that Paparazzi has had, told apart by their numbers of fields. Empty if unknown.
+const std::vector<MessageDefinition>& builtin_definitions(std::string_view message);
+
+}  // namespace flightwatt

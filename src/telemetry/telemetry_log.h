@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/units.h"
+#include "telemetry/log_configuration.h"
+
+namespace flightwatt {
+
+/// A message that is wanted, and which of its fields (those that the flight's definition has are read).
+struct MessageRequest {
+    std::string message;
+    std::vector<std::string> fields;
+};
+
+/// One field over time, in the base unit of its quantity. A value that was no finite number is NaN here (and
+/// counted), so that its row's other fields stay usable.
+struct Column {
+    std::string field;
+    std::optional<units::Quantity> quantity;
+    std::vector<double> values;
+};
+
+/// The rows of one message of one sender, in the order of the file.
+struct MessageTable {
+    std::string message;
+    std::vector<double> time_s;
+    std::vector<Column> columns;
+
+    bool empty() const { return time_s.empty(); }
+    /// The column of `field`; nullptr if the flight's definition has none.
+    const Column* column(std::string_view field) const;
+};
+
+/// Everything that was asked for of one sender.
+struct SenderLog {
+    std::string id;
+    std::vector<MessageTable> tables;
+
+    /// The table of `message`; nullptr if the sender sent none.
+    const MessageTable* table(std::string_view message) const;
+};
+
+/// Lines or values that could not be used, by reason.
+struct SkippedLines {
+    std::string reason;
+    std::size_t count = 0;
+    std::size_t first_line = 0;
+};
+
+struct TelemetryLog {
+    std::filesystem::path data_file;
+    std::string flight;
+    std::optional<LogConfiguration> configuration;  ///< absent without a .log
+    std::vector<SenderLog> senders;                 ///< in the order of their first wanted line
+    std::vector<SkippedLines> skipped;
+    std::vector<std::string> assumed_definitions;  ///< "ENERGY: 2018 (6 fields)", where there was no .log
+    std::size_t lines = 0;
+};
+
+/// Reads the wanted messages of a Paparazzi .data file with its .log (found beside it). Only these messages
+/// are parsed. Throws InputError for a file that cannot be read or holds no telemetry line.
+TelemetryLog read_telemetry(const std::filesystem::path& data_file, const std::vector<MessageRequest>& wanted);
+
+/// The same for text in memory; `configuration` as in TelemetryLog.
+TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
+                             std::optional<LogConfiguration> configuration,
+                             const std::vector<MessageRequest>& wanted);
+
+/// Names of the messages in a .data text, with their counts, most frequent first: for explaining what a log
+/// holds when it lacks what is wanted.
+std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_view text);
+
+}  // namespace flightwatt
