@@ -10,13 +10,17 @@
 namespace flightwatt {
 namespace {
 
-/// Running median of five: takes out spikes of up to two samples and leaves climbs as they are.
+/// Running median of an odd number of values: takes out spikes of less than half as many, and leaves climbs as
+/// they are.
+template <std::size_t Width>
 std::vector<double> without_spikes(const std::vector<double>& values) {
+    constexpr auto reach = static_cast<std::ptrdiff_t>(Width / 2);
     std::vector<double> smooth = values;
-    for (std::size_t i = 2; i + 2 < values.size(); ++i) {
-        std::array<double, 5> near{values[i - 2], values[i - 1], values[i], values[i + 1], values[i + 2]};
-        std::nth_element(near.begin(), near.begin() + 2, near.end());
-        smooth[i] = near[2];
+    for (std::ptrdiff_t i = reach; i + reach < static_cast<std::ptrdiff_t>(values.size()); ++i) {
+        std::array<double, Width> near{};
+        std::copy_n(values.begin() + i - reach, Width, near.begin());
+        std::nth_element(near.begin(), near.begin() + reach, near.end());
+        smooth[static_cast<std::size_t>(i)] = near[Width / 2];
     }
     return smooth;
 }
@@ -28,7 +32,7 @@ Track series_track(const FlightSeries& series, const std::vector<double>& channe
 }  // namespace
 
 FlightGrid make_grid(const FlightSeries& series) {
-    const auto altitude =
+    auto altitude =
         series.altitude_track.empty() ? series_track(series, series.altitude_m) : series.altitude_track;
     if (altitude.empty()) {
         throw InputError({series.flight}, "has no altitude, so its phases cannot be told apart",
@@ -40,13 +44,14 @@ FlightGrid make_grid(const FlightSeries& series) {
     const auto count = static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
     std::vector<double> time_s(count);
     for (std::size_t i = 0; i < count; ++i) time_s[i] = grid.time_s(i);
-    grid.altitude_m = without_spikes(resample(altitude, time_s));
+    altitude.value = without_spikes<3>(altitude.value);  // on its own clock, before it is spread over the grid
+    grid.altitude_m = without_spikes<5>(resample(altitude, time_s));
     if (const auto throttle = series_track(series, series.throttle_percent); !throttle.empty()) {
         grid.throttle_percent = resample(throttle, time_s);
     }
     const auto speed = series.ground_speed_track.empty() ? series_track(series, series.ground_speed_m_per_s)
                                                          : series.ground_speed_track;
-    if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes(resample(speed, time_s));
+    if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes<5>(resample(speed, time_s));
     return grid;
 }
 

@@ -14,7 +14,8 @@ namespace {
 
 /// What lies between two rests: something moved, or the motor ran.
 struct Activity {
-    GridSpan span;
+    GridSpan moving;
+    GridSpan span;  ///< with the ends of the rests beside it, which reach up to the last metres
     std::optional<double> ground_before_m;  ///< absent if the log begins with it
     std::optional<double> ground_after_m;   ///< absent if the log ends with it
 };
@@ -26,18 +27,28 @@ double ground_beside(const FlightGrid& grid, GridSpan rest, bool before) {
                                           : GridSpan{rest.begin, rest.begin + length});
 }
 
-std::vector<Activity> find_activities(const FlightGrid& grid, const std::vector<GridSpan>& rests) {
+std::vector<Activity> find_activities(const FlightGrid& grid, const std::vector<GridSpan>& rests,
+                                      const SegmentationOptions& options) {
+    const auto reach = grid.steps(options.rest_s);
     std::vector<Activity> activities;
-    std::optional<double> ground_before;
     std::size_t begin = 0;
-    for (const auto& rest : rests) {
-        if (rest.begin > begin) {
-            activities.push_back({{begin, rest.begin}, ground_before, ground_beside(grid, rest, false)});
+    for (std::size_t r = 0; r <= rests.size(); ++r) {
+        const bool last = r == rests.size();
+        const auto end = last ? grid.size() : rests[r].begin;
+        if (end > begin) {
+            Activity activity{{begin, end}, {begin, end}, std::nullopt, std::nullopt};
+            if (r > 0) {
+                activity.ground_before_m = ground_beside(grid, rests[r - 1], true);
+                activity.span.begin -= std::min(reach, rests[r - 1].end - rests[r - 1].begin);
+            }
+            if (!last) {
+                activity.ground_after_m = ground_beside(grid, rests[r], false);
+                activity.span.end += std::min(reach, rests[r].end - rests[r].begin);
+            }
+            activities.push_back(activity);
         }
-        ground_before = ground_beside(grid, rest, true);
-        begin = rest.end;
+        if (!last) begin = rests[r].end;
     }
-    if (begin < grid.size()) activities.push_back({{begin, grid.size()}, ground_before, std::nullopt});
     return activities;
 }
 
@@ -192,8 +203,9 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     return edges;
 }
 
-PhaseEdge describe_edge(const FlightSeries& series, const FlightGrid& grid, double time_s) {
+PhaseEdge describe_edge(const FlightSeries& series, const FlightGrid& grid, double exact_s) {
     PhaseEdge edge;
+    const double time_s = std::round(exact_s * 1000.0) / 1000.0;  // as the log writes its times
     edge.time_s = time_s;
     const auto nearest = [&](const std::vector<double>& channel) {
         const auto index = std::lround((time_s - grid.begin_s) / grid.step_s);
@@ -234,24 +246,37 @@ Sortie make_sortie(const FlightSeries& series, const FlightGrid& grid, const Act
 
 }  // namespace
 
+void validate(const SegmentationOptions& options) {
+    const auto require = [](bool good, const char* name, double value, const char* expected) {
+        if (!good) throw UsageError(fmt::format("{} is {}, expected {}", name, value, expected));
+    };
+    const auto between = [](double value, double low, double high) { return value > low && value < high; };
+    require(between(options.ground_fraction, 0.0, 0.25), "ground fraction", options.ground_fraction, "0 to 0.25");
+    require(between(options.cruise_fraction, 0.25, 1.0), "cruise fraction", options.cruise_fraction, "0.25 to 1");
+    require(between(options.flight_height_m, 0.0, 1e4), "flight height", options.flight_height_m, "more than 0 m");
+    require(options.rest_s >= 1.0, "rest", options.rest_s, "1 s or more");
+    require(options.hold_s > 0.0, "hold", options.hold_s, "more than 0 s");
+}
+
 FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options) {
+    validate(options);
     const auto grid = make_grid(series);
     FlightPhases phases;
     if (grid.throttle_percent.empty()) phases.warnings.emplace_back("no throttle: segmented by altitude alone");
-    for (const auto& activity : find_activities(grid, find_rests(grid, options))) {
+    for (const auto& activity : find_activities(grid, find_rests(grid, options), options)) {
         bool disagree = false;
         const auto grounds = grounds_of(grid, activity, series.ground_altitude_m, disagree);
         const auto heights = heights_of(grid, activity, grounds);
         auto why = why_no_flight(grid, activity, heights, options);
         if (!why.empty()) {
             phases.others.push_back(
-                {grid.time_s(activity.span.begin), grid.time_s(activity.span.end - 1), std::move(why)});
+                {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1), std::move(why)});
             continue;
         }
         if (disagree) {
             phases.warnings.push_back(fmt::format(
                 "the ground before the sortie at {:.0f} s was read as {:.0f} m and after it as {:.0f} m: the latter counts",
-                grid.time_s(activity.span.begin), *activity.ground_before_m, *activity.ground_after_m));
+                grid.time_s(activity.moving.begin), *activity.ground_before_m, *activity.ground_after_m));
         }
         phases.sorties.push_back(make_sortie(series, grid, activity, heights, options));
     }

@@ -63,6 +63,9 @@ struct FlightPhases {
     std::vector<std::string> warnings;
 };
 
+/// Throws UsageError for thresholds that make no sense.
+void validate(const SegmentationOptions& options);
+
 /// Finds every sortie of the series, and its phases, by altitude and throttle. An aircraft flies between two
 /// rests; lift-off is where it last leaves the ground on its way up, touchdown where it first is back for good;
 /// take-off ends where it reaches, and landing begins where it leaves, the height that it holds after and

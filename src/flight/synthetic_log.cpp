@@ -199,24 +199,27 @@ class Simulation {
 /// A link that loses single lines and, now and then, all of them for some seconds.
 class LossyLink {
   public:
-    LossyLink(double lost_fraction, std::mt19937_64& random) : lost_fraction_(lost_fraction), random_(random) {}
+    LossyLink(double lost_fraction, std::mt19937_64& random) : lost_fraction_(lost_fraction), random_(random) {
+        next_burst_s_ = mean_pause_s() * exponential_(random_);
+    }
 
     bool loses(double time_s) {
-        constexpr double mean_burst_s = 2.5;
         if (time_s >= next_burst_s_) {
             burst_end_s_ = time_s + mean_burst_s * exponential_(random_);
-            const double mean_pause_s = mean_burst_s / std::max(lost_fraction_ / 2.0, 1e-9);
-            next_burst_s_ = burst_end_s_ + mean_pause_s * exponential_(random_);
+            next_burst_s_ = burst_end_s_ + mean_pause_s() * exponential_(random_);
         }
         return time_s < burst_end_s_ || uniform_(random_) < lost_fraction_ / 2.0;
     }
 
   private:
+    static constexpr double mean_burst_s = 2.5;
+    double mean_pause_s() const { return mean_burst_s / std::max(lost_fraction_ / 2.0, 1e-9); }
+
     double lost_fraction_;
     std::mt19937_64& random_;
     std::exponential_distribution<double> exponential_{1.0};
     std::uniform_real_distribution<double> uniform_{0.0, 1.0};
-    double next_burst_s_ = 30.0;
+    double next_burst_s_ = 0.0;
     double burst_end_s_ = 0.0;
 };
 

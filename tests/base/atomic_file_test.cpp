@@ -1,0 +1,36 @@
+#include "base/atomic_file.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "test_paths.h"
+
+namespace flightwatt {
+namespace {
+
+TEST(AtomicFile, ReplacesTheContentAndLeavesNothingElse) {
+    const auto folder = test::scratch_dir();
+    write_file_atomically(folder / "a.txt", "old");
+    write_file_atomically(folder / "a.txt", "new");
+    EXPECT_EQ(read_file(folder / "a.txt"), "new");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST(AtomicFile, RefusesWhatCannotBeWrittenAndKeepsWhatWasThere) {
+    const auto folder = test::scratch_dir();
+    EXPECT_THROW(write_file_atomically(folder / "missing" / "a.txt", "x"), OutputError);
+    EXPECT_THROW(write_file_atomically(folder, "x"), OutputError);
+    EXPECT_TRUE(std::filesystem::is_directory(folder));
+    EXPECT_THROW(write_file_atomically("/dev/full", "x"), OutputError);
+    EXPECT_THROW(make_directories(folder / "a.txt" / "b" / std::string(300, 'x')), OutputError);
+}
+
+TEST(ReadFile, RefusesFoldersAndMissingFiles) {
+    EXPECT_THROW(read_file(test::scratch_dir()), InputError);
+    EXPECT_THROW(read_file(test::scratch_dir() / "missing"), InputError);
+}
+
+}  // namespace
+}  // namespace flightwatt

@@ -1,0 +1,54 @@
+#include "base/csv.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace flightwatt {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Csv, ReadsCellsWithTheirPlaces) {
+    const auto table = parse_csv("# a comment\r\ntime_s,power_w\r\n\r\n1,2.5\r\n3,\"4\"", "a.csv");
+    EXPECT_THAT(table.columns, ElementsAre("time_s", "power_w"));
+    ASSERT_EQ(table.rows.size(), 2u);
+    EXPECT_EQ(table.rows[0].line, 4u);
+    EXPECT_EQ(table.rows[0].cells[1].column, 3u);
+    EXPECT_EQ(cell_number(table, table.rows[0], 1), 2.5);
+    EXPECT_EQ(cell_number(table, table.rows[1], 1), 4.0);
+}
+
+TEST(Csv, QuotedCellsGoThereAndBack) {
+    const std::string odd = "a \"quoted\", cell";
+    const auto table = parse_csv("name,x\n" + csv_cell(odd) + ",1\n", "a.csv");
+    EXPECT_EQ(table.rows[0].cells[0].text, odd);
+    EXPECT_EQ(csv_cell("plain"), "plain");
+}
+
+void expect_error(const std::string& text, std::size_t line, std::size_t column, const std::string& message) {
+    try {
+        const auto table = parse_csv(text, "a.csv");
+        for (const auto& row : table.rows) cell_number(table, row, column_index(table, "power_w"));
+        FAIL() << "accepted: " << text;
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.where().line, line) << text;
+        EXPECT_EQ(error.where().column, column) << text;
+        EXPECT_THAT(error.what(), HasSubstr(message)) << text;
+    }
+}
+
+TEST(Csv, RefusesBadTablesWithTheirPlace) {
+    expect_error("", 0, 0, "is empty");
+    expect_error("# only a comment\n", 0, 0, "is empty");
+    expect_error("time_s,power_w\n1,nan\n", 2, 3, "power_w is not a finite number: 'nan'");
+    expect_error("time_s,power_w\n1,2\n1,12.5x\n", 3, 3, "'12.5x'");
+    expect_error("time_s,power_w\n1\n", 2, 0, "1 cells, expected 2");
+    expect_error("time_s,power_w\n1,\"2\n", 2, 3, "a quote is opened and not closed");
+    expect_error("time_s,power_kw\n1,2\n", 1, 0, "has no column 'power_w'");
+}
+
+}  // namespace
+}  // namespace flightwatt

@@ -1,0 +1,241 @@
+#include "flight/segmentation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "base/error.h"
+#include "flight/flight_reader.h"
+#include "test_paths.h"
+
+namespace flightwatt {
+namespace {
+
+using testing::HasSubstr;
+
+/// A made-up flight as points in time, linear between them.
+struct Point {
+    double time_s;
+    double altitude_m;
+    double throttle_percent;
+};
+
+FlightSeries series_of(const std::vector<Point>& points, double interval_s = 1.1) {
+    FlightSeries series;
+    series.flight = "made-up";
+    std::size_t next = 1;
+    for (double t = points.front().time_s; t <= points.back().time_s; t += interval_s) {
+        while (points[next].time_s < t) ++next;
+        const auto& a = points[next - 1];
+        const auto& b = points[next];
+        const double part = (t - a.time_s) / (b.time_s - a.time_s);
+        series.time_s.push_back(t);
+        series.altitude_m.push_back(std::lerp(a.altitude_m, b.altitude_m, part));
+        series.throttle_percent.push_back(std::lerp(a.throttle_percent, b.throttle_percent, part));
+        series.power_w.push_back(series.throttle_percent.back());
+    }
+    return series;
+}
+
+/// Ground, take-off at `begin_s`, 300 s at 100 m, landing.
+std::vector<Point> sortie(double begin_s, double ground_m = 0.0) {
+    const double top = ground_m + 100.0;
+    return {{begin_s - 40, ground_m, 0}, {begin_s - 2, ground_m, 0},  {begin_s - 1, ground_m, 90},
+            {begin_s, ground_m, 90},     {begin_s + 30, top, 90},     {begin_s + 31, top, 60},
+            {begin_s + 330, top, 60},    {begin_s + 331, top - 2, 0}, {begin_s + 370, ground_m, 0},
+            {begin_s + 420, ground_m, 0}};
+}
+
+struct Edges {
+    double lift_off, takeoff_end, landing_start, touchdown;
+};
+
+void expect_sortie(const Sortie& sortie, Edges edges, double tolerance_s = 3.0) {
+    ASSERT_EQ(sortie.phases.size(), 3u);
+    EXPECT_NEAR(sortie.phases[0].start.time_s, edges.lift_off, tolerance_s);
+    EXPECT_NEAR(sortie.phases[0].end.time_s, edges.takeoff_end, tolerance_s);
+    EXPECT_EQ(sortie.phases[0].end.time_s, sortie.phases[1].start.time_s);
+    EXPECT_NEAR(sortie.phases[1].end.time_s, edges.landing_start, tolerance_s);
+    EXPECT_EQ(sortie.phases[1].end.time_s, sortie.phases[2].start.time_s);
+    EXPECT_NEAR(sortie.phases[2].end.time_s, edges.touchdown, tolerance_s);
+    for (const auto& span : sortie.phases) EXPECT_TRUE(span.complete);
+}
+
+constexpr Edges plain{101, 127, 434, 469};
+
+TEST(Segmentation, FindsThePhasesOfAPlainFlight) {
+    const auto phases = segment(series_of(sortie(100)));
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    expect_sortie(phases.sorties[0], plain);
+    EXPECT_NEAR(phases.sorties[0].height_m, 100.0, 1.0);
+    EXPECT_TRUE(phases.others.empty());
+}
+
+TEST(Segmentation, DoesNotDependOnTheUnitOfHeightOrTheHourOfTheLog) {
+    auto series = series_of(sortie(100));
+    const auto before = segment(series);
+    for (auto& t : series.time_s) t += 36000.0;
+    for (auto& z : series.altitude_m) z = 5.0 * z + 1000.0;
+    SegmentationOptions options;
+    options.rest_height_m *= 5.0;
+    options.flight_height_m *= 5.0;
+    const auto after = segment(series, options);
+    ASSERT_EQ(after.sorties.size(), 1u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(after.sorties[0].phases[i].start.time_s - 36000.0, before.sorties[0].phases[i].start.time_s, 0.6);
+    }
+}
+
+TEST(Segmentation, IsNotFooledByAnEstimatorThatStartsAtZero) {
+    std::vector<Point> points{{0, 0, 0}, {30, 0, 0}, {45, 185, 0}};
+    for (const auto& p : sortie(100, 185)) points.push_back(p);
+    const auto phases = segment(series_of(points));
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    expect_sortie(phases.sorties[0], plain);
+    // And if it finds its fix only just before lift-off, while the motor already runs:
+    points = {{0, 0, 0}, {90, 0, 0}, {97, 185, 0}};
+    for (const auto& p : sortie(100, 185)) {
+        if (p.time_s > 97) points.push_back(p);
+    }
+    const auto late = segment(series_of(points));
+    ASSERT_EQ(late.sorties.size(), 1u);
+    expect_sortie(late.sorties[0], plain, 5.0);
+    EXPECT_EQ(late.warnings.size(), 1u);
+}
+
+TEST(Segmentation, KeepsDivesInCruise) {
+    auto points = sortie(100);
+    points.insert(points.begin() + 6, {{200, 100, 60}, {206, 30, 0}, {212, 30, 100}, {230, 100, 100}, {231, 100, 60},
+                                       {400, 100, 60}, {405, 35, 0}, {420, 110, 100}});
+    const auto phases = segment(series_of(points));
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    expect_sortie(phases.sorties[0], plain, 4.0);
+}
+
+TEST(Segmentation, NamesRunUpsAndIgnoresPowerAfterLanding) {
+    auto points = sortie(100);
+    points.insert(points.begin() + 1, {{75, 0, 0}, {76, 0.5, 80}, {79, 0.5, 80}, {80, 0, 0}});
+    points.push_back({530, 0, 0});
+    points.push_back({531, 0, 70});
+    points.push_back({535, 0, 70});
+    points.push_back({536, 0, 0});
+    points.push_back({560, 0, 0});
+    auto series = series_of(points);
+    std::fill(series.power_w.end() - 5, series.power_w.end(), 80.0);
+    const auto phases = segment(series);
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    expect_sortie(phases.sorties[0], plain);
+    ASSERT_EQ(phases.others.size(), 2u);
+    EXPECT_THAT(phases.others[0].what, HasSubstr("run-up"));
+}
+
+TEST(Segmentation, IsNotFooledByAThrottleBurstBeforeTouchdown) {
+    auto points = sortie(100);
+    points.insert(points.begin() + 8, {{462, 15, 0}, {463, 14, 50}, {467, 6, 50}, {468, 5, 0}});
+    const auto phases = segment(series_of(points));
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    expect_sortie(phases.sorties[0], plain);
+}
+
+TEST(Segmentation, FindsEverySortieOfALog) {
+    auto points = sortie(100);
+    for (const auto& p : sortie(600, 2.0)) points.push_back(p);
+    const auto phases = segment(series_of(points));
+    ASSERT_EQ(phases.sorties.size(), 2u);
+    expect_sortie(phases.sorties[0], plain);
+    expect_sortie(phases.sorties[1], {601, 627, 934, 969});
+}
+
+TEST(Segmentation, MarksAFlightThatTheLogEntersOrLeavesInTheAir) {
+    auto entering = sortie(100);
+    entering.erase(entering.begin(), entering.begin() + 5);
+    const auto in = segment(series_of(entering));
+    ASSERT_EQ(in.sorties.size(), 1u);
+    ASSERT_EQ(in.sorties[0].phases.size(), 2u);
+    EXPECT_EQ(in.sorties[0].phases[0].phase, Phase::cruise);
+    EXPECT_FALSE(in.sorties[0].phases[0].complete);
+    EXPECT_EQ(in.sorties[0].phases[1].phase, Phase::landing);
+    EXPECT_TRUE(in.sorties[0].phases[1].complete);
+    EXPECT_NEAR(in.sorties[0].phases[1].end.time_s, plain.touchdown, 3.0);
+
+    auto leaving = sortie(100);
+    leaving.erase(leaving.end() - 4, leaving.end());
+    leaving.push_back({400, 100, 60});
+    const auto out = segment(series_of(leaving));
+    ASSERT_EQ(out.sorties.size(), 1u);
+    ASSERT_EQ(out.sorties[0].phases.size(), 2u);
+    EXPECT_EQ(out.sorties[0].phases[0].phase, Phase::takeoff);
+    EXPECT_TRUE(out.sorties[0].phases[0].complete);
+    EXPECT_EQ(out.sorties[0].phases[1].phase, Phase::cruise);
+    EXPECT_FALSE(out.sorties[0].phases[1].complete);
+}
+
+TEST(Segmentation, WorksThroughGapsAndSpikes) {
+    auto series = series_of(sortie(100));
+    const auto drop = [&](double from, double to) {
+        for (std::size_t i = series.time_s.size(); i-- > 0;) {
+            if (series.time_s[i] < from || series.time_s[i] > to) continue;
+            for (auto* channel : {&series.time_s, &series.altitude_m, &series.throttle_percent, &series.power_w}) {
+                channel->erase(channel->begin() + static_cast<std::ptrdiff_t>(i));
+            }
+        }
+    };
+    drop(200, 222);
+    drop(300, 310);
+    series.altitude_track = {series.time_s, series.altitude_m};
+    series.altitude_track.value[150] = 900.0;
+    const auto phases = segment(series);
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    expect_sortie(phases.sorties[0], plain);
+}
+
+TEST(Segmentation, SaysWhatItSawWhereNothingFlew) {
+    const auto refusal = [](const std::vector<Point>& points) {
+        const auto series = series_of(points);
+        try {
+            require_sortie(series, segment(series), "x.data");
+        } catch (const InputError& error) {
+            return std::string(error.what()) + "; " + error.hint();
+        }
+        return std::string("accepted");
+    };
+    EXPECT_THAT(refusal({{0, 5, 0}, {100, 5, 0}}), HasSubstr("holds no flight in 99 s; it stood still throughout"));
+    EXPECT_THAT(refusal({{0, 5, 0}, {50, 5, 0}, {51, 5, 70}, {60, 5, 70}, {61, 5, 0}, {100, 5, 0}}),
+                HasSubstr("run-up, taxi or hop: throttle to 70 %"));
+    EXPECT_THAT(refusal({{0, 5, 0}, {50, 5, 0}, {60, 60, 0}, {70, 5, 0}, {100, 5, 0}}), HasSubstr("estimator without a fix"));
+}
+
+TEST(Segmentation, RefusesWhatCannotBeSegmented) {
+    auto series = series_of(sortie(100));
+    series.altitude_m.clear();
+    EXPECT_THROW(segment(series), InputError);
+    SegmentationOptions options;
+    options.cruise_fraction = 1.5;
+    EXPECT_THROW(segment(series_of(sortie(100)), options), UsageError);
+}
+
+struct RealFlight {
+    const char* name;
+    Edges edges;
+};
+
+TEST(Segmentation, MatchesWhatWasReadOffPlotsOfTheRealFlights) {
+    FLIGHTWATT_NEEDS_SHARED();
+    for (const auto& [name, edges] : {RealFlight{"20_07_03__12_17_45", {147, 178, 1549, 1586}},
+                                      RealFlight{"20_07_05__10_26_44", {210, 237, 1900, 1937}},
+                                      RealFlight{"20_07_10__06_53_03", {321, 356, 1066, 1100}}}) {
+        SCOPED_TRACE(name);
+        const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
+        const auto phases = segment(series);
+        ASSERT_EQ(phases.sorties.size(), 1u);
+        expect_sortie(phases.sorties[0], edges, 5.0);
+        const auto& lift_off = phases.sorties[0].phases[0].start;
+        ASSERT_TRUE(lift_off.takeoff_after_s.has_value());
+        EXPECT_LT(std::abs(*lift_off.takeoff_after_s), 3.0) << "TAKEOFF is a witness";
+    }
+}
+
+}  // namespace
+}  // namespace flightwatt

@@ -1,0 +1,77 @@
+#include "flight/synthetic_log.h"
+
+#include <gtest/gtest.h>
+
+#include "flight/segmentation.h"
+#include "flight/telemetry_series.h"
+#include "telemetry/log_writer.h"
+
+namespace flightwatt {
+namespace {
+
+SyntheticFlight flight_at(double power_w) {
+    SyntheticFlight flight;
+    flight.power_w = [power_w](Phase, double) { return power_w; };
+    return flight;
+}
+
+FlightSeries read_back(const SyntheticLog& log) {
+    const auto configuration = parse_log_configuration(log.log, "x.log");
+    return flight_series(parse_telemetry(log.data, "x.data", configuration, flight_messages()), "7");
+}
+
+TEST(SyntheticLog, IsReadAndSegmentedAsItWasFlown) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const auto flight = flight_at(27.0);
+        const auto series = read_back(make_synthetic_log(flight, {}, "x", "Made by a test.", seed));
+        EXPECT_TRUE(series.warnings.empty());
+        const auto phases = segment(series);
+        ASSERT_EQ(phases.sorties.size(), 1u) << "seed " << seed;
+        ASSERT_EQ(phases.sorties[0].phases.size(), 3u);
+        for (const auto& span : phases.sorties[0].phases) {
+            EXPECT_NEAR(span.start.time_s, flight.start_s(span.phase), 3.0) << "seed " << seed;
+            EXPECT_NEAR(span.end.time_s, flight.end_s(span.phase), 3.0) << "seed " << seed;
+        }
+        EXPECT_EQ(phases.others.size(), 1u) << "the run-up";
+    }
+}
+
+TEST(SyntheticLog, MeasuresThePowerThatWasFlown) {
+    SyntheticSensors sensors;
+    sensors.lost_fraction = 0.0;
+    sensors.current_noise_a = 0.0;
+    const auto flight = flight_at(27.0);
+    const auto series = read_back(make_synthetic_log(flight, sensors, "x", "", 1));
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        if (series.time_s[i] < flight.lift_off_s || series.time_s[i] > flight.end_s(Phase::landing)) continue;
+        EXPECT_NEAR(series.power_w[i], 27.0, 0.04);
+    }
+}
+
+TEST(SyntheticLog, LosesLinesAtTheRateAskedFor) {
+    SyntheticSensors whole;
+    whole.lost_fraction = 0.0;
+    SyntheticSensors lossy;
+    lossy.lost_fraction = 0.3;
+    const auto all = make_synthetic_log(flight_at(27.0), whole, "x", "", 1).data.size();
+    const auto kept = make_synthetic_log(flight_at(27.0), lossy, "x", "", 1).data.size();
+    EXPECT_NEAR(static_cast<double>(kept) / static_cast<double>(all), 0.7, 0.1);
+}
+
+TEST(SyntheticLog, SaysThatItIsSyntheticAndRepeatsItself) {
+    const auto log = make_synthetic_log(flight_at(27.0), {}, "x", "Made by a test.", 5);
+    EXPECT_NE(log.data.substr(0, log.data.find('\n')).find("SYNTHETIC"), std::string::npos);
+    EXPECT_NE(log.log.find("SYNTHETIC"), std::string::npos);
+    EXPECT_EQ(make_synthetic_log(flight_at(27.0), {}, "x", "Made by a test.", 5).data, log.data);
+    EXPECT_NE(make_synthetic_log(flight_at(27.0), {}, "x", "Made by a test.", 6).data, log.data);
+}
+
+TEST(OcamlFloat, WritesAsPaparazziDoes) {
+    EXPECT_EQ(ocaml_float(235.0), "235.");
+    EXPECT_EQ(ocaml_float(-0.0), "-0.");
+    EXPECT_EQ(ocaml_float(-3e-06), "-3e-06");
+    EXPECT_EQ(ocaml_float(12.4214591), "12.421459");
+}
+
+}  // namespace
+}  // namespace flightwatt

@@ -1,0 +1,153 @@
+#include "flight/telemetry_series.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "base/error.h"
+#include "flight/flight_reader.h"
+#include "flight/series_csv.h"
+#include "test_paths.h"
+
+namespace flightwatt {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+FlightSeries series_of(const std::string& text, const std::string& id = "20") {
+    return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), id);
+}
+
+TEST(TelemetrySeries, TakesPowerFromEnergyAndEverythingElseOntoItsClock) {
+    const auto series = series_of(
+        "2. 20 ENERGY 50 11. 2. 22. 0.2 2.\n"
+        "1. 20 ENERGY 40 12. 1. 12. 0.1 1.\n"
+        "1.5 20 ESTIMATOR 100. 0.\n"
+        "2.5 20 ESTIMATOR 110. 0.\n"
+        "2. 20 ENERGY 60 11. 4. 44. 0.3 3.\n");
+    EXPECT_THAT(series.time_s, ElementsAre(1, 2));
+    EXPECT_THAT(series.power_w, ElementsAre(12, 33)) << "duplicates are averaged";
+    EXPECT_THAT(series.charge_ah, ElementsAre(0.1, 0.3)) << "of counters the latest counts";
+    EXPECT_THAT(series.throttle_percent, ElementsAre(40, 55));
+    EXPECT_THAT(series.altitude_m, ElementsAre(100, 105));
+    EXPECT_EQ(series.power_source, "ENERGY.power");
+    EXPECT_EQ(series.sources.at("altitude_m"), "ESTIMATOR.z");
+}
+
+TEST(TelemetrySeries, FallsBackToVoltageTimesCurrent) {
+    const auto energy = series_of("1 20 ENERGY 11. 2. 5 0.\n2 20 ENERGY 11. 3. 6 0.\n");
+    EXPECT_THAT(energy.power_w, ElementsAre(22, 33));
+    EXPECT_EQ(energy.power_source, "ENERGY.bat * ENERGY.amp");
+    EXPECT_THAT(energy.charge_ah, ElementsAre(0.005, 0.006)) << "an energy in mAh is a charge";
+    EXPECT_TRUE(energy.energy_wh.empty());
+    const auto bat = series_of("1 20 BAT 4800 110 200 5 0 5 5 7\n2 20 BAT 9600 110 300 5 0 5 5 7\n");
+    EXPECT_THAT(bat.power_w, ElementsAre(22, 33));
+    EXPECT_THAT(bat.throttle_percent, ElementsAre(50, 100));
+    EXPECT_EQ(bat.power_source, "BAT.voltage * BAT.amps");
+}
+
+TEST(TelemetrySeries, DoesNotTrustAnAssumedPowerThatContradictsVoltageTimesCurrent) {
+    std::string text;
+    for (int i = 0; i < 20; ++i) text += fmt::format("{} 20 ENERGY 11. 2. 22 {}.\n", i, 500 + i);
+    const auto series = series_of(text);
+    EXPECT_EQ(series.power_w[0], 22.0);
+    EXPECT_THAT(series.warnings, Contains(HasSubstr("ENERGY.power is not voltage times current")));
+}
+
+TEST(TelemetrySeries, SumsMotorsAndDevices) {
+    const auto esc = series_of(
+        "1 20 ESC 1. 12. 12. 0. 0. 0. 0\n1 20 ESC 2. 12. 24. 0. 0. 0. 1\n"
+        "2 20 ESC 1. 12. 12. 0. 0. 0. 0\n2 20 ESC 4. 12. 48. 0. 0. 0. 1\n");
+    EXPECT_THAT(esc.power_w, ElementsAre(36, 60));
+    EXPECT_THAT(esc.power_source, HasSubstr("summed over 2 devices"));
+    const auto device = series_of("1 20 POWER_DEVICE 1 0 2. 12.\n2 20 POWER_DEVICE 1 0 3. 12.\n");
+    EXPECT_THAT(device.power_w, ElementsAre(24, 36));
+}
+
+TEST(TelemetrySeries, UsesAltitudeThatVaries) {
+    const std::string power = "1 20 ENERGY 0 12. 1. 12. 0. 0.\n2 20 ENERGY 0 12. 1. 12. 0. 0.\n";
+    const auto gps = series_of(power + "1 20 ESTIMATOR 0. 0.\n2 20 ESTIMATOR 0. 0.\n"
+                                       "1 20 GPS 3 1 1 0 20000 0 0 1 1 31 0\n2 20 GPS 3 1 1 0 21000 0 0 1 1 31 0\n");
+    EXPECT_THAT(gps.altitude_m, ElementsAre(20, 21));
+    EXPECT_EQ(gps.sources.at("altitude_m"), "GPS.alt");
+    const auto rotorcraft = series_of(power + "1 20 ROTORCRAFT_FP 0 0 256 0 0 0 0 0 0 0 0 0 0 4800 1\n"
+                                              "2 20 ROTORCRAFT_FP 0 0 512 0 0 0 0 0 0 0 0 0 0 4800 2\n");
+    EXPECT_THAT(rotorcraft.altitude_m, ElementsAre(1, 2));
+}
+
+class ReadFlight : public testing::Test {
+  protected:
+    std::filesystem::path write(const std::string& name, const std::string& text) {
+        const auto path = folder_ / name;
+        std::ofstream(path, std::ios::binary) << text;
+        return path;
+    }
+    static std::string refusal(const std::filesystem::path& path, const std::optional<std::string>& id = std::nullopt) {
+        try {
+            read_flight(path, id);
+        } catch (const InputError& error) {
+            return to_string(error.where()) + ": " + error.what() + "; " + error.hint();
+        }
+        return "accepted";
+    }
+    std::filesystem::path folder_ = test::scratch_dir();
+};
+
+std::string flying(int id) {
+    std::string text;
+    for (int t = 0; t < 20; ++t) {
+        text += fmt::format("{0} {1} ENERGY 60 12. 1. 12. 0. 0.\n{0} {1} ESTIMATOR {2}. 0.\n", t, id, 100 + t);
+    }
+    return text;
+}
+
+std::string parked(int id) { return fmt::format("1 {0} ENERGY 0 12. 1. 12. 0. 0.\n1 {0} ESTIMATOR 100. 0.\n", id); }
+
+TEST_F(ReadFlight, AsksWhichAircraftWhereSeveralFlew) {
+    const auto two = write("two.data", flying(20) + flying(7));
+    EXPECT_THAT(refusal(two), HasSubstr("several aircraft flew: 20, 7; choose one with --aircraft ID"));
+    EXPECT_EQ(read_flight(two, "7").aircraft_id, "7");
+    EXPECT_THAT(refusal(two, "9"), HasSubstr("aircraft 9 sent nothing; the log holds 20, 7"));
+    EXPECT_EQ(read_flight(write("one.data", parked(7) + flying(20))).aircraft_id, "20");
+}
+
+TEST_F(ReadFlight, SaysWhatALogWithoutPowerHolds) {
+    EXPECT_THAT(refusal(write("a.data", "1 20 ESTIMATOR 1. 0.\n2 20 ATTITUDE 0. 0. 0.\n")),
+                HasSubstr("holds no measured power of aircraft 20; expected ENERGY with power, BAT or ENERGY with "
+                          "current, ESC or POWER_DEVICE; it holds ATTITUDE 1, ESTIMATOR 1"));
+    EXPECT_THAT(refusal(write("b.data", "1 20 ENERGY 1 12. nan nan 0. 0.\n2 20 ENERGY 1 12. nan nan 0. 0.\n")),
+                HasSubstr("ENERGY.power has no two finite values"));
+    EXPECT_THAT(refusal(write("c.data", "1 20 ENERGY 1 12. 0. 0. 0. 0.\n2 20 ENERGY 1 12. 0. 0. 0. 0.\n")),
+                HasSubstr("ENERGY.power is 0 throughout"));
+}
+
+TEST_F(ReadFlight, ReadsASeriesBackExactly) {
+    const auto series = read_flight(write("x.data", flying(20)));
+    const auto again = read_flight(write("x.csv", to_csv(series)));
+    for (const auto& channel : series_channels()) EXPECT_EQ(again.*channel.values, series.*channel.values) << channel.name;
+    EXPECT_EQ(again.time_s, series.time_s);
+}
+
+TEST_F(ReadFlight, RefusesBadSeriesWithTheirPlace) {
+    const auto at = [&](const std::string& text) { return refusal(write("s.csv", text)).substr(folder_.string().size()); };
+    EXPECT_EQ(at("time_s,power_w\n1,2\n2,nan\n"), "/s.csv:3:3: power_w is not a finite number: 'nan'; ");
+    EXPECT_EQ(at("time_s,power_w\n1,2\n1,3\n"),
+              "/s.csv:3:1: time_s = 1 does not rise from 1; sort the rows by time and keep one of each");
+    EXPECT_THAT(at("time_s,power_kw\n1,2\n"), HasSubstr("has no column 'power_w'; its columns are time_s, power_kw"));
+    EXPECT_THAT(at("time_s,power_w,altitud_m\n1,2,3\n"), HasSubstr("did you mean 'altitude_m'?"));
+    EXPECT_THAT(at("time_s,power_w\n1,2\n"), HasSubstr("fewer than two samples"));
+}
+
+TEST_F(ReadFlight, RefusesTheRealLogsThatMeasuredNoPower) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto flights = test::shared_dir() / "flights";
+    EXPECT_THAT(refusal(flights / "17_07_06__10_21_07_SD.data"), HasSubstr("ENERGY.power is 0 throughout"));
+    EXPECT_THAT(refusal(flights / "09_05_13__14_38_13.data"), HasSubstr("BAT has no current"));
+}
+
+}  // namespace
+}  // namespace flightwatt

@@ -1,0 +1,161 @@
+#include "telemetry/telemetry_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "base/error.h"
+#include "telemetry/data_file.h"
+#include "test_paths.h"
+
+namespace flightwatt {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::vector<MessageRequest> energy{{"ENERGY", {"voltage", "power"}}, {"PONG", {}}};
+
+std::vector<std::string> reasons(const TelemetryLog& log) {
+    std::vector<std::string> texts;
+    for (const auto& skip : log.skipped) {
+        texts.push_back(skip.reason + " x" + std::to_string(skip.count) + " from " + std::to_string(skip.first_line));
+    }
+    return texts;
+}
+
+TelemetryLog parse(std::string_view text, std::optional<LogConfiguration> configuration = std::nullopt) {
+    return parse_telemetry(text, "x.data", std::move(configuration), energy);
+}
+
+TEST(TelemetryLog, BindsByTheBuiltInLayoutOfThatManyFields) {
+    const auto six = parse("1.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n");
+    EXPECT_THAT(six.senders[0].table("ENERGY")->column("power")->values, ElementsAre(34.5));
+    EXPECT_THAT(six.assumed_definitions, ElementsAre("ENERGY: 2018 (6 fields)"));
+    const auto seven = parse("1.5 20 ENERGY 69 11.5 3. 34.5 30. 0.1 0.2\n");
+    EXPECT_THAT(seven.senders[0].table("ENERGY")->column("power")->values, ElementsAre(34.5));
+    const auto four = parse("1.5 20 ENERGY 11.4 2. 7 22.8\n");
+    EXPECT_THAT(four.senders[0].table("ENERGY")->column("power")->values, ElementsAre(22.8))
+        << "the integer energy in mAh stands before the power";
+}
+
+TEST(TelemetryLog, BindsByTheFlightsOwnDefinition) {
+    LogConfiguration configuration;
+    configuration.messages["ENERGY"] = {
+        "ENERGY", {{"power", "uint16", "mW", "", {}}, {"voltage", "uint8", "decivolt", "", {}}}, ".log"};
+    const auto log = parse("1.5 20 ENERGY 34500 115\n2.5 20 ENERGY 1 2 3\n3 20 PONG \n", configuration);
+    const auto* table = log.senders[0].table("ENERGY");
+    EXPECT_THAT(table->column("power")->values, ElementsAre(34.5));
+    EXPECT_THAT(table->column("voltage")->values, ElementsAre(11.5));
+    EXPECT_THAT(reasons(log), ElementsAre("ENERGY: another number of fields than the .log defines x1 from 2",
+                                          "PONG: not defined in the .log x1 from 3"));
+}
+
+TEST(TelemetryLog, CountsWhatItCannotUseByReasonAndFirstLine) {
+    const auto log = parse(
+        "1.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n"
+        "garbage\n"
+        "x 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n"
+        "2.5 20 ENERGY 69 11.5 3. nan 0.1 0.2\n"
+        "3.5 20 ENERGY 69 11.5 3.\n"
+        "4.5 20 ENERGY 69 11.5 3. 34.x 0.1 0.2\n"
+        "5.5 20 LOGGER_STATUS 1 0 0 , FLIGHT_RECORDER\\fr_0219.LOG\n"
+        "6.5 20 ENERGY 69 11.5");
+    EXPECT_THAT(reasons(log),
+                ElementsAre("not a message (TIME SENDER NAME ...) x1 from 2", "ENERGY: the time is not a number x1 from 3",
+                            "ENERGY.power: not a finite number x2 from 4",
+                            "ENERGY: another number of fields than is known x2 from 5"));
+    const auto& power = log.senders[0].table("ENERGY")->column("power")->values;
+    ASSERT_EQ(power.size(), 3u);
+    EXPECT_TRUE(std::isnan(power[1])) << "the row stays, for its other fields";
+    EXPECT_EQ(log.senders[0].table("ENERGY")->column("voltage")->values[1], 11.5);
+}
+
+TEST(TelemetryLog, SaysThatTheLastLineIsCutOff) {
+    const auto log = parse("1.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n2.5 20 ENERGY 69 11");
+    EXPECT_THAT(reasons(log), ElementsAre("the last line is cut off x1 from 2"));
+    const auto whole = parse("1.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n2.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2");
+    EXPECT_TRUE(whole.skipped.empty()) << "a missing last break alone is no fault";
+    EXPECT_EQ(whole.senders[0].table("ENERGY")->time_s.size(), 2u);
+}
+
+TEST(TelemetryLog, KeepsSendersApartAndReadsWindowsLineEnds) {
+    const auto log = parse("1 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\r\n1 7 ENERGY 0 12. 0. 0. 0. 0.\r\n2 20 PONG \r\n");
+    ASSERT_EQ(log.senders.size(), 2u);
+    EXPECT_EQ(log.senders[1].id, "7");
+    EXPECT_THAT(log.senders[1].table("ENERGY")->column("power")->values, ElementsAre(0.0));
+    EXPECT_TRUE(log.senders[0].table("ENERGY")->column("voltage")->values == std::vector<double>{11.5});
+}
+
+TEST(TelemetryLog, SurvivesEveryCutAndEveryChangedByte) {
+    const std::string text =
+        "1.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n2 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n3 20 PONG \n";
+    for (std::size_t cut = 0; cut <= text.size(); ++cut) {
+        const std::vector<char> exact(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(cut));
+        EXPECT_NO_THROW(parse({exact.data(), exact.size()})) << cut;
+    }
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        for (const char c : {'\0', '\n', ' ', '\xFF', '9'}) {
+            auto changed = text;
+            changed[i] = c;
+            EXPECT_NO_THROW(parse(changed)) << i;
+        }
+    }
+}
+
+TEST(TelemetryLog, RefusesFilesWithoutTelemetry) {
+    const auto folder = test::scratch_dir();
+    const auto expect_error = [&](const std::filesystem::path& path, const std::string& message) {
+        try {
+            read_telemetry(path, energy);
+            FAIL() << path;
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), HasSubstr(message));
+        }
+    };
+    std::ofstream(folder / "empty.data").flush();
+    std::ofstream(folder / "rubbish.data", std::ios::binary) << std::string("\x7F" "ELF\0\1 \2 \3\n\0\0\0 x y", 20);
+    std::ofstream(folder / "packed.data", std::ios::binary) << std::string("PK\x03\x04zip", 7);
+    std::ofstream(folder / "broken.data.gz", std::ios::binary) << std::string("\x1F\x8B\x08\0\0broken", 11);
+    std::filesystem::create_directory(folder / "folder.data");
+    expect_error(folder / "missing.data", "does not exist");
+    expect_error(folder / "empty.data", "is empty");
+    expect_error(folder / "rubbish.data", "holds no telemetry");
+    expect_error(folder / "packed.data", "ZIP");
+    expect_error(folder / "broken.data.gz", "cannot be decompressed");
+    expect_error(folder / "folder.data", "is a folder");
+}
+
+TEST(DataFile, ReadsEveryCompression) {
+    const auto folder = test::scratch_dir();
+    std::string text;
+    for (int i = 0; i < 500; ++i) text += std::to_string(i) + " 20 PONG \n";
+    const auto plain = folder / "x.data";
+    std::ofstream(plain, std::ios::binary) << text;
+    EXPECT_EQ(DataFile(plain).text(), text);
+    for (const auto* tool : {"gzip", "bzip2", "xz", "zstd"}) {
+        if (std::system((std::string("command -v ") + tool + " >/dev/null").c_str()) != 0) {
+            ADD_FAILURE() << tool << " is missing: scripts/install_dependencies installs it";
+            continue;
+        }
+        const auto packed = folder / (std::string(tool) + ".data");
+        const auto command = std::string(tool) + " -c '" + plain.string() + "' > '" + packed.string() + "'";
+        ASSERT_EQ(std::system(command.c_str()), 0);
+        EXPECT_EQ(DataFile(packed).text(), text) << tool;
+    }
+}
+
+TEST(TelemetryLog, ReadsTheRealLogs) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto log = read_telemetry(test::shared_dir() / "flights" / "20_07_05__10_26_44.data", energy);
+    ASSERT_EQ(log.senders.size(), 1u);
+    EXPECT_EQ(log.senders[0].id, "20");
+    EXPECT_EQ(log.senders[0].table("ENERGY")->time_s.size(), 945u);
+    EXPECT_TRUE(log.skipped.empty());
+    EXPECT_TRUE(log.assumed_definitions.empty());
+}
+
+}  // namespace
+}  // namespace flightwatt
