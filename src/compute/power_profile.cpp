@@ -1,0 +1,133 @@
+#include "compute/power_profile.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt {
+namespace {
+
+std::string spell(const std::vector<std::string>& parameters, const std::vector<double>& qos) {
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < qos.size(); ++i) {
+        parts.push_back(fmt::format("{} = {}", parameters[i], qos[i]));
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::vector<double> axis_of(const std::vector<ProfileNode>& nodes, std::size_t parameter) {
+    std::vector<double> axis;
+    axis.reserve(nodes.size());
+    for (const auto& node : nodes) axis.push_back(node.qos.at(parameter));
+    std::sort(axis.begin(), axis.end());
+    axis.erase(std::unique(axis.begin(), axis.end()), axis.end());
+    return axis;
+}
+
+void refuse_duplicates(const std::vector<std::string>& parameters, const std::vector<ProfileNode>& sorted) {
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+        if (sorted[i].qos != sorted[i - 1].qos) continue;
+        const auto what =
+            parameters.empty() ? "a profile without parameters" : spell(parameters, sorted[i].qos);
+        throw InputError(
+            sorted[i].where,
+            fmt::format("{} has a second node, the first is in line {}", what, sorted[i - 1].where.line),
+            "keep one row for each configuration");
+    }
+}
+
+/// The node that stands at `index` in row-major order.
+std::vector<double> grid_point(const std::vector<std::vector<double>>& axes, std::size_t index) {
+    std::vector<double> point(axes.size());
+    for (std::size_t i = axes.size(); i-- > 0;) {
+        point[i] = axes[i][index % axes[i].size()];
+        index /= axes[i].size();
+    }
+    return point;
+}
+
+/// `sorted` must be the grid, point for point; the first difference is a node that is missing. Walking the
+/// nodes rather than the grid keeps a mistaken file of n rows from asking for n^d points.
+void require_full_grid(const PowerProfile& profile, const std::vector<ProfileNode>& sorted) {
+    std::vector<std::size_t> counts;
+    double grid_size = 1.0;
+    for (const auto& axis : profile.axes) {
+        counts.push_back(axis.size());
+        grid_size *= static_cast<double>(axis.size());
+    }
+    std::size_t k = 0;
+    while (k < sorted.size() && sorted[k].qos == grid_point(profile.axes, k)) ++k;
+    if (static_cast<double>(k) >= grid_size) return;
+    throw InputError(
+        {profile.file},
+        fmt::format("the grid is incomplete: there is no node at {}",
+                    spell(profile.parameters, grid_point(profile.axes, k))),
+        fmt::format("profile every combination of the values, here {} nodes", fmt::join(counts, " x ")));
+}
+
+/// Where a value lies on an axis: between node `lower` and the next, `fraction` of the way.
+struct AxisPlace {
+    std::size_t lower = 0;
+    double fraction = 0.0;
+};
+
+AxisPlace place_on(const std::vector<double>& axis, double value) {
+    if (axis.size() == 1) return {};
+    const auto above = std::upper_bound(axis.begin() + 1, axis.end() - 1, value);
+    const auto lower = static_cast<std::size_t>(above - axis.begin()) - 1;
+    return {lower, (value - axis[lower]) / (axis[lower + 1] - axis[lower])};
+}
+
+}  // namespace
+
+PowerProfile make_power_profile(const std::string& file, const std::vector<std::string>& parameters,
+                                std::vector<ProfileNode> nodes) {
+    if (nodes.empty()) throw InputError({file}, "has no nodes, expected at least one profiled configuration");
+    // Lexicographic order of the QoS is the grid's order; stable, so that the second of two equals is blamed.
+    std::stable_sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.qos < b.qos; });
+    refuse_duplicates(parameters, nodes);
+    PowerProfile profile{file, parameters, {}, {}};
+    for (std::size_t i = 0; i < parameters.size(); ++i) profile.axes.push_back(axis_of(nodes, i));
+    require_full_grid(profile, nodes);
+    for (const auto& node : nodes) profile.power_w.push_back(node.power_w);
+    return profile;
+}
+
+void require_in_range(const PowerProfile& profile, std::size_t parameter, double value,
+                      const Location& where) {
+    const auto& axis = profile.axes.at(parameter);
+    if (value >= axis.front() && value <= axis.back()) return;
+    throw InputError(
+        where,
+        fmt::format("{} = {} is outside of the profiled range {} .. {} of {}", profile.parameters[parameter],
+                    value, axis.front(), axis.back(), profile.file),
+        "choose a value within it, or profile the component there");
+}
+
+double power_w(const PowerProfile& profile, const std::vector<double>& qos) {
+    if (qos.size() != profile.axes.size()) {
+        throw std::invalid_argument("as many QoS values as parameters are due");
+    }
+    std::vector<AxisPlace> places;
+    for (std::size_t i = 0; i < qos.size(); ++i) {
+        require_in_range(profile, i, qos[i], {profile.file});
+        places.push_back(place_on(profile.axes[i], qos[i]));
+    }
+    // The sum over the 2^d corners of the cell, bit i of `corner` choosing the upper node of axis i.
+    double power = 0.0;
+    for (std::size_t corner = 0; corner < (std::size_t{1} << places.size()); ++corner) {
+        double weight = 1.0;
+        std::size_t index = 0;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const std::size_t upper = (corner >> i) & 1U;
+            weight *= upper == 1 ? places[i].fraction : 1.0 - places[i].fraction;
+            index = index * profile.axes[i].size() + places[i].lower + upper;
+        }
+        if (weight > 0.0) power += weight * profile.power_w[index];
+    }
+    return power;
+}
+
+}  // namespace flightwatt
