@@ -1,0 +1,79 @@
+#include "battery/battery.h"
+
+#include "rejected.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using test::rejected;
+
+TEST(Battery, CurrentIsTheSmallerRoot) {
+    const Battery battery{"", 11.1, 0.05, 3.2};
+    for (const double power : {-20.0, 0.0, 0.001, 30.0, 300.0, 616.0}) {
+        const double current = internal_current_a(battery, power);
+        EXPECT_NEAR(0.05 * current * current - 11.1 * current + power, 0.0, 1e-11 * (1.0 + std::abs(power)));
+        EXPECT_LE(current, 11.1 / (2.0 * 0.05));  // the greater root is beyond
+        EXPECT_EQ(std::signbit(current), std::signbit(power));
+    }
+}
+
+TEST(Battery, WithoutResistanceCurrentIsPowerByVoltage) {
+    const Battery ideal{"", 4.0, 0.0, 1.0};
+    EXPECT_EQ(internal_current_a(ideal, 10.0), 2.5);
+    EXPECT_EQ(internal_current_a(ideal, -10.0), -2.5);
+    EXPECT_EQ(internal_current_a(ideal, 1e9), 2.5e8);
+    EXPECT_TRUE(std::isinf(power_limit_w(ideal)));
+}
+
+TEST(Battery, IsContinuousInResistance) {
+    // To first order the current is P/U (1 + R P/U^2): the textbook formula loses all digits here.
+    for (const double resistance : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-300}) {
+        const double current = internal_current_a({"", 4.0, resistance, 1.0}, 10.0);
+        EXPECT_NEAR(current, 2.5, 2.5 * resistance * 10.0 / 16.0 * 1.01 + 1e-15);
+        EXPECT_GE(current, 2.5);
+    }
+}
+
+TEST(Battery, CannotDeliverBeyondItsLimit) {
+    const Battery battery{"", 10.0, 0.1, 1.0};
+    EXPECT_DOUBLE_EQ(power_limit_w(battery), 250.0);
+    EXPECT_DOUBLE_EQ(internal_current_a(battery, power_limit_w(battery)), 50.0);
+    try {
+        internal_current_a(battery, 250.5);
+        FAIL() << "a power beyond the limit was delivered";
+    } catch (const NoAnswerError& error) {
+        EXPECT_STREQ(error.what(), "the battery cannot deliver 250.5 W: its limit U^2 / (4 R) is 250 W");
+    }
+}
+
+TEST(Battery, ReadsThePaperBattery) {
+    const auto battery = read_battery(test::source_dir() / "fits" / "battery" / "paper.toml");
+    EXPECT_EQ(battery.name, "paper");
+    EXPECT_EQ(battery.capacity_ah, 3.2);
+    // 100 % is 39.356 kJ in the figures.
+    EXPECT_NEAR(battery.voltage_v * battery.capacity_ah * 3600.0, 39356.0, 10.0);
+}
+
+TEST(Battery, RefusesWhatIsNoBattery) {
+    const auto of = [](const std::string& text) {
+        return rejected([&] { battery_from(parse_toml(text, "b.toml")); });
+    };
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\n"), "");
+    EXPECT_EQ(of("voltage_v = 0\nresistance_ohm = 0\ncapacity_ah = 1\n"),
+              "b.toml:1:1: voltage_v = 0 is not positive");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = -0.1\ncapacity_ah = 1\n"),
+              "b.toml:2:1: resistance_ohm = -0.1 is negative");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = -1\n"),
+              "b.toml:3:1: capacity_ah = -1 is not positive");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_mah = 1\n"),
+              "b.toml:3:1: has no key 'capacity_ah'; 'capacity_mah' is here; was that meant?");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 3\n"),
+              "b.toml:4:1: unknown key 'cells'; known keys: capacity_ah, name, resistance_ohm, voltage_v");
+}
+
+}  // namespace
+}  // namespace flightwatt
