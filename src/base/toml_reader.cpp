@@ -192,6 +192,11 @@ void TomlTable::refuse_unknown_keys() const {
     }
 }
 
+void TomlTable::refuse_keys_except(std::initializer_list<std::string_view> known) const {
+    asked_->insert(known.begin(), known.end());
+    refuse_unknown_keys();
+}
+
 Location TomlTable::where() const { return location_of(file_, table_->source()); }
 
 Location TomlTable::where(std::string_view key) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <set>
@@ -43,6 +44,8 @@ class TomlTable {
 
     /// Throws InputError at the first key that nobody asked for, with the nearest key that somebody did.
     void refuse_unknown_keys() const;
+    /// The same before any was asked for, so that a misspelt key is not taken for a missing one.
+    void refuse_keys_except(std::initializer_list<std::string_view> known) const;
 
     const std::string& file() const { return file_; }
     /// Where this table, or one of its keys, stands.

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "base/text_table.h"
+#include "mission/simulation.h"
+
+#include <vector>
+
+namespace flightwatt {
+
+/// The best first: by state of charge left, then (when empty) by how long the battery lasted; those whose
+/// power it cannot deliver last. Equals keep their order.
+std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries);
+
+/// A row for each mission; "-" where there is no number.
+TextTable comparison_table(const std::vector<MissionSummary>& ranked);
+
+}  // namespace flightwatt

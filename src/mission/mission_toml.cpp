@@ -1,0 +1,148 @@
+#include "base/atomic_file.h"
+#include "compute/profile_reader.h"
+#include "mission/mission.h"
+#include "mission/schedule_toml.h"
+
+#include <fmt/format.h>
+
+namespace flightwatt {
+namespace {
+
+constexpr double shortest_phase_s = 1e-3;
+constexpr double longest_phase_s = 1e7;  // a third of a year: beyond, it is a mistake in the unit
+
+/// The file that a key names, relative to the mission file.
+std::filesystem::path file_of(const TomlTable& table, std::string_view key) {
+    auto path = std::filesystem::path(table.file()).parent_path() / table.string(key);
+    if (!std::filesystem::exists(path)) {
+        throw InputError(table.where(key), fmt::format("{}: there is no file {}", key, path.string()),
+                         "paths are relative to the mission file");
+    }
+    return path;
+}
+
+std::optional<MechanicalModel> read_mechanical(const TomlTable& root) {
+    if (root.string("mechanical") == "none") return std::nullopt;
+    return read_mechanical_model(file_of(root, "mechanical"));
+}
+
+PhaseClock read_clock(const TomlTable& root, bool has_mechanical) {
+    const auto name = root.optional_string("phase_clock");
+    if (!name) return PhaseClock::stretched;
+    if (!has_mechanical) {
+        throw InputError(root.where("phase_clock"), "phase_clock has no meaning with mechanical = \"none\"",
+                         "leave it out");
+    }
+    if (*name == "stretch") return PhaseClock::stretched;
+    if (*name == "absolute") return PhaseClock::absolute;
+    throw InputError(root.where("phase_clock"), fmt::format("there is no phase_clock '{}'", *name),
+                     "it is \"stretch\" or \"absolute\"");
+}
+
+double read_duration(const TomlTable& durations, std::string_view phase) {
+    const double value = durations.number(phase);
+    if (value != 0.0 && (value < shortest_phase_s || value > longest_phase_s)) {
+        throw InputError(
+            durations.where(phase), fmt::format("{} = {} s is no phase's duration", phase, value),
+            fmt::format("expected 0 (not flown) or {} .. {} s", shortest_phase_s, longest_phase_s));
+    }
+    return value;
+}
+
+PerPhase<double> read_durations(const TomlTable& root, const std::optional<MechanicalModel>& mechanical) {
+    PerPhase<double> durations;
+    if (mechanical) {
+        for (const auto phase : all_phases) durations[phase] = mechanical->phases[phase].duration_s;
+    } else if (!root.has("duration_s")) {
+        throw InputError(root.where("mechanical"), "without a mechanical model the phases have no durations",
+                         "add duration_s = { takeoff = ..., cruise = ..., landing = ... }");
+    }
+    double total_s = 0.0;
+    const auto given = root.optional_table("duration_s");
+    for (const auto phase : all_phases) {
+        const auto name = to_string(phase);
+        if (given && (!mechanical || given->has(name))) durations[phase] = read_duration(*given, name);
+        total_s += durations[phase];
+    }
+    if (given) given->refuse_unknown_keys();
+    if (total_s == 0.0) throw InputError(root.where("duration_s"), "all phases take 0 s, expected a mission");
+    return durations;
+}
+
+Battery read_mission_battery(const TomlTable& root) {
+    return root.is_table("battery") ? battery_from(root.table("battery"))
+                                    : read_battery(file_of(root, "battery"));
+}
+
+Component read_component(const TomlTable& table, const std::string& name) {
+    table.refuse_keys_except({"profile", "parameters", "columns"});
+    ProfileNaming naming;
+    naming.where = table.where();
+    for (const std::string_view key : {"parameters", "columns"}) {
+        if (!table.has(key)) continue;
+        (key == "columns" ? naming.columns : naming.parameters) = table.strings(key);
+        naming.where = table.where(key);
+        if (naming.parameters.empty() && naming.columns.empty()) {
+            throw InputError(naming.where, fmt::format("{} = [] names nothing", key), "leave it out");
+        }
+    }
+    return {name, read_power_profile(file_of(table, "profile"), naming)};
+}
+
+ComputeModel read_components(const TomlTable& root) {
+    ComputeModel compute;
+    if (const auto components = root.optional_table("components")) {
+        for (const auto& name : components->keys()) {
+            compute.components.push_back(read_component(components->table(name), name));
+        }
+    }
+    return compute;
+}
+
+std::vector<ScheduleEntry> read_mission_schedule(const TomlTable& root, const Mission& mission) {
+    if (root.has("schedule")) {
+        auto entries = read_schedule(root, mission.compute, mission.duration_s);
+        if (!entries.empty()) return entries;
+    }
+    if (!mission.compute.components.empty()) {
+        throw InputError(root.where("components"), "there are components and no [[schedule]] that runs them",
+                         "add [[schedule]] with otherwise = true and run = { ... }");
+    }
+    ScheduleEntry nothing;  // mechanical only: nothing runs, all the time
+    nothing.otherwise = true;
+    nothing.where = root.where();
+    return {nothing};
+}
+
+double read_initial_soc(const TomlTable& root) {
+    const double soc = root.optional_number("initial_soc_percent").value_or(100.0);
+    if (soc <= 0.0 || soc > 100.0) {
+        throw InputError(root.where("initial_soc_percent"),
+                         fmt::format("initial_soc_percent = {} is out of range", soc),
+                         "expected above 0, to 100");
+    }
+    return soc;
+}
+
+}  // namespace
+
+Mission parse_mission(std::string_view text, const std::filesystem::path& path) {
+    const auto root = parse_toml(text, path.string());
+    root.refuse_keys_except({"name", "mechanical", "duration_s", "phase_clock", "battery",
+                             "initial_soc_percent", "components", "schedule"});
+    Mission mission;
+    mission.file = path.string();
+    mission.name = root.optional_string("name").value_or(path.stem().string());
+    mission.mechanical = read_mechanical(root);
+    mission.phase_clock = read_clock(root, mission.mechanical.has_value());
+    mission.duration_s = read_durations(root, mission.mechanical);
+    mission.battery = read_mission_battery(root);
+    mission.compute = read_components(root);
+    mission.initial_soc_percent = read_initial_soc(root);
+    mission.schedule = lay_out(read_mission_schedule(root, mission), mission.duration_s);
+    return mission;
+}
+
+Mission read_mission(const std::filesystem::path& path) { return parse_mission(read_file(path), path); }
+
+}  // namespace flightwatt

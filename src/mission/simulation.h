@@ -1,0 +1,67 @@
+#pragma once
+
+#include "battery/discharge.h"
+#include "mission/mission.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt {
+
+struct SocRow {
+    double time_s = 0.0;  ///< since the mission began
+    Phase phase = Phase::takeoff;
+    double mechanical_w = 0.0;  ///< what the mission demands, whatever the battery has left
+    double compute_w = 0.0;
+    double power_w = 0.0;    ///< both together
+    double current_a = 0.0;  ///< inside the battery (Eq. 10); 0 once it is empty
+    double soc_percent = 0.0;
+    bool operator==(const SocRow&) const = default;
+};
+
+/// State of charge over a mission. Time never decreases. Where power jumps (a phase or a configuration ends,
+/// the battery is empty) two rows have the same time: the last before the jump and the first after it, so
+/// that straight lines between rows are true to the curve.
+struct SocCurve {
+    std::vector<SocRow> rows;
+};
+
+/// What a mission comes to. Energies are what the whole mission demands of the battery, also beyond the
+/// battery's end.
+struct MissionSummary {
+    std::string mission;
+    std::optional<double> final_soc_percent;  ///< none if the battery cannot deliver the power
+    double mechanical_energy_wh = 0.0;
+    double compute_energy_wh = 0.0;
+    double energy_wh = 0.0;            ///< both together
+    double delivered_energy_wh = 0.0;  ///< demanded until the battery ended or failed
+    double duration_s = 0.0;
+    std::optional<double> depleted_at_s;  ///< when the battery was empty, if before the mission's end
+    std::optional<Undeliverable> undeliverable;
+    bool feasible = false;  ///< the battery lasts: empty at the very end counts, any earlier does not
+};
+
+struct Simulation {
+    SocCurve curve;  ///< up to the end of the mission, or to where the battery cannot deliver
+    MissionSummary summary;
+};
+
+struct SimulationSteps {
+    double output_s = 1.0;       ///< the curve has a row at every multiple, and at every jump
+    double integration_s = 0.1;  ///< the Runge-Kutta step, at most
+};
+
+/// Runs a mission: mechanical and computing power, added, drain the battery (Eqs. 8-10). Energies are exact
+/// integrals; state of charge is integrated numerically and empties once: power that flows back later does
+/// not revive it. Throws UsageError for an output step that is not positive or makes too many rows, and
+/// std::invalid_argument for a mission without a schedule.
+Simulation simulate(const Mission& mission, const SimulationSteps& steps = {});
+
+/// One line for people: what is left, or when and why the battery failed.
+std::string describe(const MissionSummary& summary);
+
+/// time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent
+std::string to_csv(const SocCurve& curve);
+
+}  // namespace flightwatt

@@ -1,0 +1,255 @@
+#include "mission/mission.h"
+#include "rejected.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using test::rejected;
+using test::scratch_dir;
+using test::write_text;
+
+const std::string good = R"(name = "test"
+mechanical = "none"
+duration_s = { takeoff = 28, cruise = 600, landing = 60 }
+battery = { voltage_v = 10, resistance_ohm = 0.1, capacity_ah = 3 }
+initial_soc_percent = 90
+
+[components.detection]
+profile = "detection.csv"
+[components.encryption]
+profile = "encryption.csv"
+parameters = ["key_bits"]
+
+[[schedule]]
+phase = "cruise"
+middle = 120
+run = { detection = { fps = 30 }, encryption = { key_bits = 48 } }
+
+[[schedule]]
+otherwise = true
+run = { detection = { fps = 10 } }
+)";
+
+/// A folder with what the mission above needs.
+std::filesystem::path mission_folder() {
+    auto folder = scratch_dir();
+    write_text(folder / "detection.csv", "fps,power_w\n10,20\n30,40\n");
+    write_text(folder / "encryption.csv", "200,100\n32,1\n64,3\n");
+    std::filesystem::copy(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml",
+                          folder / "opterra.toml");
+    return folder;
+}
+
+/// The mission above with `old` replaced.
+std::string with(std::string_view old, std::string_view replacement) {
+    auto text = good;
+    const auto place = text.find(old);
+    EXPECT_NE(place, std::string::npos) << old;
+    return text.replace(place, old.size(), replacement);
+}
+
+TEST(MissionToml, ReadsAMission) {
+    const auto mission = parse_mission(good, mission_folder() / "m.toml");
+    EXPECT_EQ(mission.name, "test");
+    EXPECT_FALSE(mission.mechanical);
+    EXPECT_EQ(mission.duration_s[Phase::cruise], 600.0);
+    EXPECT_EQ(mission.battery.resistance_ohm, 0.1);
+    EXPECT_EQ(mission.initial_soc_percent, 90.0);
+    ASSERT_EQ(mission.schedule.size(), 5U);
+    EXPECT_EQ(mission.schedule[2].from_s, 240.0);
+    EXPECT_EQ(mission.schedule[2].to_s, 360.0);
+    EXPECT_EQ(power_w(mission.compute, mission.schedule[2].run), 42.0);
+    EXPECT_EQ(power_w(mission.compute, mission.schedule[0].run), 20.0);
+}
+
+TEST(MissionToml, HasDefaults) {
+    const auto text =
+        "mechanical = \"opterra.toml\"\nbattery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }\n";
+    const auto mission = parse_mission(text, mission_folder() / "flight.toml");
+    EXPECT_EQ(mission.name, "flight");
+    EXPECT_EQ(mission.duration_s.values, (std::array{28.0, 600.0, 60.0}));
+    EXPECT_EQ(mission.phase_clock, PhaseClock::stretched);
+    EXPECT_EQ(mission.initial_soc_percent, 100.0);
+    ASSERT_EQ(mission.schedule.size(), 3U);
+    EXPECT_TRUE(mission.schedule[1].run.empty());
+}
+
+TEST(MissionToml, TakesDurationsFromTheMissionFirst) {
+    const auto text =
+        "mechanical = \"opterra.toml\"\nduration_s = { cruise = 900 }\nphase_clock = \"absolute\"\n"
+        "battery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }\n";
+    const auto mission = parse_mission(text, mission_folder() / "m.toml");
+    EXPECT_EQ(mission.duration_s.values, (std::array{28.0, 900.0, 60.0}));
+    EXPECT_EQ(mission.phase_clock, PhaseClock::absolute);
+}
+
+TEST(MissionToml, ReadsModelsRelativeToTheMissionFile) {
+    const auto folder = mission_folder();
+    std::filesystem::create_directory(folder / "missions");
+    write_text(folder / "pack.toml", "voltage_v = 7.5\nresistance_ohm = 0\ncapacity_ah = 1\n");
+    write_text(folder / "missions" / "m.toml",
+               "mechanical = \"../opterra.toml\"\nbattery = \"../pack.toml\"\n");
+    EXPECT_EQ(read_mission(folder / "missions" / "m.toml").battery.voltage_v, 7.5);
+}
+
+TEST(MissionToml, ReadsEveryWayOfSayingWhen) {
+    const auto folder = mission_folder();
+    const auto stretch_of = [&](std::string_view when) {
+        const auto stretch = parse_mission(with("middle = 120", when), folder / "m.toml").schedule;
+        for (const auto& part : stretch) {
+            if (part.run.size() == 2) return std::pair(part.from_s, part.to_s);
+        }
+        return std::pair(-1.0, -1.0);
+    };
+    EXPECT_EQ(stretch_of("from = 100\nto = 200.5"), std::pair(100.0, 200.5));
+    EXPECT_EQ(stretch_of("from = \"40 %\"\nto = \"60%\""), std::pair(240.0, 360.0));
+    EXPECT_EQ(stretch_of("from = 599"), std::pair(599.0, 600.0));
+    EXPECT_EQ(stretch_of("to = \"12.5 %\""), std::pair(0.0, 75.0));
+    EXPECT_EQ(stretch_of("middle = \"10 %\""), std::pair(270.0, 330.0));
+    EXPECT_EQ(stretch_of(""), std::pair(0.0, 600.0));
+}
+
+struct BadMission {
+    const char* old;
+    const char* replacement;
+    const char* rejection;
+};
+
+class BadMissions : public testing::TestWithParam<BadMission> {};
+
+TEST_P(BadMissions, AreRefusedWithFileLineAndReason) {
+    const auto folder = mission_folder();
+    const auto text = with(GetParam().old, GetParam().replacement);
+    EXPECT_EQ(rejected([&] { parse_mission(text, folder / "m.toml"); }, folder), GetParam().rejection);
+}
+
+const BadMission bad_missions[] = {
+    // Keys and files.
+    {"mechanical = \"none\"\n", "", "m.toml:1:1: has no key 'mechanical'"},
+    {"mechanical", "mechancial", "m.toml:2:1: unknown key 'mechancial'; did you mean 'mechanical'?"},
+    {"initial_soc_percent", "initial_sok_percent",
+     "m.toml:5:1: unknown key 'initial_sok_percent'; did you mean 'initial_soc_percent'?"},
+    {"\"none\"", "\"opterra2.toml\"",
+     "m.toml:2:1: mechanical: there is no file opterra2.toml; paths are relative to the mission file"},
+    {"battery = {", "battery = \"pack.toml\" #",
+     "m.toml:4:1: battery: there is no file pack.toml; paths are relative to the mission file"},
+    {"voltage_v = 10", "voltage_v = -10", "m.toml:4:13: voltage_v = -10 is not positive"},
+    {"\"detection.csv\"", "\"detektion.csv\"",
+     "m.toml:8:1: profile: there is no file detektion.csv; paths are relative to the mission file"},
+    {"parameters = [\"key_bits\"]\n", "",
+     "m.toml:9:1: encryption.csv has 1 parameters without names, and 0 names are given; name them in order "
+     "with "
+     "`parameters`"},
+    {"parameters", "parameter", "m.toml:11:1: unknown key 'parameter'; did you mean 'parameters'?"},
+    {"[\"key_bits\"]", "[]", "m.toml:11:1: parameters = [] names nothing; leave it out"},
+    // Numbers.
+    {"= 90", "= 0", "m.toml:5:1: initial_soc_percent = 0 is out of range; expected above 0, to 100"},
+    {"= 90", "= 100.5", "m.toml:5:1: initial_soc_percent = 100.5 is out of range; expected above 0, to 100"},
+    {"= 90", "= \"90\"", "m.toml:5:23: 'initial_soc_percent' is a TOML string, expected a finite number"},
+    {"cruise = 600", "cruise = -1",
+     "m.toml:3:30: cruise = -1 s is no phase's duration; expected 0 (not flown) or 0.001 .. 10000000 s"},
+    {"cruise = 600, ", "", "m.toml:3:14: has no key 'cruise'"},
+    {"cruise = 600, ", "cruis = 600, ", "m.toml:3:30: has no key 'cruise'; 'cruis' is here; was that meant?"},
+    {"duration_s = { takeoff = 28, cruise = 600, landing = 60 }\n", "",
+     "m.toml:2:1: without a mechanical model the phases have no durations; add duration_s = { takeoff = ..., "
+     "cruise = "
+     "..., landing = ... }"},
+    {"initial_soc", "phase_clock = \"stretch\"\ninitial_soc",
+     "m.toml:5:1: phase_clock has no meaning with mechanical = \"none\"; leave it out"},
+    // What runs.
+    {"fps = 30", "fps = 31",
+     "m.toml:16:23: fps = 31 is outside of the profiled range 10 .. 30 of detection.csv; choose a value "
+     "within it, or "
+     "profile the component there"},
+    {"fps = 30", "fpm = 30", "m.toml:16:23: has no key 'fps'; 'fpm' is here; was that meant?"},
+    {"fps = 30", "", "m.toml:16:21: has no key 'fps'"},
+    {"fps = 30", "fps = 30, size = 608", "m.toml:16:33: unknown key 'size'; known keys: fps"},
+    {"fps = 30", "fps = \"30\"", "m.toml:16:29: 'fps' is a TOML string, expected a finite number"},
+    {"detection = { fps = 30 }", "detektion = { fps = 30 }",
+     "m.toml:16:9: there is no component 'detektion'; did you mean 'detection'?"},
+    {"detection = { fps = 30 }", "tracking = { fps = 30 }",
+     "m.toml:16:9: there is no component 'tracking'; the components are detection, encryption"},
+    {"detection = { fps = 30 }", "detection = 30",
+     "m.toml:16:21: 'detection' is a TOML integer, expected a table"},
+    {"run = { detection = { fps = 10 } }\n", "", "m.toml:18:1: has no key 'run'"},
+    // When.
+    {"\"cruise\"", "\"cruize\"",
+     "m.toml:14:1: there is no phase 'cruize'; the phases are takeoff, cruise and landing"},
+    {"phase = \"cruise\"\nmiddle = 120\n", "",
+     "m.toml:13:1: this entry does not say when; give it a phase, or `otherwise = true` for whatever the "
+     "others leave"},
+    {"otherwise = true", "otherwise = false", "m.toml:19:1: `otherwise = false` says nothing; leave it out"},
+    {"otherwise = true", "otherwise = true\nfrom = 10",
+     "m.toml:20:1: `from` stands with `otherwise`; `otherwise` is what is left; leave one of them out"},
+    {"middle = 120", "middel = 120", "m.toml:15:1: unknown key 'middel'; did you mean 'middle'?"},
+    {"middle = 120", "middle = 120\nto = 5",
+     "m.toml:15:1: `middle` stands with `from` or `to`; use one way of saying when"},
+    {"middle = 120", "middle = 601",
+     "m.toml:15:1: the stretch cruise from -0.5 s to 600.5 s is not within the phase; it takes 600 s in this "
+     "mission"},
+    {"middle = 120", "middle = 0",
+     "m.toml:15:1: the stretch cruise from 300 s to 300 s is empty; it must begin before it ends"},
+    {"middle = 120", "from = 400\nto = 300",
+     "m.toml:15:1: the stretch cruise from 400 s to 300 s is empty; it must begin before it ends"},
+    {"middle = 120", "to = \"101 %\"",
+     "m.toml:15:1: the stretch cruise from 0 s to 606 s is not within the phase; it takes 600 s in this "
+     "mission"},
+    {"middle = 120", "from = \"40\"",
+     "m.toml:15:1: from = \"40\" is no time in a phase; write seconds (from = 240) or percent of the phase "
+     "(from = \"40 "
+     "%\")"},
+    {"middle = 120", "from = \"4o %\"",
+     "m.toml:15:1: from = \"4o %\" is no time in a phase; write seconds (from = 240) or percent of the phase "
+     "(from = "
+     "\"40 %\")"},
+    {"cruise = 600", "cruise = 0", "m.toml:14:1: cruise takes no time in this mission"},
+    // Gaps and overlaps.
+    {"otherwise = true", "phase = \"takeoff\"",
+     "m.toml:13:1: nothing is scheduled for cruise from 0 s to 240 s; add an entry with `otherwise = true`; "
+     "`run = {}` "
+     "runs nothing"},
+    {"otherwise = true", "phase = \"cruise\"",
+     "m.toml:18:1: cruise from 240 s to 360 s is scheduled twice, here and in line 13; give the entry of the "
+     "whole phase "
+     "`otherwise = true`, and it takes what the others leave"},
+    {"otherwise = true", "phase = \"cruise\"\nfrom = 300\nto = 400",
+     "m.toml:18:1: cruise from 300 s to 360 s is scheduled twice, here and in line 13; let one end where the "
+     "other "
+     "begins"},
+    {"takeoff = 28, cruise = 600, landing = 60 }", "takeoff = 0, cruise = 120, landing = 0 }",
+     "m.toml:18:1: this `otherwise` covers nothing: the other entries leave no time; take it out"},
+};
+
+INSTANTIATE_TEST_SUITE_P(MissionToml, BadMissions, testing::ValuesIn(bad_missions));
+
+TEST(MissionToml, RefusesAMissionThatDoesNotFitItsParts) {
+    const auto folder = mission_folder();
+    const auto of = [&](const std::string& text) {
+        return rejected([&] { parse_mission(text, folder / "m.toml"); }, folder);
+    };
+    const std::string flight =
+        "mechanical = \"opterra.toml\"\nbattery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }\n";
+    EXPECT_EQ(of(flight + "[components.detection]\nprofile = \"detection.csv\"\n"),
+              "m.toml:3:2: there are components and no [[schedule]] that runs them; add [[schedule]] with "
+              "otherwise = "
+              "true and run = { ... }");
+    EXPECT_EQ(of(flight + "[[schedule]]\notherwise = true\nrun = { detection = { fps = 1 } }\n"),
+              "m.toml:5:9: there is no component 'detection'; the mission has no [components.NAME]");
+    EXPECT_EQ(of(flight + "phase_clock = \"stretched\"\n"),
+              "m.toml:3:1: there is no phase_clock 'stretched'; it is \"stretch\" or \"absolute\"");
+    EXPECT_EQ(of(flight + "duration_s = { takeoff = 0, cruise = 0, landing = 0 }\n"),
+              "m.toml:3:1: all phases take 0 s, expected a mission");
+    EXPECT_EQ(of(flight + "duration_s = { cruising = 10 }\n"),
+              "m.toml:3:16: unknown key 'cruising'; known keys: cruise, landing, takeoff");
+    EXPECT_EQ(of("mechanical = none\n").substr(0, 29), "m.toml:1:15: is not TOML: Err");
+    // What is wrong in a model is placed in the model's file.
+    write_text(folder / "opterra.toml", "name = \"x\"\n");
+    EXPECT_EQ(of(flight), "opterra.toml:1:1: has no key 'takeoff'");
+    EXPECT_EQ(rejected([&] { read_mission(folder / "none.toml"); }, folder),
+              "none.toml: cannot be read: No such file or directory");
+}
+
+}  // namespace
+}  // namespace flightwatt
