@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string_view>
 
@@ -9,6 +10,9 @@ namespace flightwatt::units {
 inline constexpr double seconds_per_hour = 3600.0;
 inline constexpr double pprz_full_scale = 9600.0;  ///< Paparazzi's MAX_PPRZ: full throttle in "pprz"
 inline constexpr double percent_per_whole = 100.0;
+inline constexpr double rad_per_turn = 2.0 * std::numbers::pi;
+/// The paper's Table I counts time in units of which every phase lasts 28, whatever its seconds.
+inline constexpr double table_one_time_per_phase = 28.0;
 
 constexpr double wh_from_joule(double energy_j) { return energy_j / seconds_per_hour; }
 constexpr double joule_from_wh(double energy_wh) { return energy_wh * seconds_per_hour; }
@@ -19,6 +23,10 @@ constexpr double percent_from_pprz(double throttle_pprz) { return throttle_pprz 
 constexpr double pprz_from_percent(double throttle_percent) {
     return throttle_percent / percent_per_whole * pprz_full_scale;
 }
+
+constexpr double rad_from_turns(double turns) { return turns * rad_per_turn; }
+/// Table I's xi, an angular frequency, from omega * duration of the phase.
+constexpr double table_one_xi_from_rad(double theta_rad) { return theta_rad / table_one_time_per_phase; }
 
 /// What a declared unit measures; the base unit of each is the suffix used in names.
 enum class Quantity { volt, ampere, watt, ampere_hour, watt_hour, metre, metre_per_second, second, percent };

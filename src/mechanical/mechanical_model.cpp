@@ -17,7 +17,8 @@ double energy_j(const FourierModel& model, double time_s) {
     double energy = model.a0_w * time_s;
     for (std::size_t n = 0; n < model.cos_w.size(); ++n) {
         const double omega = static_cast<double>(n + 1) * model.omega_rad_per_s;
-        const double half = std::sin(omega * time_s / 2.0);  // 1 - cos(x) = 2 sin^2(x/2), without cancellation
+        // 1 - cos(x) = 2 sin^2(x/2), without cancellation
+        const double half = std::sin(omega * time_s / 2.0);
         energy += (model.cos_w[n] * std::sin(omega * time_s) + model.sin_w[n] * 2.0 * half * half) / omega;
     }
     return energy;

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "flight/flight_phases.h"
+
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "flight/flight_phases.h"
 
 namespace flightwatt {
 
@@ -27,16 +27,16 @@ double energy_j(const FourierModel& model, double time_s);
 
 /// Where the frequency of a fit was allowed to be, as omega * duration [rad].
 struct FrequencyRange {
-    double low_rad = 0.0;   ///< below, the basis becomes collinear
-    double high_rad = 0.0;  ///< above, the third harmonic is faster than the samples
+    double low_rad = 0.0;           ///< below, the basis becomes collinear
+    double high_rad = 0.0;          ///< above, the third harmonic is faster than the samples
     std::string at_bound = "none";  ///< "none", "low" or "high"
 };
 
 /// One phase of the model: the flights' weighted average (Eqs. 5-7) and what it rests on.
 struct PhaseModel {
     FourierModel fourier;
-    double duration_s = 0.0;         ///< weighted average duration
-    std::optional<double> rms_w;     ///< residual of the flights' own curves; absent if published without
+    double duration_s = 0.0;      ///< weighted average duration
+    std::optional<double> rms_w;  ///< residual of the flights' own curves; absent if published without
     std::optional<FrequencyRange> range;
     std::size_t samples = 0;
     std::size_t flights = 0;
@@ -74,7 +74,8 @@ enum class PhaseClock {
 FourierModel flown_model(const PhaseModel& phase, double flown_s, PhaseClock clock);
 
 /// fits/mechanical/NAME.toml. Reading throws InputError with its place for a missing or unknown key, other
-/// numbers of cosines than sines, or a duration or frequency that is not positive.
+/// numbers of cosines than sines, a duration or frequency that is not positive, a count that is not whole, or
+/// a weight outside [0, 1].
 MechanicalModel read_mechanical_model(const std::filesystem::path& path);
 std::string to_toml(const MechanicalModel& model);
 

@@ -1,8 +1,10 @@
-#include <fmt/format.h>
-
 #include "base/toml_reader.h"
 #include "base/toml_text.h"
 #include "mechanical/mechanical_model.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
 
 namespace flightwatt {
 namespace {
@@ -15,8 +17,41 @@ double positive_number(const TomlTable& table, std::string_view key) {
     return value;
 }
 
+double number_from_zero(const TomlTable& table, std::string_view key) {
+    const double value = table.number(key);
+    if (value < 0.0) throw InputError(table.where(key), fmt::format("{} = {} is negative", key, value));
+    return value;
+}
+
+std::size_t count(const TomlTable& table, std::string_view key) {
+    constexpr double largest_exact = 9007199254740992.0;  // 2^53: beyond, a double is no count
+    const double value = number_from_zero(table, key);
+    if (value != std::floor(value) || value > largest_exact) {
+        throw InputError(table.where(key), fmt::format("{} = {} is not a whole number", key, value));
+    }
+    return static_cast<std::size_t>(value);
+}
+
+double weight(const TomlTable& table, std::string_view key) {
+    const double value = number_from_zero(table, key);
+    if (value > 1.0) {
+        throw InputError(table.where(key), fmt::format("{} = {} is more than 1", key, value),
+                         "the weights of a phase are parts of 1");
+    }
+    return value;
+}
+
 FrequencyRange read_range(const TomlTable& table) {
-    FrequencyRange range{table.number("low_rad"), table.number("high_rad"), table.string("at_bound")};
+    FrequencyRange range{positive_number(table, "low_rad"), positive_number(table, "high_rad"),
+                         table.string("at_bound")};
+    if (range.at_bound != "none" && range.at_bound != "low" && range.at_bound != "high") {
+        throw InputError(table.where("at_bound"),
+                         fmt::format("at_bound = '{}', expected none, low or high", range.at_bound));
+    }
+    if (range.high_rad < range.low_rad) {
+        throw InputError(table.where("high_rad"),
+                         fmt::format("high_rad = {} is below low_rad = {}", range.high_rad, range.low_rad));
+    }
     table.refuse_unknown_keys();
     return range;
 }
@@ -33,17 +68,17 @@ PhaseModel read_phase(const TomlTable& table) {
                          fmt::format("sin_w has {} coefficients and cos_w {}, expected as many of each",
                                      phase.fourier.sin_w.size(), phase.fourier.cos_w.size()));
     }
-    phase.rms_w = table.optional_number("rms_w");
-    phase.samples = static_cast<std::size_t>(table.optional_number("samples").value_or(0.0));
-    phase.flights = static_cast<std::size_t>(table.optional_number("flights").value_or(0.0));
+    if (table.has("rms_w")) phase.rms_w = number_from_zero(table, "rms_w");
+    if (table.has("samples")) phase.samples = count(table, "samples");
+    if (table.has("flights")) phase.flights = count(table, "flights");
     if (const auto range = table.optional_table("omega_duration")) phase.range = read_range(*range);
     table.refuse_unknown_keys();
     return phase;
 }
 
 PhaseContribution read_contribution(const TomlTable& table) {
-    PhaseContribution part{table.number("weight"), table.number("duration_s"), table.number("rms_w"),
-                           static_cast<std::size_t>(table.number("samples"))};
+    PhaseContribution part{weight(table, "weight"), positive_number(table, "duration_s"),
+                           number_from_zero(table, "rms_w"), count(table, "samples")};
     table.refuse_unknown_keys();
     return part;
 }

@@ -1,0 +1,80 @@
+#include "mechanical/mechanical_model.h"
+
+#include "base/csv.h"
+#include "mechanical/made_up_flights.h"
+#include "test_paths.h"
+
+#include <cmath>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+/// The paper's figure, digitised: RMS difference to the model's curve [W].
+double rms_from_figure_w(const FourierModel& model, const std::string& file) {
+    const auto table = read_csv(test::shared_dir() / "paper" / file);
+    const auto time = column_index(table, "time_s");
+    const auto power = column_index(table, "power_w");
+    double sum = 0.0;
+    for (const auto& row : table.rows) {
+        sum += std::pow(power_w(model, cell_number(table, row, time)) - cell_number(table, row, power), 2);
+    }
+    return std::sqrt(sum / static_cast<double>(table.rows.size()));
+}
+
+TEST(MechanicalModel, IsTheSeriesOfEquationOne) {
+    const FourierModel model{0.5, 10.0, {1.0, 2.0}, {3.0, 4.0}};
+    const double expected =
+        10.0 + std::cos(1.0) + 3.0 * std::sin(1.0) + 2.0 * std::cos(2.0) + 4.0 * std::sin(2.0);
+    EXPECT_DOUBLE_EQ(power_w(model, 2.0), expected);
+    EXPECT_DOUBLE_EQ(power_w(model, 0.0), 13.0);
+}
+
+TEST(MechanicalModel, TableOneIsTheCurveOfFigureTwo) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto model = test::published_model();
+    EXPECT_LT(rms_from_figure_w(model.phases[Phase::takeoff].fourier, "fig2_takeoff.csv"), 0.03);
+    EXPECT_LT(rms_from_figure_w(model.phases[Phase::cruise].fourier, "fig2_cruise.csv"), 0.03);
+    EXPECT_LT(rms_from_figure_w(model.phases[Phase::landing].fourier, "fig2_landing.csv"), 0.03);
+}
+
+TEST(MechanicalModel, EnergyIsTheIntegralOfPower) {
+    const auto published = test::published_model();
+    for (const auto phase : all_phases) {
+        const auto& [fourier, duration_s] =
+            std::tie(published.phases[phase].fourier, published.phases[phase].duration_s);
+        constexpr int steps = 20000;  // Simpson's rule
+        double integral = power_w(fourier, 0.0) + power_w(fourier, duration_s);
+        for (int i = 1; i < steps; ++i)
+            integral += (i % 2 == 1 ? 4.0 : 2.0) * power_w(fourier, duration_s * i / steps);
+        integral *= duration_s / steps / 3.0;
+        EXPECT_NEAR(energy_j(fourier, duration_s), integral, 1e-9 * integral) << to_string(phase);
+    }
+    EXPECT_DOUBLE_EQ(energy_j(published.phases[Phase::cruise].fourier, 0.0), 0.0);
+}
+
+TEST(MechanicalModel, PublishedPhasesTakeTheirKnownEnergies) {
+    const auto published = test::published_model();
+    const auto energy = [&](Phase phase) {
+        return energy_j(published.phases[phase].fourier, published.phases[phase].duration_s);
+    };
+    // As summed up from the figures: four digits are theirs.
+    EXPECT_NEAR(energy(Phase::takeoff), 803.9, 1e-4 * 803.9);
+    EXPECT_NEAR(energy(Phase::cruise), 16385.9, 1e-4 * 16385.9);
+    EXPECT_NEAR(energy(Phase::landing), 1686.2, 1e-4 * 1686.2);
+}
+
+TEST(MechanicalModel, AStretchedPhaseEndsWhereTheModelEnds) {
+    const auto phase = test::published_model().phases[Phase::landing];
+    const auto stretched = flown_model(phase, 2.0 * phase.duration_s, PhaseClock::stretched);
+    EXPECT_NEAR(power_w(stretched, 2.0 * phase.duration_s), power_w(phase.fourier, phase.duration_s), 1e-12);
+    EXPECT_NEAR(energy_j(stretched, 2.0 * phase.duration_s), 2.0 * energy_j(phase.fourier, phase.duration_s),
+                1e-9);
+    const auto absolute = flown_model(phase, 2.0 * phase.duration_s, PhaseClock::absolute);
+    EXPECT_EQ(absolute.omega_rad_per_s, phase.fourier.omega_rad_per_s);
+}
+
+}  // namespace
+}  // namespace flightwatt

@@ -1,0 +1,167 @@
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "mechanical/made_up_flights.h"
+#include "mechanical/mechanical_model.h"
+#include "test_paths.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::string_view sound_text = R"(name = "made up"
+[takeoff]
+duration_s = 28.0
+omega_rad_per_s = 0.15
+a0_w = 30.0
+cos_w = [1.0, 2.0]
+sin_w = [3.0, 4.0]
+[cruise]
+duration_s = 600.0
+omega_rad_per_s = 0.01
+a0_w = 27.0
+cos_w = []
+sin_w = []
+[landing]
+duration_s = 60.0
+omega_rad_per_s = 0.06
+a0_w = 26.0
+cos_w = [1.0]
+sin_w = [-1.0]
+samples = 12
+omega_duration = { low_rad = 3.0, high_rad = 30.0, at_bound = "none" }
+[[flights]]
+flight = "one"
+landing = { weight = 1.0, duration_s = 60.0, rms_w = 0.5, samples = 12 }
+)";
+
+std::filesystem::path written(std::string_view text) {
+    auto path = test::scratch_dir() / "model.toml";
+    write_file_atomically(path, text);
+    return path;
+}
+
+/// Reads sound_text with one part replaced, and says what the reader says.
+InputError refusal_of(std::string_view part, std::string_view replacement) {
+    std::string text(sound_text);
+    const auto place = text.find(part);
+    EXPECT_NE(place, std::string::npos) << part;
+    text.replace(place, part.size(), replacement);
+    const auto path = written(text);
+    try {
+        read_mechanical_model(path);
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.where().file, path.string());
+        EXPECT_GT(error.where().column, 0U);
+        return error;
+    }
+    ADD_FAILURE() << "read without complaint: " << replacement;
+    return InputError({}, "");
+}
+
+void expect_equal(const FourierModel& a, const FourierModel& b) {
+    EXPECT_EQ(a.omega_rad_per_s, b.omega_rad_per_s);
+    EXPECT_EQ(a.a0_w, b.a0_w);
+    EXPECT_EQ(a.cos_w, b.cos_w);
+    EXPECT_EQ(a.sin_w, b.sin_w);
+}
+
+MechanicalModel made_up_model() {
+    auto model = test::published_model();
+    model.name = "quoted \"name\"";
+    model.description = "one line\nand another";
+    model.weighting = "agreement";
+    model.phases[Phase::cruise].rms_w = 0.1 + 0.2;  // a number that needs all its digits
+    model.phases[Phase::cruise].range = FrequencyRange{3.0, 40.0, "low"};
+    model.phases[Phase::cruise].samples = 545;
+    model.phases[Phase::cruise].flights = 2;
+    model.flights = {{"first", {}}, {"second", {}}};
+    model.flights[0].phases[Phase::cruise] = PhaseContribution{0.25, 580.0, 0.5, 300};
+    model.flights[1].phases[Phase::cruise] = PhaseContribution{0.75, 610.0, 1.0 / 3.0, 245};
+    return model;
+}
+
+TEST(MechanicalModelToml, ReadsBackWhatItWrote) {
+    const auto model = made_up_model();
+    const auto text = to_toml(model);
+    const auto again = read_mechanical_model(written(text));
+    EXPECT_EQ(again.name, model.name);
+    EXPECT_EQ(again.description, model.description);
+    EXPECT_EQ(again.weighting, model.weighting);
+    for (const auto phase : all_phases) {
+        expect_equal(again.phases[phase].fourier, model.phases[phase].fourier);
+        EXPECT_EQ(again.phases[phase].duration_s, model.phases[phase].duration_s);
+        EXPECT_EQ(again.phases[phase].rms_w, model.phases[phase].rms_w);
+    }
+    const auto& cruise = again.phases[Phase::cruise];
+    EXPECT_EQ(cruise.samples, 545U);
+    EXPECT_EQ(cruise.flights, 2U);
+    ASSERT_TRUE(cruise.range);
+    EXPECT_EQ(cruise.range->high_rad, 40.0);
+    EXPECT_EQ(cruise.range->at_bound, "low");
+    EXPECT_FALSE(again.phases[Phase::takeoff].range);
+    ASSERT_EQ(again.flights.size(), 2U);
+    EXPECT_EQ(again.flights[1].flight, "second");
+    EXPECT_FALSE(again.flights[1].phases[Phase::takeoff]);
+    EXPECT_EQ(again.flights[1].phases[Phase::cruise]->rms_w, 1.0 / 3.0);
+    EXPECT_EQ(to_toml(again), text);
+}
+
+TEST(MechanicalModelToml, ReadsASoundFile) {
+    const auto model = read_mechanical_model(written(sound_text));
+    EXPECT_EQ(model.phases[Phase::takeoff].fourier.sin_w, (std::vector<double>{3.0, 4.0}));
+    EXPECT_EQ(model.phases[Phase::landing].samples, 12U);
+}
+
+TEST(MechanicalModelToml, RefusesAMissingKeyAndNamesTheNearestThatIsThere) {
+    const auto missing = refusal_of("duration_s = 600.0\n", "");
+    EXPECT_EQ(missing.where().line, 8U);
+    EXPECT_THAT(missing.what(), HasSubstr("has no key 'duration_s'"));
+    const auto misspelt = refusal_of("a0_w = 27.0", "a0_kw = 27.0");
+    EXPECT_EQ(misspelt.where().line, 11U);
+    EXPECT_THAT(misspelt.what(), HasSubstr("has no key 'a0_w'"));
+    EXPECT_THAT(misspelt.hint(), HasSubstr("a0_kw"));
+    EXPECT_THAT(refusal_of("[landing]", "[landings]").what(), HasSubstr("has no key 'landing'"));
+}
+
+TEST(MechanicalModelToml, RefusesAnUnknownKey) {
+    const auto unknown = refusal_of("samples = 12\n", "samples = 12\nrms_kw = 0.1\n");
+    EXPECT_EQ(unknown.where().line, 21U);
+    EXPECT_THAT(unknown.what(), HasSubstr("unknown key 'rms_kw'"));
+    EXPECT_THAT(unknown.hint(), HasSubstr("rms_w"));
+}
+
+TEST(MechanicalModelToml, RefusesUnequalCoefficients) {
+    const auto unequal = refusal_of("sin_w = [3.0, 4.0]", "sin_w = [3.0, 4.0, 5.0]");
+    EXPECT_EQ(unequal.where().line, 7U);
+    EXPECT_THAT(unequal.what(), HasSubstr("sin_w has 3 coefficients and cos_w 2"));
+}
+
+TEST(MechanicalModelToml, RefusesNumbersThatMakeNoSense) {
+    const auto negative = refusal_of("duration_s = 28.0", "duration_s = -28.0");
+    EXPECT_EQ(negative.where().line, 3U);
+    EXPECT_THAT(negative.what(), HasSubstr("duration_s = -28 is not positive"));
+    EXPECT_THAT(refusal_of("omega_rad_per_s = 0.01", "omega_rad_per_s = 0.0").what(),
+                HasSubstr("is not positive"));
+    EXPECT_THAT(refusal_of("a0_w = 27.0", "a0_w = nan").what(), HasSubstr("expected a finite number"));
+    EXPECT_THAT(refusal_of("a0_w = 27.0", "a0_w = \"27\"").what(), HasSubstr("expected a finite number"));
+    EXPECT_THAT(refusal_of("samples = 12\n", "samples = 12.5\n").what(), HasSubstr("not a whole number"));
+    EXPECT_THAT(refusal_of("samples = 12\n", "samples = -12\n").what(),
+                HasSubstr("samples = -12 is negative"));
+    EXPECT_THAT(refusal_of("weight = 1.0", "weight = 1.5").what(), HasSubstr("weight = 1.5 is more than 1"));
+    EXPECT_THAT(refusal_of("rms_w = 0.5", "rms_w = -0.5").what(), HasSubstr("rms_w = -0.5 is negative"));
+    EXPECT_THAT(refusal_of("\"none\"", "\"never\"").what(), HasSubstr("expected none, low or high"));
+    EXPECT_THAT(refusal_of("high_rad = 30.0", "high_rad = 2.0").what(), HasSubstr("is below low_rad = 3"));
+}
+
+TEST(MechanicalModelToml, RefusesAFileThatIsNotThere) {
+    EXPECT_THROW(read_mechanical_model(test::scratch_dir() / "absent.toml"), InputError);
+}
+
+}  // namespace
+}  // namespace flightwatt
