@@ -1,0 +1,200 @@
+#include "mechanical/phase_fit.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "mechanical/fourier_basis.h"
+#include "mechanical/frequency_scan.h"
+#include "mechanical/joint_refinement.h"
+#include "mechanical/projected_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace flightwatt {
+namespace {
+
+/// Nearer to an end of the range than this part of it counts as standing at it.
+constexpr double bound_tolerance = 1e-6;
+
+/// Power that varies less than this part of its size is constant.
+constexpr double constant_level = 1e-12;
+
+void check_options(const PhaseFitOptions& options) {
+    if (options.order < 1 || options.order > max_order) {
+        throw UsageError(
+            fmt::format("the order of the Fourier series is {}, expected 1 to {}", options.order, max_order));
+    }
+    if (!(options.low_rad > 0.0) || !std::isfinite(options.low_rad)) {
+        throw UsageError(
+            fmt::format("the lowest omega * duration is {} rad, expected more than 0", options.low_rad));
+    }
+    if (!(units::rad_from_turns(options.high_periods) > options.low_rad) ||
+        !std::isfinite(options.high_periods)) {
+        throw UsageError(
+            fmt::format("at most {} periods a phase are less than the lowest omega * duration, {} rad",
+                        options.high_periods, options.low_rad));
+    }
+}
+
+void check_samples(Phase phase, const PhaseSamples& samples) {
+    const auto refuse = [&](const std::string& what) {
+        throw InputError({samples.flight}, fmt::format("{}: {}", to_string(phase), what));
+    };
+    if (samples.tau.size() != samples.power_w.size()) {
+        refuse(fmt::format("{} times and {} powers, expected as many of each", samples.tau.size(),
+                           samples.power_w.size()));
+    }
+    if (!(samples.duration_s > 0.0) || !std::isfinite(samples.duration_s)) {
+        refuse(fmt::format("duration_s = {} is not positive", samples.duration_s));
+    }
+    for (std::size_t i = 0; i < samples.tau.size(); ++i) {
+        if (!(samples.tau[i] >= 0.0 && samples.tau[i] <= 1.0)) {
+            refuse(fmt::format("sample {} at {} of the phase, expected 0 to 1", i + 1, samples.tau[i]));
+        }
+        if (!std::isfinite(samples.power_w[i])) {
+            refuse(fmt::format("sample {}: power_w is not finite: {}", i + 1, samples.power_w[i]));
+        }
+    }
+}
+
+void check_count(Phase phase, const PhaseSamples& samples, int order) {
+    if (samples.tau.size() >= samples_needed(order)) return;
+    throw NoAnswerError(
+        fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: leave "
+                    "its {} out, or lower the order",
+                    samples.flight, samples.tau.size(), to_string(phase), order, samples_needed(order),
+                    to_string(phase)));
+}
+
+/// The median of the gaps between samples, as a part of the phase; 0 if all samples are at one time.
+double median_gap(const PhaseSamples& samples) {
+    auto tau = samples.tau;
+    std::sort(tau.begin(), tau.end());
+    std::vector<double> gaps;
+    for (std::size_t i = 1; i < tau.size(); ++i) {
+        if (tau[i] > tau[i - 1]) gaps.push_back(tau[i] - tau[i - 1]);
+    }
+    if (gaps.empty()) return 0.0;
+    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+    std::nth_element(gaps.begin(), middle, gaps.end());
+    return *middle;
+}
+
+struct Scaling {
+    std::vector<ScaledSamples> flights;
+    std::vector<double> mean_w;  ///< a flight
+    double unit_w = 1.0;
+};
+
+Scaling scaled(std::span<const PhaseSamples> flights) {
+    Scaling scaling;
+    double square_sum = 0.0;
+    double largest = 0.0;
+    double count = 0.0;
+    for (const auto& flight : flights) {
+        ScaledSamples samples{flight.tau, flight.power_w, flight.flight};
+        double mean = 0.0;
+        for (const double power : flight.power_w) mean += power / static_cast<double>(flight.power_w.size());
+        for (double& value : samples.value) {
+            largest = std::max(largest, std::abs(value));
+            value -= mean;
+            square_sum += value * value;
+        }
+        count += static_cast<double>(flight.tau.size());
+        scaling.flights.push_back(std::move(samples));
+        scaling.mean_w.push_back(mean);
+    }
+    const double deviation_w = std::sqrt(square_sum / count);
+    const bool varies = deviation_w > constant_level * largest;
+    if (varies) scaling.unit_w = deviation_w;
+    for (auto& flight : scaling.flights) {
+        for (double& value : flight.value) value = varies ? value / deviation_w : 0.0;
+    }
+    return scaling;
+}
+
+FourierModel in_watts(const Eigen::VectorXd& coefficients, double unit_w, double mean_w,
+                      double omega_rad_per_s) {
+    FourierModel model;
+    model.omega_rad_per_s = omega_rad_per_s;
+    model.a0_w = mean_w + unit_w * coefficients(0);
+    for (Eigen::Index n = 1; n < coefficients.size(); n += 2) {
+        model.cos_w.push_back(unit_w * coefficients(n));
+        model.sin_w.push_back(unit_w * coefficients(n + 1));
+    }
+    return model;
+}
+
+std::string bound_reached(const FrequencyRange& range, double theta_rad) {
+    const double near = bound_tolerance * theta_rad;
+    if (theta_rad - range.low_rad <= near) return "low";
+    if (range.high_rad - theta_rad <= near) return "high";
+    return "none";
+}
+
+PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling, const JointFit& joint,
+                   const FrequencyRange& range) {
+    PhaseFit fit;
+    fit.theta_rad = joint.theta_rad;
+    fit.range = range;
+    fit.range.at_bound = bound_reached(range, joint.theta_rad);
+    double square_sum = 0.0;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        FlightCurve curve;
+        curve.flight = flights[i].flight;
+        curve.duration_s = flights[i].duration_s;
+        curve.samples = flights[i].tau.size();
+        curve.fourier = in_watts(joint.coefficients[i], scaling.unit_w, scaling.mean_w[i],
+                                 joint.theta_rad / curve.duration_s);
+        curve.rms_w = scaling.unit_w * std::sqrt(joint.square_sum[i] / static_cast<double>(curve.samples));
+        square_sum += joint.square_sum[i];
+        fit.samples += curve.samples;
+        fit.flights.push_back(std::move(curve));
+    }
+    fit.rms_w = scaling.unit_w * std::sqrt(square_sum / static_cast<double>(fit.samples));
+    return fit;
+}
+
+}  // namespace
+
+std::size_t samples_needed(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
+
+FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
+    check_options(options);
+    FrequencyRange range{options.low_rad, units::rad_from_turns(options.high_periods), "none"};
+    for (const auto& flight : flights) {
+        const double gap = median_gap(flight);
+        const double nyquist = gap > 0.0 ? std::numbers::pi / (options.order * gap) : 0.0;
+        if (nyquist <= range.low_rad) {
+            throw NoAnswerError(
+                fmt::format("flight '{}': {} samples, {:.3g} of the phase apart, are too sparse for a "
+                            "Fourier series of order {}",
+                            flight.flight, flight.tau.size(), gap, options.order));
+        }
+        range.high_rad = std::min(range.high_rad, nyquist);
+    }
+    return range;
+}
+
+PhaseFit fit_phase(Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
+    check_options(options);
+    if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
+    for (const auto& flight : flights) {
+        check_samples(phase, flight);
+        check_count(phase, flight, options.order);
+    }
+    const auto scaling = scaled(flights);
+    try {
+        const auto range = admissible_range(flights, options);
+        const double start_rad = find_frequency(scaling.flights, options.order, range);
+        return result_of(flights, scaling, refine_jointly(scaling.flights, options.order, range, start_rad),
+                         range);
+    } catch (const NoAnswerError& error) {
+        throw NoAnswerError(fmt::format("{}: {}", to_string(phase), error.what()));
+    }
+}
+
+}  // namespace flightwatt
