@@ -1,0 +1,27 @@
+#pragma once
+
+#include "mechanical/flight_weights.h"
+#include "mechanical/mechanical_model.h"
+#include "mechanical/phase_fit.h"
+#include "mechanical/phase_samples.h"
+
+#include <span>
+#include <string>
+
+namespace flightwatt {
+
+struct ModelFitOptions {
+    std::string name = "fitted";  ///< of the model
+    PhaseFitOptions phases = {};
+    WeightOptions weights = {};
+};
+
+/// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights
+/// that have it and averaged with their weights. A phase's rms_w is that of the samples about their own
+/// flights' curves. Throws NoAnswerError naming a phase that no flight has, or a flight with too few samples
+/// in a phase (samples_needed tells beforehand; such a phase may be left out of the flight), UsageError for a
+/// flight given twice and for weights that do not fit the flights, and what fit_phase throws.
+MechanicalModel fit_mechanical_model(std::span<const FlightSamples> flights,
+                                     const ModelFitOptions& options = {});
+
+}  // namespace flightwatt
