@@ -1,0 +1,17 @@
+#pragma once
+
+#include "base/text_table.h"
+#include "mechanical/mechanical_model.h"
+
+namespace flightwatt {
+
+/// The model as the paper's Table I: rows a0, a1, b1, ... and xi, a column a phase, four significant digits,
+/// coefficients in W. xi is the paper's: the angular frequency on a time axis of 28 units a phase,
+/// omega * duration / 28. '-' stands where a phase has a lower order than another.
+TextTable table_one(const MechanicalModel& model);
+
+/// Both models' Table I, phase by phase side by side, and below it the durations, the RMS difference of the
+/// curves over the phase [W] and by how many percent of the published a0 the regenerated one differs.
+TextTable table_one_beside(const MechanicalModel& published, const MechanicalModel& regenerated);
+
+}  // namespace flightwatt
