@@ -1,9 +1,9 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <string>
+
+#include <gtest/gtest.h>
 
 namespace flightwatt::test {
 
@@ -31,5 +31,5 @@ inline std::filesystem::path scratch_dir() {
 }  // namespace flightwatt::test
 
 /// Skips, visibly, a test of real data where that is absent.
-#define FLIGHTWATT_NEEDS_SHARED()                                                             \
+#define FLIGHTWATT_NEEDS_SHARED() \
     if (flightwatt::test::shared_dir().empty()) GTEST_SKIP() << "../shared is not here"

@@ -1,7 +1,7 @@
 // The front: `flightwatt STAGE ...` runs flightwatt-STAGE, which stands beside it, as git does.
 
-#include <fmt/format.h>
-#include <unistd.h>
+#include "base/toml_reader.h"
+#include "cli/stage.h"
 
 #include <cerrno>
 #include <cstring>
@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/toml_reader.h"
-#include "cli/stage.h"
+#include <fmt/format.h>
+#include <unistd.h>
 
 namespace {
 
@@ -46,7 +46,15 @@ std::filesystem::path own_folder() {
 
 int refuse_stage(const std::string& stage) {
     std::vector<std::string> names;
-    for (const auto& line : stages) names.emplace_back(line.name);
+    for (const auto& line : stages) {
+        if (line.name != stage) {
+            names.emplace_back(line.name);
+            continue;
+        }
+        fmt::print(stderr, "flightwatt: error: the program flightwatt-{} is missing beside flightwatt\n",
+                   stage);
+        return flightwatt::cli::internal_error;
+    }
     const auto near = flightwatt::nearest_word(stage, names);
     fmt::print(stderr, "flightwatt: error: there is no stage '{}'; {}\n", stage,
                near.empty() ? "flightwatt alone lists them" : fmt::format("did you mean '{}'?", near));

@@ -1,13 +1,12 @@
 // flightwatt parse: a Paparazzi log to the series CSV of its power samples.
 
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
-
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
 #include "flight/phase_statistics.h"
 #include "flight/series_csv.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -29,14 +28,16 @@ nlohmann::ordered_json summary(const FlightSeries& series) {
 int parse(const cli::StageCall& call) {
     const auto series = read_flight(call.inputs.front(), call.maybe<std::string>("aircraft"));
     cli::write_result(call, to_csv(series));
-    for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", call.inputs.front(), warning));
+    for (const auto& warning : series.warnings)
+        cli::warn(call, fmt::format("{}: {}", call.inputs.front(), warning));
     if (call.json) {
         cli::print(summary(series).dump(2) + "\n");
         return cli::ok;
     }
-    cli::note(call, fmt::format("{}: aircraft {} {}, {} samples from {:.1f} to {:.1f} s, usually {:.2f} s apart",
-                                series.flight, series.aircraft_id, series.aircraft_name, series.time_s.size(),
-                                series.time_s.front(), series.time_s.back(), usual_interval_s(series)));
+    cli::note(call,
+              fmt::format("{}: aircraft {} {}, {} samples from {:.1f} to {:.1f} s, usually {:.2f} s apart",
+                          series.flight, series.aircraft_id, series.aircraft_name, series.time_s.size(),
+                          series.time_s.front(), series.time_s.back(), usual_interval_s(series)));
     for (const auto& [channel, source] : series.sources) {
         cli::note(call, fmt::format("  {:<20} from {}", channel, source));
     }
@@ -50,7 +51,8 @@ int main(int argc, char** argv) {
     stage.name = "parse";
     stage.arguments = "FLIGHT.data";
     stage.description =
-        "Reads a Paparazzi .data log (also .gz, .bz2, .xz, .zst) with the .log beside it and writes its power\n"
+        "Reads a Paparazzi .data log (also .gz, .bz2, .xz, .zst) with the .log beside it and writes its "
+        "power\n"
         "samples with altitude, throttle, voltage, current, charge, energy and position as CSV.";
     stage.max_inputs = 1;
     stage.options.add_options()("aircraft", boost::program_options::value<std::string>()->value_name("ID"),

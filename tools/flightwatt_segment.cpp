@@ -1,13 +1,12 @@
 // flightwatt segment: take-off, cruise and landing of every sortie in a log.
 
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
-
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -21,6 +20,7 @@ Json optional_json(const std::optional<T>& value) {
 
 Json edge_json(const PhaseEdge& edge) {
     return {{"altitude_m", edge.altitude_m},
+            {"gap_s", edge.gap_s},
             {"throttle_percent", optional_json(edge.throttle_percent)},
             {"mode", optional_json(edge.mode)},
             {"block", optional_json(edge.block)},
@@ -44,7 +44,8 @@ Json sortie_json(const FlightSeries& series, const Sortie& sortie) {
                           {"complete", span.complete},
                           {"evidence", {{"start", edge_json(span.start)}, {"end", edge_json(span.end)}}}});
     }
-    return {{"ground_altitude_m", sortie.ground_altitude_m}, {"height_m", sortie.height_m}, {"phases", phases}};
+    return {
+        {"ground_altitude_m", sortie.ground_altitude_m}, {"height_m", sortie.height_m}, {"phases", phases}};
 }
 
 Json flight_json(const FlightSeries& series, const FlightPhases& phases) {
@@ -56,8 +57,12 @@ Json flight_json(const FlightSeries& series, const FlightPhases& phases) {
     }
     auto warnings = series.warnings;
     warnings.insert(warnings.end(), phases.warnings.begin(), phases.warnings.end());
-    return {{"flight", series.flight}, {"aircraft_id", series.aircraft_id}, {"power_source", series.power_source},
-            {"sorties", sorties},      {"not_flights", others},             {"warnings", warnings}};
+    return {{"flight", series.flight},
+            {"aircraft_id", series.aircraft_id},
+            {"power_source", series.power_source},
+            {"sorties", sorties},
+            {"not_flights", others},
+            {"warnings", warnings}};
 }
 
 int segment_flight(const cli::StageCall& call) {
@@ -72,8 +77,8 @@ int segment_flight(const cli::StageCall& call) {
     for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
     for (const auto& warning : phases.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
     for (const auto& other : phases.others) {
-        cli::note(call, fmt::format("{}: no flight from {:.0f} to {:.0f} s: {}", file, other.start_s, other.end_s,
-                                    other.what));
+        cli::note(call, fmt::format("{}: no flight from {:.0f} to {:.0f} s: {}", file, other.start_s,
+                                    other.end_s, other.what));
     }
     cli::write_result(call, phases_csv(series, phases));
     if (call.json) cli::print(flight_json(series, phases).dump(2) + "\n");
@@ -91,13 +96,16 @@ int main(int argc, char** argv) {
     stage.description =
         "Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from\n"
         "lift-off until the height held is reached, cruise, landing from where that height is left until\n"
-        "touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.";
+        "touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide "
+        "nothing.";
     stage.max_inputs = 1;
     stage.options.add_options()("aircraft", po::value<std::string>()->value_name("ID"),
                                 "the aircraft to read, where several flew")(
-        "cruise-fraction", po::value<double>()->value_name("X")->default_value(defaults.cruise_fraction, "0.9"),
+        "cruise-fraction",
+        po::value<double>()->value_name("X")->default_value(defaults.cruise_fraction, "0.9"),
         "take-off ends and landing begins at this fraction of the height held")(
-        "ground-fraction", po::value<double>()->value_name("X")->default_value(defaults.ground_fraction, "0.03"),
+        "ground-fraction",
+        po::value<double>()->value_name("X")->default_value(defaults.ground_fraction, "0.03"),
         "below this fraction of the flight's height it is on the ground")(
         "flight-height", po::value<double>()->value_name("M")->default_value(defaults.flight_height_m, "10"),
         "what stays below this height [m] is no flight");

@@ -1,9 +1,6 @@
 #include "base/atomic_file.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include "base/error.h"
 
 #include <cerrno>
 #include <cstring>
@@ -11,7 +8,10 @@
 #include <sstream>
 #include <string>
 
-#include "base/error.h"
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace flightwatt {
 namespace {

@@ -1,13 +1,13 @@
 #include "base/csv.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt {
 namespace {
@@ -22,7 +22,8 @@ std::vector<CsvTable::Cell> split_line(std::string_view text, const Location& wh
             while (true) {
                 const auto quote = text.find('"', p + 1);
                 if (quote == std::string_view::npos) {
-                    throw InputError({where.file, where.line, cell.column}, "a quote is opened and not closed");
+                    throw InputError({where.file, where.line, cell.column},
+                                     "a quote is opened and not closed");
                 }
                 cell.text += text.substr(p + 1, quote - p - 1);
                 p = quote + 1;

@@ -1,18 +1,18 @@
 #include "base/text_table.h"
 
+#include "base/csv.h"
+#include "base/number.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <string_view>
-
-#include "base/csv.h"
-#include "base/number.h"
 
 namespace flightwatt {
 namespace {
 
 std::size_t width_of(std::string_view text) {
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+    return static_cast<std::size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 bool is_numeric_column(const TextTable& table, std::size_t column) {

@@ -1,14 +1,14 @@
 #include "base/toml_reader.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <toml++/toml.h>
+#include "base/atomic_file.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "base/atomic_file.h"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 namespace flightwatt {
 namespace {
@@ -82,9 +82,7 @@ TomlTable parse_toml(std::string_view text, const std::string& file) {
     }
 }
 
-TomlTable read_toml(const std::filesystem::path& path) {
-    return parse_toml(read_file(path), path.string());
-}
+TomlTable read_toml(const std::filesystem::path& path) { return parse_toml(read_file(path), path.string()); }
 
 const toml::node* TomlTable::find(std::string_view key) const {
     asked_->emplace(key);

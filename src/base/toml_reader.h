@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/error.h"
+
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
@@ -8,8 +10,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "base/error.h"
 
 namespace toml {
 inline namespace v3 {

@@ -19,7 +19,9 @@ constexpr double joule_from_wh(double energy_wh) { return energy_wh * seconds_pe
 constexpr double coulomb_from_ah(double charge_ah) { return charge_ah * seconds_per_hour; }
 constexpr double percent_of(double part, double whole) { return part / whole * percent_per_whole; }
 constexpr double part_of(double whole, double percent) { return whole * percent / percent_per_whole; }
-constexpr double percent_from_pprz(double throttle_pprz) { return throttle_pprz / pprz_full_scale * percent_per_whole; }
+constexpr double percent_from_pprz(double throttle_pprz) {
+    return throttle_pprz / pprz_full_scale * percent_per_whole;
+}
 constexpr double pprz_from_percent(double throttle_percent) {
     return throttle_percent / percent_per_whole * pprz_full_scale;
 }

@@ -1,12 +1,12 @@
-#include <fmt/format.h>
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "cli/stage.h"
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 
-#include "base/atomic_file.h"
-#include "base/error.h"
-#include "cli/stage.h"
+#include <fmt/format.h>
 
 namespace flightwatt::cli {
 

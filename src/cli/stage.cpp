@@ -1,6 +1,6 @@
 #include "cli/stage.h"
 
-#include <fmt/format.h>
+#include "base/error.h"
 
 #include <algorithm>
 #include <csignal>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <exception>
 
-#include "base/error.h"
+#include <fmt/format.h>
 
 namespace flightwatt::cli {
 namespace {

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <boost/program_options.hpp>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <boost/program_options.hpp>
 
 namespace flightwatt::cli {
 

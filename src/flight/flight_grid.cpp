@@ -1,17 +1,17 @@
 #include "flight/flight_grid.h"
 
+#include "base/error.h"
+#include "flight/track.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "base/error.h"
-#include "flight/track.h"
-
 namespace flightwatt {
 namespace {
 
-/// Running median of an odd number of values: takes out spikes of less than half as many, and leaves climbs as
-/// they are.
+/// Running median of an odd number of values: takes out spikes of less than half as many, and leaves climbs
+/// as they are.
 template <std::size_t Width>
 std::vector<double> without_spikes(const std::vector<double>& values) {
     constexpr auto reach = static_cast<std::ptrdiff_t>(Width / 2);
@@ -35,8 +35,9 @@ FlightGrid make_grid(const FlightSeries& series) {
     auto altitude =
         series.altitude_track.empty() ? series_track(series, series.altitude_m) : series.altitude_track;
     if (altitude.empty()) {
-        throw InputError({series.flight}, "has no altitude, so its phases cannot be told apart",
-                         "expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m");
+        throw InputError(
+            {series.flight}, "has no altitude, so its phases cannot be told apart",
+            "expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m");
     }
     FlightGrid grid;
     grid.begin_s = series.time_s.front();
@@ -44,7 +45,8 @@ FlightGrid make_grid(const FlightSeries& series) {
     const auto count = static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
     std::vector<double> time_s(count);
     for (std::size_t i = 0; i < count; ++i) time_s[i] = grid.time_s(i);
-    altitude.value = without_spikes<3>(altitude.value);  // on its own clock, before it is spread over the grid
+    altitude.value =
+        without_spikes<3>(altitude.value);  // on its own clock, before it is spread over the grid
     grid.altitude_m = without_spikes<5>(resample(altitude, time_s));
     if (const auto throttle = series_track(series, series.throttle_percent); !throttle.empty()) {
         grid.throttle_percent = resample(throttle, time_s);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
+
+#include <cstddef>
+#include <vector>
 
 namespace flightwatt {
 

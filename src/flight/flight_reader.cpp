@@ -1,13 +1,13 @@
 #include "flight/flight_reader.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-
 #include "base/error.h"
 #include "flight/series_csv.h"
 #include "flight/telemetry_series.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "flight/flight_series.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
-
-#include "flight/flight_series.h"
 
 namespace flightwatt {
 

@@ -1,11 +1,11 @@
 #include "flight/phase_statistics.h"
 
-#include <fmt/format.h>
+#include "base/units.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.h"
+#include <fmt/format.h>
 
 namespace flightwatt {
 namespace {
@@ -26,8 +26,9 @@ double interpolated(const std::vector<double>& time_s, const std::vector<double>
 std::string optional_cell(const auto& value) { return value ? fmt::format("{}", *value) : ""; }
 
 std::string edge_cells(const PhaseEdge& edge) {
-    return fmt::format("{:.2f},{},{},{},{}", edge.altitude_m, optional_cell(edge.throttle_percent),
-                       optional_cell(edge.mode), optional_cell(edge.block), optional_cell(edge.takeoff_after_s));
+    return fmt::format("{:.2f},{},{},{},{},{}", edge.altitude_m, edge.gap_s,
+                       optional_cell(edge.throttle_percent), optional_cell(edge.mode),
+                       optional_cell(edge.block), optional_cell(edge.takeoff_after_s));
 }
 
 }  // namespace
@@ -79,8 +80,8 @@ PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, dou
     if (statistics.samples > 0) statistics.mean_power_w = sum_w / static_cast<double>(statistics.samples);
     statistics.energy_wh = integrated_energy_wh(series, start_s, end_s);
     if (!series.energy_wh.empty()) {
-        statistics.counter_energy_wh = interpolated(time_s, series.energy_wh, end_s) -
-                                       interpolated(time_s, series.energy_wh, start_s);
+        statistics.counter_energy_wh =
+            interpolated(time_s, series.energy_wh, end_s) - interpolated(time_s, series.energy_wh, start_s);
     }
     return statistics;
 }
@@ -90,7 +91,9 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
         "sortie,phase,start_s,end_s,duration_s,samples,mean_power_w,energy_wh,counter_energy_wh,gaps,"
         "longest_gap_s,complete";
     for (const auto* edge : {"start", "end"}) {
-        text += fmt::format(",{0}_altitude_m,{0}_throttle_percent,{0}_mode,{0}_block,{0}_to_takeoff_message_s", edge);
+        text += fmt::format(
+            ",{0}_altitude_m,{0}_gap_s,{0}_throttle_percent,{0}_mode,{0}_block,{0}_to_takeoff_message_s",
+            edge);
     }
     text += '\n';
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {

@@ -1,22 +1,22 @@
 #pragma once
 
+#include "flight/flight_series.h"
+#include "flight/segmentation.h"
+
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "flight/flight_series.h"
-#include "flight/segmentation.h"
-
 namespace flightwatt {
 
 /// What was measured between two times.
 struct PhaseStatistics {
-    std::size_t samples = 0;      ///< power samples in [start, end]
-    double mean_power_w = 0.0;    ///< of these samples; 0 without any
-    double energy_wh = 0.0;       ///< integral of the power, linear between samples
+    std::size_t samples = 0;                  ///< power samples in [start, end]
+    double mean_power_w = 0.0;                ///< of these samples; 0 without any
+    double energy_wh = 0.0;                   ///< integral of the power, linear between samples
     std::optional<double> counter_energy_wh;  ///< what the on-board counter counted meanwhile
-    std::size_t gaps = 0;         ///< stretches without a sample, longer than three usual intervals
+    std::size_t gaps = 0;  ///< stretches without a sample, longer than three usual intervals
     double longest_gap_s = 0.0;
 };
 

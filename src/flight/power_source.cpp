@@ -1,6 +1,6 @@
 #include "flight/power_source.h"
 
-#include <fmt/format.h>
+#include "flight/track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "flight/track.h"
+#include <fmt/format.h>
 
 namespace flightwatt {
 namespace {
@@ -88,7 +88,8 @@ MeasuredPower summed_power(const MessageTable& table, std::initializer_list<cons
     if (devices.empty()) return {};
     std::stable_sort(devices.begin(), devices.end(),
                      [](const Track& a, const Track& b) { return a.time_s.size() > b.time_s.size(); });
-    MeasuredPower sum{devices.front(), fmt::format("{}, summed over {} devices", table.message, devices.size())};
+    MeasuredPower sum{devices.front(),
+                      fmt::format("{}, summed over {} devices", table.message, devices.size())};
     for (std::size_t d = 1; d < devices.size(); ++d) {
         const auto more = resample(devices[d], sum.power_w.time_s);
         for (std::size_t i = 0; i < more.size(); ++i) sum.power_w.value[i] += more[i];

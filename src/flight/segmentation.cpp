@@ -1,13 +1,13 @@
 #include "flight/segmentation.h"
 
-#include <fmt/format.h>
+#include "base/error.h"
+#include "flight/flight_grid.h"
+#include "flight/track.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
-#include "flight/flight_grid.h"
-#include "flight/track.h"
+#include <fmt/format.h>
 
 namespace flightwatt {
 namespace {
@@ -23,8 +23,8 @@ struct Activity {
 /// The ground beside an activity: the last (or first) twenty seconds of the rest there.
 double ground_beside(const FlightGrid& grid, GridSpan rest, bool before) {
     const auto length = std::min(grid.steps(20.0) + 1, rest.end - rest.begin);
-    return median_altitude_m(grid, before ? GridSpan{rest.end - length, rest.end}
-                                          : GridSpan{rest.begin, rest.begin + length});
+    return median_altitude_m(
+        grid, before ? GridSpan{rest.end - length, rest.end} : GridSpan{rest.begin, rest.begin + length});
 }
 
 std::vector<Activity> find_activities(const FlightGrid& grid, const std::vector<GridSpan>& rests,
@@ -56,13 +56,14 @@ std::vector<Activity> find_activities(const FlightGrid& grid, const std::vector<
 struct Heights {
     std::vector<double> height_m;
     double ground_m = 0.0;
-    double top_m = 0.0;     ///< median of the upper half: the flight's own height
+    double top_m = 0.0;  ///< median of the upper half: the flight's own height
     double highest_m = 0.0;
 };
 
 double median_of_upper_half(const std::vector<double>& heights, double highest) {
     std::vector<double> upper;
-    std::copy_if(heights.begin(), heights.end(), std::back_inserter(upper), [&](double h) { return h > 0.5 * highest; });
+    std::copy_if(heights.begin(), heights.end(), std::back_inserter(upper),
+                 [&](double h) { return h > 0.5 * highest; });
     if (upper.empty()) return highest;
     const auto middle = upper.begin() + static_cast<std::ptrdiff_t>(upper.size() / 2);
     std::nth_element(upper.begin(), middle, upper.end());
@@ -119,7 +120,8 @@ std::string why_no_flight(const FlightGrid& grid, const Activity& activity, cons
             return fmt::format("run-up, taxi or hop: throttle to {:.0f} %, height to {:.1f} m", throttle,
                                std::max(heights.highest_m, 0.0));
         }
-        return fmt::format("carried or rolled: height to {:.1f} m, motor off", std::max(heights.highest_m, 0.0));
+        return fmt::format("carried or rolled: height to {:.1f} m, motor off",
+                           std::max(heights.highest_m, 0.0));
     }
     if (!motor_ran) {
         return fmt::format("altitude moved by {:.0f} m with the motor off: an estimator without a fix",
@@ -129,8 +131,8 @@ std::string why_no_flight(const FlightGrid& grid, const Activity& activity, cons
 }
 
 /// Between two neighbouring points of the grid, where the height crosses `level`.
-double crossing_s(const FlightGrid& grid, std::size_t begin, const std::vector<double>& height_m, std::size_t i,
-                  double level) {
+double crossing_s(const FlightGrid& grid, std::size_t begin, const std::vector<double>& height_m,
+                  std::size_t i, double level) {
     const double step = height_m[i + 1] - height_m[i];
     const double part = step == 0.0 ? 0.0 : std::clamp((level - height_m[i]) / step, 0.0, 1.0);
     return grid.time_s(begin + i) + part * grid.step_s;
@@ -145,13 +147,14 @@ struct SortieEdges {
 };
 
 /// The first point from which the height, reached on the way from `begin` on, does not grow by more than the
-/// hold fraction within the hold time; the height held is then the highest of that time. `height` maps a count
-/// of steps from `begin` to a height, so that landings are searched backwards by the same rule.
+/// hold fraction within the hold time; the height held is then the highest of that time. `height` maps a
+/// count of steps from `begin` to a height, so that landings are searched backwards by the same rule.
 template <typename Height>
 double held_height(Height&& height, std::size_t count, std::size_t hold, double top_m,
                    const SegmentationOptions& options) {
     std::vector<double> highest(count);
-    for (std::size_t i = 0; i < count; ++i) highest[i] = std::max(height(i), i > 0 ? highest[i - 1] : height(0));
+    for (std::size_t i = 0; i < count; ++i)
+        highest[i] = std::max(height(i), i > 0 ? highest[i - 1] : height(0));
     for (std::size_t i = 0; i < count; ++i) {
         const double later = highest[std::min(i + hold, count - 1)];
         if (highest[i] > 0.3 * top_m && later - highest[i] <= options.hold_fraction * top_m) return later;
@@ -167,9 +170,11 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     const double ground_level = options.ground_fraction * heights.top_m;
     const double airborne_level = 0.25 * heights.top_m;
     const auto is_high = [&](double h) { return h > airborne_level; };
-    const auto up = static_cast<std::size_t>(std::find_if(height.begin(), height.end(), is_high) - height.begin());
+    const auto up =
+        static_cast<std::size_t>(std::find_if(height.begin(), height.end(), is_high) - height.begin());
     const auto down = static_cast<std::size_t>(std::find_if(height.rbegin(), height.rend(), is_high).base() -
-                                               height.begin()) - 1;
+                                               height.begin()) -
+                      1;
     SortieEdges edges;
     std::size_t lift_off = up;
     while (lift_off > 0 && height[lift_off] > ground_level) --lift_off;
@@ -183,10 +188,10 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     }
     const auto hold = grid.steps(options.hold_s);
     const auto span = touchdown - lift_off + 1;
-    const double after_takeoff = held_height([&](std::size_t i) { return height[lift_off + i]; }, span, hold,
-                                             heights.top_m, options);
-    const double before_landing = held_height([&](std::size_t i) { return height[touchdown - i]; }, span, hold,
-                                              heights.top_m, options);
+    const double after_takeoff =
+        held_height([&](std::size_t i) { return height[lift_off + i]; }, span, hold, heights.top_m, options);
+    const double before_landing =
+        held_height([&](std::size_t i) { return height[touchdown - i]; }, span, hold, heights.top_m, options);
     const double reached = options.cruise_fraction * after_takeoff;
     const double left = options.cruise_fraction * before_landing;
     std::size_t takeoff_end = lift_off;
@@ -194,13 +199,20 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     std::size_t landing_start = touchdown;
     while (landing_start > takeoff_end && height[landing_start] < left) --landing_start;
     // A log that begins (or ends) at the height held begins (or ends) in cruise.
-    if (takeoff_end > lift_off) edges.takeoff_end_s = crossing_s(grid, begin, height, takeoff_end - 1, reached);
+    if (takeoff_end > lift_off)
+        edges.takeoff_end_s = crossing_s(grid, begin, height, takeoff_end - 1, reached);
     if (landing_start < touchdown) {
         const bool below = height[landing_start + 1] < left && height[landing_start] >= left;
-        edges.landing_start_s = below ? crossing_s(grid, begin, height, landing_start, left)
-                                      : grid.time_s(begin + landing_start);
+        edges.landing_start_s =
+            below ? crossing_s(grid, begin, height, landing_start, left) : grid.time_s(begin + landing_start);
     }
     return edges;
+}
+
+/// Between the last sample at or before a time and the first one after it; 0 outside of the samples.
+double gap_around_s(const std::vector<double>& sample_s, double time_s) {
+    const auto after = std::upper_bound(sample_s.begin(), sample_s.end(), time_s);
+    return after == sample_s.begin() || after == sample_s.end() ? 0.0 : *after - *(after - 1);
 }
 
 PhaseEdge describe_edge(const FlightSeries& series, const FlightGrid& grid, double exact_s) {
@@ -212,13 +224,16 @@ PhaseEdge describe_edge(const FlightSeries& series, const FlightGrid& grid, doub
         return channel[std::min(static_cast<std::size_t>(std::max(index, 0L)), channel.size() - 1)];
     };
     edge.altitude_m = nearest(grid.altitude_m);
+    edge.gap_s =
+        gap_around_s(series.altitude_track.empty() ? series.time_s : series.altitude_track.time_s, time_s);
     if (!grid.throttle_percent.empty()) edge.throttle_percent = nearest(grid.throttle_percent);
     const auto& witnesses = series.witnesses;
     if (!witnesses.mode.empty()) edge.mode = static_cast<int>(state_at(witnesses.mode, time_s));
     if (!witnesses.block.empty()) edge.block = static_cast<int>(state_at(witnesses.block, time_s));
     for (const double takeoff : witnesses.takeoff_s) {
         const double after = takeoff - time_s;
-        if (!edge.takeoff_after_s || std::abs(after) < std::abs(*edge.takeoff_after_s)) edge.takeoff_after_s = after;
+        if (!edge.takeoff_after_s || std::abs(after) < std::abs(*edge.takeoff_after_s))
+            edge.takeoff_after_s = after;
     }
     return edge;
 }
@@ -239,7 +254,8 @@ Sortie make_sortie(const FlightSeries& series, const FlightGrid& grid, const Act
             {phase, describe_edge(series, grid, from_s), describe_edge(series, grid, to_s), complete});
     };
     if (edges.takeoff_end_s) add(Phase::takeoff, first_s, cruise_from, edges.lift_off_s.has_value());
-    add(Phase::cruise, cruise_from, cruise_to, edges.takeoff_end_s.has_value() && edges.landing_start_s.has_value());
+    add(Phase::cruise, cruise_from, cruise_to,
+        edges.takeoff_end_s.has_value() && edges.landing_start_s.has_value());
     if (edges.landing_start_s) add(Phase::landing, cruise_to, last_s, edges.touchdown_s.has_value());
     return sortie;
 }
@@ -251,9 +267,12 @@ void validate(const SegmentationOptions& options) {
         if (!good) throw UsageError(fmt::format("{} is {}, expected {}", name, value, expected));
     };
     const auto between = [](double value, double low, double high) { return value > low && value < high; };
-    require(between(options.ground_fraction, 0.0, 0.25), "ground fraction", options.ground_fraction, "0 to 0.25");
-    require(between(options.cruise_fraction, 0.25, 1.0), "cruise fraction", options.cruise_fraction, "0.25 to 1");
-    require(between(options.flight_height_m, 0.0, 1e4), "flight height", options.flight_height_m, "more than 0 m");
+    require(between(options.ground_fraction, 0.0, 0.25), "ground fraction", options.ground_fraction,
+            "0 to 0.25");
+    require(between(options.cruise_fraction, 0.25, 1.0), "cruise fraction", options.cruise_fraction,
+            "0.25 to 1");
+    require(between(options.flight_height_m, 0.0, 1e4), "flight height", options.flight_height_m,
+            "more than 0 m");
     require(options.rest_s >= 1.0, "rest", options.rest_s, "1 s or more");
     require(options.hold_s > 0.0, "hold", options.hold_s, "more than 0 s");
 }
@@ -262,7 +281,8 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
     validate(options);
     const auto grid = make_grid(series);
     FlightPhases phases;
-    if (grid.throttle_percent.empty()) phases.warnings.emplace_back("no throttle: segmented by altitude alone");
+    if (grid.throttle_percent.empty())
+        phases.warnings.emplace_back("no throttle: segmented by altitude alone");
     for (const auto& activity : find_activities(grid, find_rests(grid, options), options)) {
         bool disagree = false;
         const auto grounds = grounds_of(grid, activity, series.ground_altitude_m, disagree);
@@ -275,7 +295,8 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
         }
         if (disagree) {
             phases.warnings.push_back(fmt::format(
-                "the ground before the sortie at {:.0f} s was read as {:.0f} m and after it as {:.0f} m: the latter counts",
+                "the ground before the sortie at {:.0f} s was read as {:.0f} m and after it as {:.0f} m: the "
+                "latter counts",
                 grid.time_s(activity.moving.begin), *activity.ground_before_m, *activity.ground_after_m));
         }
         phases.sorties.push_back(make_sortie(series, grid, activity, heights, options));
@@ -290,11 +311,13 @@ void require_sortie(const FlightSeries& series, const FlightPhases& phases, cons
         seen = "seen instead: ";
         for (std::size_t i = 0; i < std::min<std::size_t>(phases.others.size(), 3); ++i) {
             const auto& other = phases.others[i];
-            seen += fmt::format("{}{} ({:.0f} to {:.0f} s)", i > 0 ? "; " : "", other.what, other.start_s, other.end_s);
+            seen += fmt::format("{}{} ({:.0f} to {:.0f} s)", i > 0 ? "; " : "", other.what, other.start_s,
+                                other.end_s);
         }
     }
     throw InputError({file},
-                     fmt::format("holds no flight in {:.0f} s", series.time_s.back() - series.time_s.front()), seen);
+                     fmt::format("holds no flight in {:.0f} s", series.time_s.back() - series.time_s.front()),
+                     seen);
 }
 
 }  // namespace flightwatt

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "flight/flight_phases.h"
+#include "flight/flight_series.h"
+
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "flight/flight_phases.h"
-#include "flight/flight_series.h"
 
 namespace flightwatt {
 
@@ -28,9 +28,10 @@ struct SegmentationOptions {
 struct PhaseEdge {
     double time_s = 0.0;
     double altitude_m = 0.0;
+    double gap_s = 0.0;  ///< between the altitude samples around it: the edge lies somewhere in there
     std::optional<double> throttle_percent;
-    std::optional<int> mode;         ///< PPRZ_MODE.ap_mode
-    std::optional<int> block;        ///< NAVIGATION.cur_block
+    std::optional<int> mode;                ///< PPRZ_MODE.ap_mode
+    std::optional<int> block;               ///< NAVIGATION.cur_block
     std::optional<double> takeoff_after_s;  ///< the nearest TAKEOFF message, in seconds after this edge
 };
 
@@ -67,9 +68,9 @@ struct FlightPhases {
 void validate(const SegmentationOptions& options);
 
 /// Finds every sortie of the series, and its phases, by altitude and throttle. An aircraft flies between two
-/// rests; lift-off is where it last leaves the ground on its way up, touchdown where it first is back for good;
-/// take-off ends where it reaches, and landing begins where it leaves, the height that it holds after and
-/// before. TAKEOFF, mode and block are noted as witnesses and decide nothing. Throws InputError where the
+/// rests; lift-off is where it last leaves the ground on its way up, touchdown where it first is back for
+/// good; take-off ends where it reaches, and landing begins where it leaves, the height that it holds after
+/// and before. TAKEOFF, mode and block are noted as witnesses and decide nothing. Throws InputError where the
 /// series has no altitude.
 FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options = {});
 

@@ -1,14 +1,14 @@
 #include "flight/series_csv.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/toml_reader.h"
 #include "telemetry/log_configuration.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt {
 namespace {
@@ -66,7 +66,8 @@ std::string to_csv(const FlightSeries& series) {
     }
     for (std::size_t row = 0; row < series.time_s.size(); ++row) {
         for (std::size_t column = 0; column < columns.size(); ++column) {
-            fmt::format_to(std::back_inserter(text), "{}{}", column == 0 ? '\n' : ',', (*columns[column])[row]);
+            fmt::format_to(std::back_inserter(text), "{}{}", column == 0 ? '\n' : ',',
+                           (*columns[column])[row]);
         }
     }
     text.push_back('\n');

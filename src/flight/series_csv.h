@@ -1,10 +1,10 @@
 #pragma once
 
+#include "flight/flight_series.h"
+
 #include <filesystem>
 #include <string>
 #include <string_view>
-
-#include "flight/flight_series.h"
 
 namespace flightwatt {
 

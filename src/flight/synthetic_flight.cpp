@@ -1,22 +1,23 @@
 #include "flight/synthetic_flight.h"
 
+#include "flight/segmentation.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "flight/segmentation.h"
-
 namespace flightwatt {
 namespace {
 
-constexpr double spool_up_s = 3.0;       // full power before the aircraft leaves the ground
-constexpr double ground_run_s = 1.0;     // from standing to lift-off height
-constexpr double flare_s = 2.0;          // from touchdown height to standing
+constexpr double spool_up_s = 3.0;    // full power before the aircraft leaves the ground
+constexpr double ground_run_s = 1.0;  // from standing to lift-off height
+constexpr double flare_s = 2.0;       // from touchdown height to standing
 constexpr double motor_off_after_s = 3.0;
+constexpr double hand_over_s = 1.5;  // from one phase's power to the next one's
 constexpr double run_up_s = 4.0;
 constexpr double run_up_power_w = 35.0;
-constexpr double settling_s = 4.0;       // how slowly the climb ends in the cruise height
-constexpr double oscillation = 0.008;    // of the height, while the autopilot holds it
+constexpr double settling_s = 4.0;     // how slowly the climb ends in the cruise height
+constexpr double oscillation = 0.008;  // of the height, while the autopilot holds it
 constexpr double oscillation_period_s = 47.0;
 
 /// Height above the ground. Phases begin and end where the segmentation's definitions put them: take-off at
@@ -37,7 +38,8 @@ double height_m(const SyntheticFlight& flight, double time_s) {
     } else if (time_s < descent) {
         const double rise = std::exp(-(time_s - climbed) / settling_s);
         const double fall = std::exp(-(descent - time_s) / settling_s);
-        const double held = 1.0 + oscillation * std::sin(2.0 * std::numbers::pi * (time_s - climbed) / oscillation_period_s);
+        const double held =
+            1.0 + oscillation * std::sin(2.0 * std::numbers::pi * (time_s - climbed) / oscillation_period_s);
         fraction = held - (held - reached) * (rise + fall);
     } else if (time_s < touchdown) {
         fraction = std::lerp(reached, ground, (time_s - descent) / (touchdown - descent));
@@ -51,11 +53,19 @@ double power_w_at(const SyntheticFlight& flight, double time_s) {
     const double touchdown = flight.end_s(Phase::landing);
     if (time_s >= flight.motor_run_up_s && time_s < flight.motor_run_up_s + run_up_s) return run_up_power_w;
     if (time_s < flight.lift_off_s - spool_up_s || time_s > touchdown + motor_off_after_s) return 0.0;
-    for (const auto phase : all_phases) {
+    const auto phase_power_w = [&](Phase phase) {
         const double tau = (time_s - flight.start_s(phase)) / flight.duration_s[phase];
-        if (tau < 1.0 || phase == Phase::landing) return flight.power_w(phase, std::clamp(tau, 0.0, 1.0));
-    }
-    return 0.0;
+        return flight.power_w(phase, std::clamp(tau, 0.0, 1.0));
+    };
+    const double cruised_s = time_s - flight.start_s(Phase::cruise);
+    const double to_descent_s = flight.start_s(Phase::landing) - time_s;
+    if (cruised_s < 0.0) return phase_power_w(Phase::takeoff);
+    if (to_descent_s < 0.0) return phase_power_w(Phase::landing);
+    // Power does not jump: the cruise takes over from the climb, and the descent from the cruise.
+    const double from_climb = std::clamp(1.0 - cruised_s / hand_over_s, 0.0, 1.0);
+    const double to_landing = std::clamp(1.0 - to_descent_s / hand_over_s, 0.0, 1.0);
+    return from_climb * phase_power_w(Phase::takeoff) + to_landing * phase_power_w(Phase::landing) +
+           (1.0 - from_climb - to_landing) * phase_power_w(Phase::cruise);
 }
 
 /// Propeller power grows about with the cube of its speed.
@@ -80,16 +90,18 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     constexpr double half_step_s = 0.05;
     const double height = height_m(flight, time_s);
     state.altitude_m = flight.ground_altitude_m + height;
-    state.climb_m_per_s =
-        (height_m(flight, time_s + half_step_s) - height_m(flight, time_s - half_step_s)) / (2.0 * half_step_s);
+    state.climb_m_per_s = (height_m(flight, time_s + half_step_s) - height_m(flight, time_s - half_step_s)) /
+                          (2.0 * half_step_s);
     state.power_w = power_w_at(flight, time_s);
     state.throttle_percent = throttle_for(state.power_w);
     state.airborne = time_s >= flight.lift_off_s && time_s < flight.end_s(Phase::landing);
-    const double flown_s = std::clamp(time_s, flight.lift_off_s, flight.end_s(Phase::landing)) - flight.lift_off_s;
+    const double flown_s =
+        std::clamp(time_s, flight.lift_off_s, flight.end_s(Phase::landing)) - flight.lift_off_s;
     const double angle = flown_s * flight.airspeed_m_per_s / flight.circle_radius_m;
     state.east_m = flight.circle_radius_m * std::sin(angle);
     state.north_m = flight.circle_radius_m * (1.0 - std::cos(angle));
-    state.course_rad = std::fmod(0.5 * std::numbers::pi - angle + 2000.0 * std::numbers::pi, 2.0 * std::numbers::pi);
+    state.course_rad =
+        std::fmod(0.5 * std::numbers::pi - angle + 2000.0 * std::numbers::pi, 2.0 * std::numbers::pi);
     if (state.airborne) {
         state.ground_speed_m_per_s =
             std::hypot(flight.airspeed_m_per_s * std::sin(state.course_rad) + flight.wind_east_m_per_s,

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "flight/flight_phases.h"
+
 #include <functional>
 #include <string>
-
-#include "flight/flight_phases.h"
 
 namespace flightwatt {
 

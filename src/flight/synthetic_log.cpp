@@ -1,6 +1,7 @@
 #include "flight/synthetic_log.h"
 
-#include <fmt/format.h>
+#include "base/units.h"
+#include "telemetry/log_writer.h"
 
 #include <cmath>
 #include <functional>
@@ -8,8 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "base/units.h"
-#include "telemetry/log_writer.h"
+#include <fmt/format.h>
 
 namespace flightwatt {
 namespace {
@@ -56,9 +56,9 @@ std::vector<Report> flight_reports() {
                             {"charge", "float", "Ah", "", {}},
                             {"energy", "float", "Wh", "", {}}}),
          [](const Moment& m) {
-             return std::vector{whole(m.state.throttle_percent), ocaml_float(m.voltage_v), ocaml_float(m.current_a),
-                                ocaml_float(m.voltage_v * m.current_a), ocaml_float(m.charge_ah),
-                                ocaml_float(m.energy_wh)};
+             return std::vector{whole(m.state.throttle_percent), ocaml_float(m.voltage_v),
+                                ocaml_float(m.current_a),        ocaml_float(m.voltage_v * m.current_a),
+                                ocaml_float(m.charge_ah),        ocaml_float(m.energy_wh)};
          }},
         {0.5, message("ESTIMATOR", {{"z", "float", "m", "", {}}, {"z_dot", "float", "m/s", "", {}}}),
          [](const Moment& m) {
@@ -92,8 +92,12 @@ std::vector<Report> flight_reports() {
                                {"mcu1_status", "uint8", "", "", {}}}),
          [](const Moment& m) {
              const std::string automatic = m.state.mode == 2 ? "3" : "0";
-             return std::vector{std::to_string(m.state.mode), automatic,        automatic,
-                                std::string("2"),             std::string("0"), std::string("17")};
+             return std::vector{std::to_string(m.state.mode),
+                                automatic,
+                                automatic,
+                                std::string("2"),
+                                std::string("0"),
+                                std::string("17")};
          }},
     };
 }
@@ -102,7 +106,9 @@ std::vector<Report> flight_reports() {
 std::vector<Report> other_reports() {
     return {
         {0.4,
-         message("ATTITUDE", {{"phi", "float", "rad", "", {}}, {"psi", "float", "rad", "", {}}, {"theta", "float", "rad", "", {}}}),
+         message("ATTITUDE", {{"phi", "float", "rad", "", {}},
+                              {"psi", "float", "rad", "", {}},
+                              {"theta", "float", "rad", "", {}}}),
          [](const Moment& m) {
              const double heading = std::remainder(m.state.course_rad, 2.0 * std::numbers::pi);
              return std::vector{ocaml_float(m.state.airborne ? -0.21 : 0.0), ocaml_float(heading),
@@ -140,14 +146,19 @@ std::vector<Report> other_reports() {
                                 {"vsupply", "float", "V", "", {}},
                                 {"current", "float", "A", "", {}}}),
          [](const Moment& m) {
-             return std::vector{std::string("0"), std::string("61"), std::string("0"), ocaml_float(m.voltage_v),
-                                ocaml_float(m.current_a)};
+             return std::vector{std::string("0"), std::string("61"), std::string("0"),
+                                ocaml_float(m.voltage_v), ocaml_float(m.current_a)};
          }},
         {5.1, message("ALIVE", {{"md5sum", "uint8[]", "", "", {}}}),
-         [](const Moment&) { return std::vector{std::string("104,72,204,189,120,93,193,159,136,145,150,137,96,217,124,229")}; }},
+         [](const Moment&) {
+             return std::vector{std::string("104,72,204,189,120,93,193,159,136,145,150,137,96,217,124,229")};
+         }},
         {5.0, message("PONG", {}), [](const Moment&) { return std::vector<std::string>{}; }},
-        {7.1, message("LOGGER_STATUS", {{"status", "uint8", "", "", {}}, {"errno", "uint8", "", "", {}},
-                                        {"used", "uint32", "", "", {}}, {"logfile", "char[]", "", "", {}}}),
+        {7.1,
+         message("LOGGER_STATUS", {{"status", "uint8", "", "", {}},
+                                   {"errno", "uint8", "", "", {}},
+                                   {"used", "uint32", "", "", {}},
+                                   {"logfile", "char[]", "", "", {}}}),
          [](const Moment& m) {
              return std::vector{std::string("1"), std::string("0"), whole(m.time_s * 512.0),
                                 std::string(", FLIGHT_RECORDER\\fr_0001.LOG")};
@@ -177,16 +188,17 @@ class Simulation {
         energy_wh_ += (current_a + idle_a(moment)) * moment.voltage_v * tick_s / units::seconds_per_hour;
         moment.charge_ah = charge_ah_;
         moment.energy_wh = energy_wh_;
-        constexpr double adc_step_a = 0.00414;
         const double noisy_a = current_a + idle_a(moment) + sensors_.current_noise_a * normal_(random_);
-        moment.current_a = std::round(noisy_a / adc_step_a) * adc_step_a;
+        moment.current_a = std::round(noisy_a / sensors_.current_step_a) * sensors_.current_step_a;
         moment.altitude_m = moment.state.altitude_m + sensors_.altitude_noise_m * normal_(random_);
         moment.flight_time_s = std::max(0.0, time_s - flight_.lift_off_s);
         return moment;
     }
 
   private:
-    double idle_a(const Moment& moment) const { return moment.state.power_w > 0.0 ? 0.0 : sensors_.idle_current_a; }
+    double idle_a(const Moment& moment) const {
+        return moment.state.power_w > 0.0 ? 0.0 : sensors_.idle_current_a;
+    }
 
     const SyntheticFlight& flight_;
     const SyntheticSensors& sensors_;
@@ -196,19 +208,20 @@ class Simulation {
     double energy_wh_ = 0.0;
 };
 
-/// A link that loses single lines and, now and then, all of them for some seconds.
+/// A link that loses single lines and, while the aircraft cruises far off, now and then all for some seconds.
 class LossyLink {
   public:
-    LossyLink(double lost_fraction, std::mt19937_64& random) : lost_fraction_(lost_fraction), random_(random) {
+    LossyLink(double lost_fraction, std::mt19937_64& random)
+        : lost_fraction_(lost_fraction), random_(random) {
         next_burst_s_ = mean_pause_s() * exponential_(random_);
     }
 
-    bool loses(double time_s) {
+    bool loses(double time_s, bool far_off) {
         if (time_s >= next_burst_s_) {
             burst_end_s_ = time_s + mean_burst_s * exponential_(random_);
             next_burst_s_ = burst_end_s_ + mean_pause_s() * exponential_(random_);
         }
-        return time_s < burst_end_s_ || uniform_(random_) < lost_fraction_ / 2.0;
+        return (far_off && time_s < burst_end_s_) || uniform_(random_) < lost_fraction_ / 2.0;
     }
 
   private:
@@ -223,8 +236,8 @@ class LossyLink {
     double burst_end_s_ = 0.0;
 };
 
-std::string log_document(const SyntheticFlight& flight, const std::vector<Report>& reports, const std::string& name,
-                         const std::string& made_by) {
+std::string log_document(const SyntheticFlight& flight, const std::vector<Report>& reports,
+                         const std::string& name, const std::string& made_by) {
     LogDocument document;
     document.comment = fmt::format(" SYNTHETIC: no aircraft flew this. {} ", made_by);
     document.time_of_day_s = 1577872800.0;
@@ -232,7 +245,7 @@ std::string log_document(const SyntheticFlight& flight, const std::vector<Report
     document.aircraft.id = aircraft_id;
     document.aircraft.name = "Opterra_synthetic";
     document.aircraft.ground_altitude_m = flight.ground_altitude_m;
-    document.aircraft.block_names = {{0, "Wait GPS"}, {1, "Geo init"}, {2, "Holding point"}, {3, "Takeoff"},
+    document.aircraft.block_names = {{0, "Wait GPS"}, {1, "Geo init"}, {2, "Holding point"},   {3, "Takeoff"},
                                      {4, "Standby"},  {5, "Survey"},   {6, "Land Right AF-TD"}};
     document.aircraft.current_origin = CurrentOrigin::sensor;
     for (const auto& report : reports) document.telemetry.push_back(report.definition);
@@ -251,7 +264,8 @@ SyntheticLog make_synthetic_log(const SyntheticFlight& flight, const SyntheticSe
     Simulation simulation(flight, sensors, random);
     LossyLink link(sensors.lost_fraction, random);
     std::vector<double> due_s;
-    for (std::size_t i = 0; i < reports.size(); ++i) due_s.push_back(log_begin_s + 0.05 * static_cast<double>(i));
+    for (std::size_t i = 0; i < reports.size(); ++i)
+        due_s.push_back(log_begin_s + 0.05 * static_cast<double>(i));
     SyntheticLog log;
     log.data = data_line(log_begin_s, "ground", "INFO_MSG",
                          {fmt::format("\"SYNTHETIC: no aircraft flew this. {}\"", made_by)});
@@ -264,10 +278,12 @@ SyntheticLog make_synthetic_log(const SyntheticFlight& flight, const SyntheticSe
             log.data += data_line(time_s, aircraft_id, "TAKEOFF", {whole(time_s - log_begin_s)});
             takeoff_sent = true;
         }
+        const bool far_off =
+            time_s > flight.start_s(Phase::cruise) + 10.0 && time_s < flight.end_s(Phase::cruise) - 10.0;
         for (std::size_t i = 0; i < reports.size(); ++i) {
             if (time_s + 1e-9 < due_s[i]) continue;
             due_s[i] += reports[i].period_s;
-            if (link.loses(time_s)) continue;
+            if (link.loses(time_s, far_off)) continue;
             log.data += data_line(time_s, aircraft_id, reports[i].definition.name, reports[i].fields(moment));
         }
     }

@@ -1,18 +1,19 @@
 #pragma once
 
+#include "flight/synthetic_flight.h"
+
 #include <cstdint>
 #include <string>
-
-#include "flight/synthetic_flight.h"
 
 namespace flightwatt {
 
 /// How the made-up telemetry link and sensors behave.
 struct SyntheticSensors {
-    double current_noise_a = 0.02;
+    double current_noise_a = 0.001;  ///< standard deviation; 0.02 on the real aircraft of 2020
+    double current_step_a = 0.001;   ///< what the current is rounded to
     double idle_current_a = 0.03;    ///< what the sensor reads with the motor off
     double altitude_noise_m = 0.12;
-    double lost_fraction = 0.10;     ///< of all lines, half of them in bursts
+    double lost_fraction = 0.10;  ///< of all lines, half of them in bursts
     double pack_capacity_ah = 3.2;
     double pack_resistance_ohm = 0.06;
 };
@@ -23,8 +24,8 @@ struct SyntheticLog {
     std::string log;
 };
 
-/// Plays a flight through sensors and a lossy link. `name` is the file's name without ending; `made_by` stands
-/// in both files, which say that they are synthetic. The same seed gives the same log.
+/// Plays a flight through sensors and a lossy link. `name` is the file's name without ending; `made_by`
+/// stands in both files, which say that they are synthetic. The same seed gives the same log.
 SyntheticLog make_synthetic_log(const SyntheticFlight& flight, const SyntheticSensors& sensors,
                                 const std::string& name, const std::string& made_by, std::uint64_t seed);
 

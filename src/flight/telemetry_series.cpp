@@ -1,18 +1,18 @@
 #include "flight/telemetry_series.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include "base/error.h"
+#include "base/units.h"
+#include "flight/power_source.h"
+#include "flight/track.h"
+#include "telemetry/data_file.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "base/error.h"
-#include "base/units.h"
-#include "flight/power_source.h"
-#include "flight/track.h"
-#include "telemetry/data_file.h"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt {
 namespace {
@@ -65,7 +65,8 @@ FoundTrack altitude_of(const SenderLog& sender) {
 
 FoundTrack throttle_of(const SenderLog& sender) {
     auto found = choose_track(
-        sender, {{"ENERGY", "throttle", Quantity::percent}, {"BAT", "throttle", Quantity::percent}}, Merge::mean);
+        sender, {{"ENERGY", "throttle", Quantity::percent}, {"BAT", "throttle", Quantity::percent}},
+        Merge::mean);
     if (!found.source.empty()) return found;
     // Rotorcraft before 2018: thrust, without a unit, on Paparazzi's command scale.
     const auto* table = sender.table("ROTORCRAFT_FP");
@@ -156,7 +157,8 @@ void add_witnesses(FlightSeries& series, const SenderLog& sender) {
     if (const auto* takeoff = sender.table("TAKEOFF")) series.witnesses.takeoff_s = takeoff->time_s;
     series.witnesses.mode = state_track(sender, "PPRZ_MODE", "ap_mode");
     series.witnesses.block = state_track(sender, "NAVIGATION", "cur_block");
-    if (const auto ground = find_track(sender, {"NAVIGATION_REF", "ground_alt", Quantity::metre}, Merge::latest)) {
+    if (const auto ground =
+            find_track(sender, {"NAVIGATION_REF", "ground_alt", Quantity::metre}, Merge::latest)) {
         series.ground_altitude_m = ground->track.value.back();
     }
 }
@@ -175,12 +177,14 @@ void add_configuration(FlightSeries& series, const TelemetryLog& log) {
     series.aircraft_name = aircraft.name;
     series.witnesses.block_names = aircraft.block_names;
     if (!series.ground_altitude_m) series.ground_altitude_m = aircraft.ground_altitude_m;
-    if (series.sources.contains("altitude_m") && series.sources.at("altitude_m").starts_with("ROTORCRAFT_FP")) {
+    if (series.sources.contains("altitude_m") &&
+        series.sources.at("altitude_m").starts_with("ROTORCRAFT_FP")) {
         series.ground_altitude_m = 0.0;  // its heights are above the reference on the ground
     }
     if (aircraft.current_origin == CurrentOrigin::throttle) {
         series.warnings.emplace_back(
-            "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: its current was computed from "
+            "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: its current was computed "
+            "from "
             "throttle, so a power model fitted to it is circular");
     }
 }
@@ -196,11 +200,12 @@ void add_configuration(FlightSeries& series, const TelemetryLog& log) {
     constexpr std::size_t shown = 12;
     const bool more = names.size() > shown;
     names.resize(std::min(names.size(), shown));
-    throw InputError({log.data_file.string()},
-                     fmt::format("holds no measured power of aircraft {}{}", aircraft_id, reason),
-                     fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE; it "
-                                 "holds {}{}",
-                                 fmt::join(names, ", "), more ? ", ..." : ""));
+    throw InputError(
+        {log.data_file.string()},
+        fmt::format("holds no measured power of aircraft {}{}", aircraft_id, reason),
+        fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE; it "
+                    "holds {}{}",
+                    fmt::join(names, ", "), more ? ", ..." : ""));
 }
 
 bool flew(const SenderLog& sender) {
@@ -208,7 +213,8 @@ bool flew(const SenderLog& sender) {
     if (altitude.track.empty()) return false;
     const auto [low, high] = std::minmax_element(altitude.track.value.begin(), altitude.track.value.end());
     const auto throttle = throttle_of(sender).track;
-    const bool motor_on = throttle.empty() || *std::max_element(throttle.value.begin(), throttle.value.end()) > 20.0;
+    const bool motor_on =
+        throttle.empty() || *std::max_element(throttle.value.begin(), throttle.value.end()) > 20.0;
     return *high - *low > 10.0 && motor_on;
 }
 
@@ -237,7 +243,8 @@ std::vector<std::string> flown_aircraft(const TelemetryLog& log) {
     std::vector<std::string> flown;
     for (const auto& sender : log.senders) {
         const bool telemetry = std::any_of(sender.tables.begin(), sender.tables.end(), [](const auto& table) {
-            return table.message != "TAKEOFF" && table.message != "PPRZ_MODE" && table.message != "NAVIGATION_REF";
+            return table.message != "TAKEOFF" && table.message != "PPRZ_MODE" &&
+                   table.message != "NAVIGATION_REF";
         });
         if (!telemetry) continue;
         sent.push_back(sender.id);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "flight/flight_series.h"
 #include "telemetry/telemetry_log.h"
+
+#include <string>
+#include <vector>
 
 namespace flightwatt {
 

@@ -30,7 +30,8 @@ Track make_track(const std::vector<double>& time_s, const std::vector<double>& v
         if (!track.empty() && track.time_s.back() == time_s[i]) {
             ++merged;
             auto& value = track.value.back();
-            value = merge == Merge::latest ? values[i] : value + (values[i] - value) / static_cast<double>(merged);
+            value = merge == Merge::latest ? values[i]
+                                           : value + (values[i] - value) / static_cast<double>(merged);
             continue;
         }
         merged = 1;

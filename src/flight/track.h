@@ -1,9 +1,9 @@
 #pragma once
 
+#include "flight/flight_series.h"
+
 #include <string>
 #include <vector>
-
-#include "flight/flight_series.h"
 
 namespace flightwatt {
 

@@ -1,54 +1,92 @@
 #include "mechanical/flight_spread.h"
 
-#include <cmath>
+#include "base/error.h"
+#include "mechanical/fourier_basis.h"
+#include "mechanical/least_squares.h"
+
 #include <random>
+
+#include <Eigen/Core>
 
 namespace flightwatt {
 namespace {
 
-/// Shifts one value of every flight so that they average to `mean`.
-template <typename Access>
-void centre(std::vector<FlightDeviation>& deviations, double mean, Access&& access) {
-    double sum = 0.0;
-    for (auto& deviation : deviations) sum += access(deviation);
-    const double shift = mean - sum / static_cast<double>(deviations.size());
-    for (auto& deviation : deviations) access(deviation) += shift;
+/// What one flight differs by in one phase.
+struct Deviation {
+    double level = 0.0;  ///< of the band
+    double tilt = 0.0;   ///< of the band, opposite at the two ends of the phase
+    double duration = 0.0;
+};
+
+/// The Fourier series of the phase's frequency next to level and tilt within the band.
+FourierModel deviation_series(Phase phase, const PhaseModel& model, const Deviation& deviation) {
+    constexpr int points = 200;
+    std::vector<double> tau(points);
+    Eigen::VectorXd watts(points);
+    for (int i = 0; i < points; ++i) {
+        const double t = (i + 0.5) / points;
+        tau[static_cast<std::size_t>(i)] = t;
+        watts[i] = band_w(phase, t) * (deviation.level + deviation.tilt * (2.0 * t - 1.0));
+    }
+    const auto order = static_cast<int>(model.fourier.cos_w.size());
+    const double theta_rad = model.fourier.omega_rad_per_s * model.duration_s;
+    const auto fit = solve_least_squares(fourier_basis(tau, order, theta_rad), watts);
+    if (!fit) throw NoAnswerError("the model's frequency is too low to spread flights about it");
+    FourierModel series{model.fourier.omega_rad_per_s, fit->coefficients[0], {}, {}};
+    for (int n = 1; n <= order; ++n) {
+        series.cos_w.push_back(fit->coefficients[2 * n - 1]);
+        series.sin_w.push_back(fit->coefficients[2 * n]);
+    }
+    return series;
+}
+
+PhaseModel deviated(Phase phase, const PhaseModel& model, const Deviation& deviation, double sign) {
+    PhaseModel flown = model;
+    const auto difference = deviation_series(phase, model, deviation);
+    flown.fourier.a0_w += sign * difference.a0_w;
+    for (std::size_t n = 0; n < difference.cos_w.size(); ++n) {
+        flown.fourier.cos_w[n] += sign * difference.cos_w[n];
+        flown.fourier.sin_w[n] += sign * difference.sin_w[n];
+    }
+    flown.duration_s *= 1.0 + sign * deviation.duration;
+    flown.fourier.omega_rad_per_s *= model.duration_s / flown.duration_s;  // the curve is stretched with it
+    return flown;
 }
 
 }  // namespace
 
 double band_w(Phase phase, double tau) {
     switch (phase) {
-        case Phase::takeoff: return 0.2 + 1.3 * (1.0 - tau) * (1.0 - tau);
-        case Phase::cruise: return 0.6;
-        case Phase::landing: return 0.7 + 1.8 * (2.0 * tau - 1.0) * (2.0 * tau - 1.0);
+        case Phase::takeoff:
+            return 0.2 + 1.3 * (1.0 - tau) * (1.0 - tau);
+        case Phase::cruise:
+            return 0.6;
+        case Phase::landing:
+            return 0.7 + 1.8 * (2.0 * tau - 1.0) * (2.0 * tau - 1.0);
     }
     return 0.0;
 }
 
-std::vector<FlightDeviation> draw_deviations(std::size_t count, std::uint64_t seed, double duration_spread) {
+std::vector<PerPhase<PhaseModel>> draw_flights(const MechanicalModel& model, std::size_t count,
+                                               std::uint64_t seed, const SpreadOptions& options) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal(0.0, 1.0);
-    std::uniform_real_distribution<double> uniform(-duration_spread, duration_spread);
-    std::vector<FlightDeviation> deviations(count);
-    for (auto& deviation : deviations) {
+    std::uniform_real_distribution<double> uniform(-options.duration_spread, options.duration_spread);
+    std::vector<PerPhase<PhaseModel>> flights;
+    while (flights.size() + 1 < count) {
+        PerPhase<PhaseModel> one;
+        PerPhase<PhaseModel> opposite;
         for (const auto phase : all_phases) {
-            deviation.level[phase] = normal(random);
-            deviation.tilt[phase] = 0.5 * normal(random);
-            deviation.duration_factor[phase] = 1.0 + uniform(random);
+            const Deviation deviation{options.bands * normal(random), options.bands * 0.5 * normal(random),
+                                      uniform(random)};
+            one[phase] = deviated(phase, model.phases[phase], deviation, 1.0);
+            opposite[phase] = deviated(phase, model.phases[phase], deviation, -1.0);
         }
+        flights.push_back(std::move(one));
+        flights.push_back(std::move(opposite));
     }
-    if (deviations.empty()) return deviations;
-    for (const auto phase : all_phases) {
-        centre(deviations, 0.0, [&](FlightDeviation& d) -> double& { return d.level[phase]; });
-        centre(deviations, 0.0, [&](FlightDeviation& d) -> double& { return d.tilt[phase]; });
-        centre(deviations, 1.0, [&](FlightDeviation& d) -> double& { return d.duration_factor[phase]; });
-    }
-    return deviations;
-}
-
-double deviation_w(const FlightDeviation& deviation, Phase phase, double tau) {
-    return band_w(phase, tau) * (deviation.level[phase] + deviation.tilt[phase] * (2.0 * tau - 1.0));
+    if (flights.size() < count) flights.push_back(model.phases);
+    return flights;
 }
 
 }  // namespace flightwatt

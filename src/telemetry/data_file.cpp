@@ -1,6 +1,6 @@
 #include "telemetry/data_file.h"
 
-#include <fmt/format.h>
+#include "base/error.h"
 
 #include <boost/iostreams/copy.hpp>
 #include <boost/iostreams/device/array.hpp>
@@ -10,8 +10,7 @@
 #include <boost/iostreams/filter/lzma.hpp>
 #include <boost/iostreams/filter/zstd.hpp>
 #include <boost/iostreams/filtering_stream.hpp>
-
-#include "base/error.h"
+#include <fmt/format.h>
 
 namespace flightwatt {
 namespace {
@@ -21,11 +20,17 @@ using namespace std::string_view_literals;
 
 /// Adds the decompressor that the first bytes ask for; false for plain text.
 bool push_decompressor(std::string_view bytes, io::filtering_istream& stream) {
-    if (bytes.starts_with("\x1F\x8B"sv)) stream.push(io::gzip_decompressor());
-    else if (bytes.starts_with("BZh"sv)) stream.push(io::bzip2_decompressor());
-    else if (bytes.starts_with("\xFD" "7zXZ\0"sv)) stream.push(io::lzma_decompressor());
-    else if (bytes.starts_with("\x28\xB5\x2F\xFD"sv)) stream.push(io::zstd_decompressor());
-    else return false;
+    if (bytes.starts_with("\x1F\x8B"sv))
+        stream.push(io::gzip_decompressor());
+    else if (bytes.starts_with("BZh"sv))
+        stream.push(io::bzip2_decompressor());
+    else if (bytes.starts_with("\xFD"
+                               "7zXZ\0"sv))
+        stream.push(io::lzma_decompressor());
+    else if (bytes.starts_with("\x28\xB5\x2F\xFD"sv))
+        stream.push(io::zstd_decompressor());
+    else
+        return false;
     return true;
 }
 

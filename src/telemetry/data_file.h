@@ -1,9 +1,10 @@
 #pragma once
 
-#include <boost/iostreams/device/mapped_file.hpp>
 #include <filesystem>
 #include <string>
 #include <string_view>
+
+#include <boost/iostreams/device/mapped_file.hpp>
 
 namespace flightwatt {
 

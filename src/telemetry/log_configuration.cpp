@@ -1,15 +1,15 @@
 #include "telemetry/log_configuration.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <pugixml.hpp>
-#include <string_view>
-
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <pugixml.hpp>
 
 namespace flightwatt {
 namespace {
@@ -31,8 +31,8 @@ std::size_t line_of(std::string_view text, std::size_t offset) {
 MessageDefinition read_message(const pugi::xml_node& node) {
     MessageDefinition message{attribute(node, "name"), {}, ".log"};
     for (const auto& field : node.children("field")) {
-        message.fields.push_back({attribute(field, "name"), attribute(field, "type"), attribute(field, "unit"),
-                                  attribute(field, "alt_unit"),
+        message.fields.push_back({attribute(field, "name"), attribute(field, "type"),
+                                  attribute(field, "unit"), attribute(field, "alt_unit"),
                                   parse_number(attribute(field, "alt_unit_coef"))});
     }
     return message;
@@ -54,14 +54,17 @@ void read_protocol(const pugi::xml_node& protocol, LogConfiguration& configurati
     }
 }
 
-/// The end of the tag that opens at `begin` (at its '>'), passing over quoted values and their escaped quotes.
+/// The end of the tag that opens at `begin` (at its '>'), passing over quoted values and their escaped
+/// quotes.
 std::size_t tag_end(std::string_view text, std::size_t begin) {
     char quote = '\0';
     for (std::size_t i = begin; i < text.size(); ++i) {
         const char c = text[i];
         if (quote != '\0') {
-            if (c == '\\') ++i;
-            else if (c == quote) quote = '\0';
+            if (c == '\\')
+                ++i;
+            else if (c == quote)
+                quote = '\0';
         } else if (c == '"' || c == '\'') {
             quote = c;
         } else if (c == '>') {
@@ -77,7 +80,8 @@ void for_each_tag(std::string_view text, std::string_view name, Use&& use) {
     const std::string opening = fmt::format("<{}", name);
     for (auto at = text.find(opening); at != std::string_view::npos; at = text.find(opening, at + 1)) {
         const auto after = at + opening.size();
-        if (after >= text.size() || (text[after] != ' ' && text[after] != '\t' && text[after] != '\n')) continue;
+        if (after >= text.size() || (text[after] != ' ' && text[after] != '\t' && text[after] != '\n'))
+            continue;
         const auto end = tag_end(text, at);
         if (end == std::string_view::npos) return;
         std::string tag(text.substr(at, end - at));
@@ -93,7 +97,8 @@ AircraftConfiguration read_aircraft(std::string_view text, const pugi::xml_node&
     aircraft.id = attribute(node, "ac_id");
     aircraft.name = attribute(node, "name");
     for_each_tag(text, "flight_plan", [&](const pugi::xml_node& plan) {
-        if (!aircraft.ground_altitude_m) aircraft.ground_altitude_m = parse_number(attribute(plan, "ground_alt"));
+        if (!aircraft.ground_altitude_m)
+            aircraft.ground_altitude_m = parse_number(attribute(plan, "ground_alt"));
     });
     int position = 0;
     for_each_tag(text, "block", [&](const pugi::xml_node& block) {

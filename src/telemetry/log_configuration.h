@@ -1,11 +1,11 @@
 #pragma once
 
+#include "telemetry/message_definition.h"
+
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
-
-#include "telemetry/message_definition.h"
 
 namespace flightwatt {
 
@@ -32,9 +32,9 @@ struct LogConfiguration {
     std::map<std::string, AircraftConfiguration> aircraft;
 };
 
-/// Reads a .log. Such files are often not well-formed XML ("&&", bare "<", escaped quotes in flight plans), so
-/// only the <protocol> element is read as XML; of the aircraft, single tags. Throws InputError where there is
-/// no <protocol>, it holds no message, or it cannot be read.
+/// Reads a .log. Such files are often not well-formed XML ("&&", bare "<", escaped quotes in flight plans),
+/// so only the <protocol> element is read as XML; of the aircraft, single tags. Throws InputError where there
+/// is no <protocol>, it holds no message, or it cannot be read.
 LogConfiguration read_log_configuration(const std::filesystem::path& path);
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file);
 

@@ -1,11 +1,11 @@
 #include "telemetry/log_writer.h"
 
+#include <cmath>
+#include <sstream>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <cmath>
 #include <pugixml.hpp>
-#include <sstream>
 
 namespace flightwatt {
 namespace {

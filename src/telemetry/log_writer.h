@@ -1,10 +1,10 @@
 #pragma once
 
+#include "telemetry/log_configuration.h"
+
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "telemetry/log_configuration.h"
 
 /// Paparazzi's own formats, for made-up logs.
 namespace flightwatt {

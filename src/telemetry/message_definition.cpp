@@ -58,9 +58,10 @@ Layouts all_layouts() {
                 "week:-", "itow:ms", "utm_zone:-", "gps_nb_err:-"}),
     };
     all["GPS_INT"] = {
-        layout("GPS_INT", "16 fields",
-               {"ecef_x:cm", "ecef_y:cm", "ecef_z:cm", "lat:-", "lon:-", "alt:mm", "hmsl:mm", "ecef_xd:cm/s",
-                "ecef_yd:cm/s", "ecef_zd:cm/s", "pacc:cm", "sacc:cm/s", "tow:-", "pdop:-", "numsv:-", "fix:-"}),
+        layout(
+            "GPS_INT", "16 fields",
+            {"ecef_x:cm", "ecef_y:cm", "ecef_z:cm", "lat:-", "lon:-", "alt:mm", "hmsl:mm", "ecef_xd:cm/s",
+             "ecef_yd:cm/s", "ecef_zd:cm/s", "pacc:cm", "sacc:cm/s", "tow:-", "pdop:-", "numsv:-", "fix:-"}),
         layout("GPS_INT", "17 fields",
                {"ecef_x:cm", "ecef_y:cm", "ecef_z:cm", "lat:-", "lon:-", "alt:mm", "hmsl:mm", "ecef_xd:cm/s",
                 "ecef_yd:cm/s", "ecef_zd:cm/s", "pacc:cm", "sacc:cm/s", "tow:-", "pdop:-", "numsv:-", "fix:-",
@@ -75,9 +76,12 @@ Layouts all_layouts() {
     constexpr auto fixed_point = "0.00390625m";  // 2^-8 m
     for (const auto* version : {"14 fields", "15 fields"}) {
         std::vector<std::string> fields;
-        for (const auto* name : {"east", "north", "up"}) fields.push_back(std::string(name) + ":" + fixed_point);
-        for (const auto* name : {"veast:-", "vnorth:-", "vup:-", "phi:-", "theta:-", "psi:-"}) fields.emplace_back(name);
-        for (const auto* name : {"carrot_east:-", "carrot_north:-", "carrot_up:-", "carrot_psi:-", "thrust:-"}) {
+        for (const auto* name : {"east", "north", "up"})
+            fields.push_back(std::string(name) + ":" + fixed_point);
+        for (const auto* name : {"veast:-", "vnorth:-", "vup:-", "phi:-", "theta:-", "psi:-"})
+            fields.emplace_back(name);
+        for (const auto* name :
+             {"carrot_east:-", "carrot_north:-", "carrot_up:-", "carrot_psi:-", "thrust:-"}) {
             fields.emplace_back(name);
         }
         if (version == std::string_view("15 fields")) fields.emplace_back("flight_time:s");
@@ -85,12 +89,14 @@ Layouts all_layouts() {
     }
     all["TAKEOFF"] = {layout("TAKEOFF", "1 field", {"cpu_time:s"})};
     all["PPRZ_MODE"] = {
-        layout("PPRZ_MODE", "6 fields",
-               {"ap_mode:-", "ap_gaz:-", "ap_lateral:-", "ap_horizontal:-", "if_calib_mode:-", "mcu1_status:-"}),
+        layout(
+            "PPRZ_MODE", "6 fields",
+            {"ap_mode:-", "ap_gaz:-", "ap_lateral:-", "ap_horizontal:-", "if_calib_mode:-", "mcu1_status:-"}),
     };
     for (const auto* rest : {"6", "8", "12"}) {
         std::vector<std::string> fields{"cur_block:-", "cur_stage:-", "pos_x:m", "pos_y:m"};
-        while (fields.size() < std::stoul(rest)) fields.push_back("field_" + std::to_string(fields.size()) + ":-");
+        while (fields.size() < std::stoul(rest))
+            fields.push_back("field_" + std::to_string(fields.size()) + ":-");
         all["NAVIGATION"].push_back(layout("NAVIGATION", std::string(rest) + " fields", fields));
     }
     all["NAVIGATION_REF"] = {

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "base/units.h"
+
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "base/units.h"
 
 namespace flightwatt {
 

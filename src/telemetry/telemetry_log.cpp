@@ -1,17 +1,17 @@
 #include "telemetry/telemetry_log.h"
 
-#include <fmt/format.h>
+#include "base/error.h"
+#include "base/number.h"
+#include "telemetry/data_file.h"
+#include "telemetry/line_scanner.h"
+#include "telemetry/wanted_messages.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
-#include "base/number.h"
-#include "telemetry/data_file.h"
-#include "telemetry/line_scanner.h"
-#include "telemetry/wanted_messages.h"
+#include <fmt/format.h>
 
 namespace flightwatt {
 namespace {
@@ -87,7 +87,8 @@ class LogReader {
         for (const auto& skip : skips_) {
             const bool cut_off = !ends_with_break && skip.count == 1 && skip.first_line == lines &&
                                  skip.reason != Reason::not_a_number;
-            log_.skipped.push_back({cut_off ? "the last line is cut off" : describe(skip), skip.count, skip.first_line});
+            log_.skipped.push_back(
+                {cut_off ? "the last line is cut off" : describe(skip), skip.count, skip.first_line});
         }
         for (const auto& plan : plans_) {
             if (plan.definition != nullptr && !plan.from_log) {
@@ -136,7 +137,8 @@ class LogReader {
             begins[count + 1] = words.position();
         }
         if (count > 0 && begins[count] > line_end) begins[count] = line_end + 1;
-        if (count > 0 && begins[count - 1] >= line_end) --count;  // a blank or a return at the end is no field
+        if (count > 0 && begins[count - 1] >= line_end)
+            --count;  // a blank or a return at the end is no field
         if (plan.definition == nullptr && !choose_definition(plan, count)) {
             const auto reason = plan.candidates.empty() ? Reason::unknown_message : Reason::other_field_count;
             return skip(reason, index, line.number);
@@ -189,8 +191,10 @@ class LogReader {
         const auto plan_index = skip.reason == Reason::not_a_number ? skip.detail / max_fields : skip.detail;
         const auto& plan = plans_[plan_index];
         switch (skip.reason) {
-            case Reason::not_a_message: return "not a message (TIME SENDER NAME ...)";
-            case Reason::no_time: return fmt::format("{}: the time is not a number", plan.request.message);
+            case Reason::not_a_message:
+                return "not a message (TIME SENDER NAME ...)";
+            case Reason::no_time:
+                return fmt::format("{}: the time is not a number", plan.request.message);
             case Reason::unknown_message:
                 return fmt::format("{}: {}", plan.request.message,
                                    plan.from_log ? "not defined in the .log" : "its fields are not known");
@@ -217,13 +221,14 @@ class LogReader {
 }  // namespace
 
 const Column* MessageTable::column(std::string_view field) const {
-    const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.field == field; });
+    const auto found =
+        std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.field == field; });
     return found == columns.end() ? nullptr : &*found;
 }
 
 const MessageTable* SenderLog::table(std::string_view message) const {
-    const auto found =
-        std::find_if(tables.begin(), tables.end(), [&](const MessageTable& t) { return t.message == message; });
+    const auto found = std::find_if(tables.begin(), tables.end(),
+                                    [&](const MessageTable& t) { return t.message == message; });
     return found == tables.end() ? nullptr : &*found;
 }
 
@@ -240,7 +245,8 @@ TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path&
     return log;
 }
 
-TelemetryLog read_telemetry(const std::filesystem::path& data_file, const std::vector<MessageRequest>& wanted) {
+TelemetryLog read_telemetry(const std::filesystem::path& data_file,
+                            const std::vector<MessageRequest>& wanted) {
     const DataFile data(data_file);
     std::optional<LogConfiguration> configuration;
     if (const auto log_file = find_log_file(data_file)) configuration = read_log_configuration(*log_file);
@@ -257,7 +263,8 @@ std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_
     std::vector<std::pair<std::string, std::size_t>> census;
     const auto is_name = [](std::string_view word) {
         return !word.empty() && word.size() < 64 && std::isupper(static_cast<unsigned char>(word.front())) &&
-               std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+               std::all_of(word.begin(), word.end(),
+                           [](unsigned char c) { return std::isalnum(c) || c == '_'; });
     };
     std::map<std::string, std::size_t> names;
     scan_lines(text, [&](const ScannedLine& line) {
@@ -269,7 +276,8 @@ std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_
         if (parse_number(time) && is_name(name)) ++names[std::string(name)];
     });
     census.assign(names.begin(), names.end());
-    std::stable_sort(census.begin(), census.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::stable_sort(census.begin(), census.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
     return census;
 }
 

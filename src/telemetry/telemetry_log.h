@@ -1,13 +1,13 @@
 #pragma once
 
+#include "base/units.h"
+#include "telemetry/log_configuration.h"
+
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "base/units.h"
-#include "telemetry/log_configuration.h"
 
 namespace flightwatt {
 
@@ -64,7 +64,8 @@ struct TelemetryLog {
 
 /// Reads the wanted messages of a Paparazzi .data file with its .log (found beside it). Only these messages
 /// are parsed. Throws InputError for a file that cannot be read or holds no telemetry line.
-TelemetryLog read_telemetry(const std::filesystem::path& data_file, const std::vector<MessageRequest>& wanted);
+TelemetryLog read_telemetry(const std::filesystem::path& data_file,
+                            const std::vector<MessageRequest>& wanted);
 
 /// The same for text in memory; `configuration` as in TelemetryLog.
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,

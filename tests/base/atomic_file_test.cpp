@@ -1,11 +1,11 @@
 #include "base/atomic_file.h"
 
-#include <gtest/gtest.h>
+#include "base/error.h"
+#include "test_paths.h"
 
 #include <algorithm>
 
-#include "base/error.h"
-#include "test_paths.h"
+#include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {

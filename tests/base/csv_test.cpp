@@ -1,9 +1,9 @@
 #include "base/csv.h"
 
+#include "base/error.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "base/error.h"
 
 namespace flightwatt {
 namespace {

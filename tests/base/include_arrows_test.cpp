@@ -1,6 +1,6 @@
 // Who may include whom: the arrows of the house, read off the include lines.
 
-#include <gtest/gtest.h>
+#include "test_paths.h"
 
 #include <filesystem>
 #include <fstream>
@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "test_paths.h"
+#include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {
@@ -23,6 +23,7 @@ const std::map<std::string, std::set<std::string>> allowed{
     {"battery", {"base", "flight"}},
     {"mission", {"base", "mechanical", "compute", "battery"}},
     {"report", {"base", "flight", "mechanical", "compute", "battery", "mission"}},
+    {"batch", {"base", "telemetry", "flight", "mechanical"}},
     {"cli", {"base"}},
 };
 

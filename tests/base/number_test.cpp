@@ -1,10 +1,10 @@
 #include "base/number.h"
 
-#include <gtest/gtest.h>
-
 #include <charconv>
 #include <random>
 #include <string>
+
+#include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {
@@ -21,8 +21,8 @@ TEST(ParseNumber, ReadsWhatPaparazziWrites) {
 }
 
 TEST(ParseNumber, RefusesWhatIsNoWholeFiniteNumber) {
-    for (const auto* text : {"", " ", "12,5", "12.5x", "nan", "inf", "-", ".", "1e", "1 ", " 1", "0x10", "--1",
-                             "1.2.3", "1e999"}) {
+    for (const auto* text : {"", " ", "12,5", "12.5x", "nan", "inf", "-", ".", "1e", "1 ", " 1", "0x10",
+                             "--1", "1.2.3", "1e999"}) {
         EXPECT_FALSE(parse_number(text).has_value()) << "'" << text << "'";
     }
 }
@@ -34,7 +34,8 @@ TEST(ParseNumber, IsCorrectlyRoundedOnBothPaths) {
     for (int i = 0; i < 20000; ++i) {
         char text[64];
         const auto end = std::to_chars(text, text + sizeof text, mantissa(random), std::chars_format::fixed,
-                                       decimals(random)).ptr;
+                                       decimals(random))
+                             .ptr;
         double expected = 0.0;
         std::from_chars(text, end, expected);
         const auto parsed = parse_number({text, static_cast<std::size_t>(end - text)});

@@ -1,14 +1,14 @@
 #include "flight/segmentation.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "base/error.h"
+#include "flight/flight_reader.h"
+#include "test_paths.h"
 
 #include <algorithm>
 #include <functional>
 
-#include "base/error.h"
-#include "flight/flight_reader.h"
-#include "test_paths.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {
@@ -84,7 +84,8 @@ TEST(Segmentation, DoesNotDependOnTheUnitOfHeightOrTheHourOfTheLog) {
     const auto after = segment(series, options);
     ASSERT_EQ(after.sorties.size(), 1u);
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR(after.sorties[0].phases[i].start.time_s - 36000.0, before.sorties[0].phases[i].start.time_s, 0.6);
+        EXPECT_NEAR(after.sorties[0].phases[i].start.time_s - 36000.0,
+                    before.sorties[0].phases[i].start.time_s, 0.6);
     }
 }
 
@@ -107,8 +108,14 @@ TEST(Segmentation, IsNotFooledByAnEstimatorThatStartsAtZero) {
 
 TEST(Segmentation, KeepsDivesInCruise) {
     auto points = sortie(100);
-    points.insert(points.begin() + 6, {{200, 100, 60}, {206, 30, 0}, {212, 30, 100}, {230, 100, 100}, {231, 100, 60},
-                                       {400, 100, 60}, {405, 35, 0}, {420, 110, 100}});
+    points.insert(points.begin() + 6, {{200, 100, 60},
+                                       {206, 30, 0},
+                                       {212, 30, 100},
+                                       {230, 100, 100},
+                                       {231, 100, 60},
+                                       {400, 100, 60},
+                                       {405, 35, 0},
+                                       {420, 110, 100}});
     const auto phases = segment(series_of(points));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain, 4.0);
@@ -177,7 +184,8 @@ TEST(Segmentation, WorksThroughGapsAndSpikes) {
     const auto drop = [&](double from, double to) {
         for (std::size_t i = series.time_s.size(); i-- > 0;) {
             if (series.time_s[i] < from || series.time_s[i] > to) continue;
-            for (auto* channel : {&series.time_s, &series.altitude_m, &series.throttle_percent, &series.power_w}) {
+            for (auto* channel :
+                 {&series.time_s, &series.altitude_m, &series.throttle_percent, &series.power_w}) {
                 channel->erase(channel->begin() + static_cast<std::ptrdiff_t>(i));
             }
         }
@@ -201,10 +209,12 @@ TEST(Segmentation, SaysWhatItSawWhereNothingFlew) {
         }
         return std::string("accepted");
     };
-    EXPECT_THAT(refusal({{0, 5, 0}, {100, 5, 0}}), HasSubstr("holds no flight in 99 s; it stood still throughout"));
+    EXPECT_THAT(refusal({{0, 5, 0}, {100, 5, 0}}),
+                HasSubstr("holds no flight in 99 s; it stood still throughout"));
     EXPECT_THAT(refusal({{0, 5, 0}, {50, 5, 0}, {51, 5, 70}, {60, 5, 70}, {61, 5, 0}, {100, 5, 0}}),
                 HasSubstr("run-up, taxi or hop: throttle to 70 %"));
-    EXPECT_THAT(refusal({{0, 5, 0}, {50, 5, 0}, {60, 60, 0}, {70, 5, 0}, {100, 5, 0}}), HasSubstr("estimator without a fix"));
+    EXPECT_THAT(refusal({{0, 5, 0}, {50, 5, 0}, {60, 60, 0}, {70, 5, 0}, {100, 5, 0}}),
+                HasSubstr("estimator without a fix"));
 }
 
 TEST(Segmentation, RefusesWhatCannotBeSegmented) {

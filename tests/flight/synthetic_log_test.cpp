@@ -1,10 +1,10 @@
 #include "flight/synthetic_log.h"
 
-#include <gtest/gtest.h>
-
 #include "flight/segmentation.h"
 #include "flight/telemetry_series.h"
 #include "telemetry/log_writer.h"
+
+#include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {

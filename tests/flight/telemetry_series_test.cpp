@@ -1,15 +1,15 @@
 #include "flight/telemetry_series.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-
 #include "base/error.h"
 #include "flight/flight_reader.h"
 #include "flight/series_csv.h"
 #include "test_paths.h"
+
+#include <fstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {
@@ -70,12 +70,14 @@ TEST(TelemetrySeries, SumsMotorsAndDevices) {
 
 TEST(TelemetrySeries, UsesAltitudeThatVaries) {
     const std::string power = "1 20 ENERGY 0 12. 1. 12. 0. 0.\n2 20 ENERGY 0 12. 1. 12. 0. 0.\n";
-    const auto gps = series_of(power + "1 20 ESTIMATOR 0. 0.\n2 20 ESTIMATOR 0. 0.\n"
-                                       "1 20 GPS 3 1 1 0 20000 0 0 1 1 31 0\n2 20 GPS 3 1 1 0 21000 0 0 1 1 31 0\n");
+    const auto gps = series_of(power +
+                               "1 20 ESTIMATOR 0. 0.\n2 20 ESTIMATOR 0. 0.\n"
+                               "1 20 GPS 3 1 1 0 20000 0 0 1 1 31 0\n2 20 GPS 3 1 1 0 21000 0 0 1 1 31 0\n");
     EXPECT_THAT(gps.altitude_m, ElementsAre(20, 21));
     EXPECT_EQ(gps.sources.at("altitude_m"), "GPS.alt");
-    const auto rotorcraft = series_of(power + "1 20 ROTORCRAFT_FP 0 0 256 0 0 0 0 0 0 0 0 0 0 4800 1\n"
-                                              "2 20 ROTORCRAFT_FP 0 0 512 0 0 0 0 0 0 0 0 0 0 4800 2\n");
+    const auto rotorcraft = series_of(power +
+                                      "1 20 ROTORCRAFT_FP 0 0 256 0 0 0 0 0 0 0 0 0 0 4800 1\n"
+                                      "2 20 ROTORCRAFT_FP 0 0 512 0 0 0 0 0 0 0 0 0 0 4800 2\n");
     EXPECT_THAT(rotorcraft.altitude_m, ElementsAre(1, 2));
 }
 
@@ -86,7 +88,8 @@ class ReadFlight : public testing::Test {
         std::ofstream(path, std::ios::binary) << text;
         return path;
     }
-    static std::string refusal(const std::filesystem::path& path, const std::optional<std::string>& id = std::nullopt) {
+    static std::string refusal(const std::filesystem::path& path,
+                               const std::optional<std::string>& id = std::nullopt) {
         try {
             read_flight(path, id);
         } catch (const InputError& error) {
@@ -100,12 +103,15 @@ class ReadFlight : public testing::Test {
 std::string flying(int id) {
     std::string text;
     for (int t = 0; t < 20; ++t) {
-        text += fmt::format("{0} {1} ENERGY 60 12. 1. 12. 0. 0.\n{0} {1} ESTIMATOR {2}. 0.\n", t, id, 100 + t);
+        text +=
+            fmt::format("{0} {1} ENERGY 60 12. 1. 12. 0. 0.\n{0} {1} ESTIMATOR {2}. 0.\n", t, id, 100 + t);
     }
     return text;
 }
 
-std::string parked(int id) { return fmt::format("1 {0} ENERGY 0 12. 1. 12. 0. 0.\n1 {0} ESTIMATOR 100. 0.\n", id); }
+std::string parked(int id) {
+    return fmt::format("1 {0} ENERGY 0 12. 1. 12. 0. 0.\n1 {0} ESTIMATOR 100. 0.\n", id);
+}
 
 TEST_F(ReadFlight, AsksWhichAircraftWhereSeveralFlew) {
     const auto two = write("two.data", flying(20) + flying(7));
@@ -116,11 +122,13 @@ TEST_F(ReadFlight, AsksWhichAircraftWhereSeveralFlew) {
 }
 
 TEST_F(ReadFlight, SaysWhatALogWithoutPowerHolds) {
-    EXPECT_THAT(refusal(write("a.data", "1 20 ESTIMATOR 1. 0.\n2 20 ATTITUDE 0. 0. 0.\n")),
-                HasSubstr("holds no measured power of aircraft 20; expected ENERGY with power, BAT or ENERGY with "
-                          "current, ESC or POWER_DEVICE; it holds ATTITUDE 1, ESTIMATOR 1"));
-    EXPECT_THAT(refusal(write("b.data", "1 20 ENERGY 1 12. nan nan 0. 0.\n2 20 ENERGY 1 12. nan nan 0. 0.\n")),
-                HasSubstr("ENERGY.power has no two finite values"));
+    EXPECT_THAT(
+        refusal(write("a.data", "1 20 ESTIMATOR 1. 0.\n2 20 ATTITUDE 0. 0. 0.\n")),
+        HasSubstr("holds no measured power of aircraft 20; expected ENERGY with power, BAT or ENERGY with "
+                  "current, ESC or POWER_DEVICE; it holds ATTITUDE 1, ESTIMATOR 1"));
+    EXPECT_THAT(
+        refusal(write("b.data", "1 20 ENERGY 1 12. nan nan 0. 0.\n2 20 ENERGY 1 12. nan nan 0. 0.\n")),
+        HasSubstr("ENERGY.power has no two finite values"));
     EXPECT_THAT(refusal(write("c.data", "1 20 ENERGY 1 12. 0. 0. 0. 0.\n2 20 ENERGY 1 12. 0. 0. 0. 0.\n")),
                 HasSubstr("ENERGY.power is 0 throughout"));
 }
@@ -128,16 +136,20 @@ TEST_F(ReadFlight, SaysWhatALogWithoutPowerHolds) {
 TEST_F(ReadFlight, ReadsASeriesBackExactly) {
     const auto series = read_flight(write("x.data", flying(20)));
     const auto again = read_flight(write("x.csv", to_csv(series)));
-    for (const auto& channel : series_channels()) EXPECT_EQ(again.*channel.values, series.*channel.values) << channel.name;
+    for (const auto& channel : series_channels())
+        EXPECT_EQ(again.*channel.values, series.*channel.values) << channel.name;
     EXPECT_EQ(again.time_s, series.time_s);
 }
 
 TEST_F(ReadFlight, RefusesBadSeriesWithTheirPlace) {
-    const auto at = [&](const std::string& text) { return refusal(write("s.csv", text)).substr(folder_.string().size()); };
+    const auto at = [&](const std::string& text) {
+        return refusal(write("s.csv", text)).substr(folder_.string().size());
+    };
     EXPECT_EQ(at("time_s,power_w\n1,2\n2,nan\n"), "/s.csv:3:3: power_w is not a finite number: 'nan'; ");
     EXPECT_EQ(at("time_s,power_w\n1,2\n1,3\n"),
               "/s.csv:3:1: time_s = 1 does not rise from 1; sort the rows by time and keep one of each");
-    EXPECT_THAT(at("time_s,power_kw\n1,2\n"), HasSubstr("has no column 'power_w'; its columns are time_s, power_kw"));
+    EXPECT_THAT(at("time_s,power_kw\n1,2\n"),
+                HasSubstr("has no column 'power_w'; its columns are time_s, power_kw"));
     EXPECT_THAT(at("time_s,power_w,altitud_m\n1,2,3\n"), HasSubstr("did you mean 'altitude_m'?"));
     EXPECT_THAT(at("time_s,power_w\n1,2\n"), HasSubstr("fewer than two samples"));
 }

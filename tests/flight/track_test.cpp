@@ -1,9 +1,9 @@
 #include "flight/track.h"
 
+#include <limits>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <limits>
 
 namespace flightwatt {
 namespace {

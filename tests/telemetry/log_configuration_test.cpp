@@ -1,13 +1,13 @@
 #include "telemetry/log_configuration.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-
 #include "base/error.h"
 #include "telemetry/log_writer.h"
 #include "test_paths.h"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {

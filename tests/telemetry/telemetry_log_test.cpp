@@ -1,14 +1,14 @@
 #include "telemetry/telemetry_log.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "base/error.h"
+#include "telemetry/data_file.h"
+#include "test_paths.h"
 
 #include <cmath>
 #include <fstream>
 
-#include "base/error.h"
-#include "telemetry/data_file.h"
-#include "test_paths.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {
@@ -21,7 +21,8 @@ const std::vector<MessageRequest> energy{{"ENERGY", {"voltage", "power"}}, {"PON
 std::vector<std::string> reasons(const TelemetryLog& log) {
     std::vector<std::string> texts;
     for (const auto& skip : log.skipped) {
-        texts.push_back(skip.reason + " x" + std::to_string(skip.count) + " from " + std::to_string(skip.first_line));
+        texts.push_back(skip.reason + " x" + std::to_string(skip.count) + " from " +
+                        std::to_string(skip.first_line));
     }
     return texts;
 }
@@ -63,10 +64,10 @@ TEST(TelemetryLog, CountsWhatItCannotUseByReasonAndFirstLine) {
         "4.5 20 ENERGY 69 11.5 3. 34.x 0.1 0.2\n"
         "5.5 20 LOGGER_STATUS 1 0 0 , FLIGHT_RECORDER\\fr_0219.LOG\n"
         "6.5 20 ENERGY 69 11.5");
-    EXPECT_THAT(reasons(log),
-                ElementsAre("not a message (TIME SENDER NAME ...) x1 from 2", "ENERGY: the time is not a number x1 from 3",
-                            "ENERGY.power: not a finite number x2 from 4",
-                            "ENERGY: another number of fields than is known x2 from 5"));
+    EXPECT_THAT(reasons(log), ElementsAre("not a message (TIME SENDER NAME ...) x1 from 2",
+                                          "ENERGY: the time is not a number x1 from 3",
+                                          "ENERGY.power: not a finite number x2 from 4",
+                                          "ENERGY: another number of fields than is known x2 from 5"));
     const auto& power = log.senders[0].table("ENERGY")->column("power")->values;
     ASSERT_EQ(power.size(), 3u);
     EXPECT_TRUE(std::isnan(power[1])) << "the row stays, for its other fields";
@@ -82,7 +83,8 @@ TEST(TelemetryLog, SaysThatTheLastLineIsCutOff) {
 }
 
 TEST(TelemetryLog, KeepsSendersApartAndReadsWindowsLineEnds) {
-    const auto log = parse("1 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\r\n1 7 ENERGY 0 12. 0. 0. 0. 0.\r\n2 20 PONG \r\n");
+    const auto log =
+        parse("1 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\r\n1 7 ENERGY 0 12. 0. 0. 0. 0.\r\n2 20 PONG \r\n");
     ASSERT_EQ(log.senders.size(), 2u);
     EXPECT_EQ(log.senders[1].id, "7");
     EXPECT_THAT(log.senders[1].table("ENERGY")->column("power")->values, ElementsAre(0.0));
@@ -116,7 +118,10 @@ TEST(TelemetryLog, RefusesFilesWithoutTelemetry) {
         }
     };
     std::ofstream(folder / "empty.data").flush();
-    std::ofstream(folder / "rubbish.data", std::ios::binary) << std::string("\x7F" "ELF\0\1 \2 \3\n\0\0\0 x y", 20);
+    std::ofstream(folder / "rubbish.data", std::ios::binary) << std::string(
+        "\x7F"
+        "ELF\0\1 \2 \3\n\0\0\0 x y",
+        20);
     std::ofstream(folder / "packed.data", std::ios::binary) << std::string("PK\x03\x04zip", 7);
     std::ofstream(folder / "broken.data.gz", std::ios::binary) << std::string("\x1F\x8B\x08\0\0broken", 11);
     std::filesystem::create_directory(folder / "folder.data");

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace flightwatt {
+
+/// A 64-bit FNV-1a hash, eight bytes at a time: tells changed content from unchanged. Not for security.
+class Fingerprint {
+  public:
+    void add(std::string_view content);
+    std::string hex() const;
+
+  private:
+    std::uint64_t state_ = 0xCBF29CE484222325u;
+};
+
+}  // namespace flightwatt

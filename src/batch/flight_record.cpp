@@ -1,0 +1,119 @@
+#include "batch/flight_record.h"
+
+#include <nlohmann/json.hpp>
+
+namespace flightwatt {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json phase_json(const RecordedPhase& phase) {
+    const auto& statistics = phase.statistics;
+    return {
+        {"sortie", phase.sortie},
+        {"phase", to_string(phase.phase)},
+        {"start_s", phase.start_s},
+        {"end_s", phase.end_s},
+        {"start_gap_s", phase.start_gap_s},
+        {"end_gap_s", phase.end_gap_s},
+        {"complete", phase.complete},
+        {"samples", statistics.samples},
+        {"mean_power_w", statistics.mean_power_w},
+        {"energy_wh", statistics.energy_wh},
+        {"counter_energy_wh", statistics.counter_energy_wh ? Json(*statistics.counter_energy_wh) : Json()},
+        {"gaps", statistics.gaps},
+        {"longest_gap_s", statistics.longest_gap_s}};
+}
+
+RecordedPhase recorded_phase(const Json& json) {
+    RecordedPhase phase;
+    phase.sortie = json.at("sortie");
+    phase.phase = phase_from(json.at("phase").get<std::string>()).value();
+    phase.start_s = json.at("start_s");
+    phase.end_s = json.at("end_s");
+    phase.start_gap_s = json.at("start_gap_s");
+    phase.end_gap_s = json.at("end_gap_s");
+    phase.complete = json.at("complete");
+    phase.statistics.samples = json.at("samples");
+    phase.statistics.mean_power_w = json.at("mean_power_w");
+    phase.statistics.energy_wh = json.at("energy_wh");
+    if (const auto& counter = json.at("counter_energy_wh"); !counter.is_null()) {
+        phase.statistics.counter_energy_wh = counter.get<double>();
+    }
+    phase.statistics.gaps = json.at("gaps");
+    phase.statistics.longest_gap_s = json.at("longest_gap_s");
+    return phase;
+}
+
+}  // namespace
+
+FlightRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
+    FlightRecord record;
+    record.flight = series.flight;
+    record.accepted = true;
+    record.aircraft_id = series.aircraft_id;
+    record.power_source = series.power_source;
+    record.warnings = series.warnings;
+    record.warnings.insert(record.warnings.end(), phases.warnings.begin(), phases.warnings.end());
+    for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
+        for (const auto& span : phases.sorties[s].phases) {
+            record.phases.push_back({s + 1, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s,
+                                     span.end.gap_s, span.complete,
+                                     phase_statistics(series, span.start.time_s, span.end.time_s)});
+        }
+    }
+    return record;
+}
+
+FlightPhases phases_of(const FlightRecord& record) {
+    FlightPhases phases;
+    for (const auto& recorded : record.phases) {
+        if (phases.sorties.size() < recorded.sortie) phases.sorties.resize(recorded.sortie);
+        PhaseSpan span;
+        span.phase = recorded.phase;
+        span.start.time_s = recorded.start_s;
+        span.end.time_s = recorded.end_s;
+        span.start.gap_s = recorded.start_gap_s;
+        span.end.gap_s = recorded.end_gap_s;
+        span.complete = recorded.complete;
+        phases.sorties[recorded.sortie - 1].phases.push_back(span);
+    }
+    return phases;
+}
+
+std::string to_json_text(const FlightRecord& record) {
+    Json phases = Json::array();
+    for (const auto& phase : record.phases) phases.push_back(phase_json(phase));
+    const Json json{{"flight", record.flight},
+                    {"log", record.log},
+                    {"fingerprint", record.fingerprint},
+                    {"accepted", record.accepted},
+                    {"error", record.error},
+                    {"aircraft_id", record.aircraft_id},
+                    {"power_source", record.power_source},
+                    {"phases", phases},
+                    {"warnings", record.warnings}};
+    // File names need not be UTF-8, and a record must never fail for that.
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::optional<FlightRecord> record_from_json(const std::string& text) {
+    try {
+        const auto json = Json::parse(text);
+        FlightRecord record;
+        record.flight = json.at("flight");
+        record.log = json.at("log");
+        record.fingerprint = json.at("fingerprint");
+        record.accepted = json.at("accepted");
+        record.error = json.at("error");
+        record.aircraft_id = json.at("aircraft_id");
+        record.power_source = json.at("power_source");
+        for (const auto& phase : json.at("phases")) record.phases.push_back(recorded_phase(phase));
+        record.warnings = json.at("warnings").get<std::vector<std::string>>();
+        return record;
+    } catch (const std::exception&) {
+        return std::nullopt;  // damaged or of another version: the log is done again
+    }
+}
+
+}  // namespace flightwatt

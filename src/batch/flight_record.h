@@ -1,0 +1,50 @@
+#pragma once
+
+#include "flight/flight_series.h"
+#include "flight/phase_statistics.h"
+#include "flight/segmentation.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt {
+
+/// One phase of one sortie as the batch remembers it.
+struct RecordedPhase {
+    std::size_t sortie = 1;
+    Phase phase = Phase::cruise;
+    double start_s = 0.0;
+    double end_s = 0.0;
+    double start_gap_s = 0.0;  ///< see PhaseEdge
+    double end_gap_s = 0.0;
+    bool complete = true;
+    PhaseStatistics statistics;
+};
+
+/// What became of one log: enough to go on without reading it again.
+struct FlightRecord {
+    std::string flight;
+    std::string log;          ///< the path it was read from
+    std::string fingerprint;  ///< of the log's content, its .log and the options
+    bool accepted = false;
+    std::string error;  ///< why it was rejected
+    std::string aircraft_id;
+    std::string power_source;
+    std::vector<RecordedPhase> phases;
+    std::vector<std::string> warnings;
+};
+
+/// The record of a flight that was read and segmented.
+FlightRecord record_of(const FlightSeries& series, const FlightPhases& phases);
+
+/// The phases again, without their evidence: what a fit needs.
+FlightPhases phases_of(const FlightRecord& record);
+
+/// The record as JSON, and back. Reading gives std::nullopt for what is no record of this version.
+std::string to_json_text(const FlightRecord& record);
+std::optional<FlightRecord> record_from_json(const std::string& text);
+
+}  // namespace flightwatt

@@ -1,0 +1,115 @@
+#include "base/csv.h"
+#include "batch/batch_run.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace flightwatt {
+namespace {
+
+bool is_used(const BatchFlight& flight, const RecordedPhase& phase) {
+    const auto name =
+        phase.sortie == 1 ? flight.record.flight : fmt::format("{}#{}", flight.record.flight, phase.sortie);
+    return std::any_of(flight.selection.flights.begin(), flight.selection.flights.end(),
+                       [&](const FlightSamples& samples) {
+                           return samples.flight == name && samples.phases[phase.phase].has_value();
+                       });
+}
+
+/// What a sortie's phases add up to.
+struct SortieRow {
+    PerPhase<const RecordedPhase*> phases{};
+    double energy_wh = 0.0;
+    double counter_wh = 0.0;
+    bool has_counter = true;
+    std::size_t samples = 0;
+    std::size_t gaps = 0;
+    double longest_gap_s = 0.0;
+};
+
+std::vector<SortieRow> sortie_rows(const FlightRecord& record) {
+    std::vector<SortieRow> rows;
+    for (const auto& phase : record.phases) {
+        if (rows.size() < phase.sortie) rows.resize(phase.sortie);
+        auto& row = rows[phase.sortie - 1];
+        row.phases[phase.phase] = &phase;
+        row.energy_wh += phase.statistics.energy_wh;
+        row.counter_wh += phase.statistics.counter_energy_wh.value_or(0.0);
+        row.has_counter = row.has_counter && phase.statistics.counter_energy_wh.has_value();
+        row.samples += phase.statistics.samples;
+        row.gaps += phase.statistics.gaps;
+        row.longest_gap_s = std::max(row.longest_gap_s, phase.statistics.longest_gap_s);
+    }
+    return rows;
+}
+
+std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& row, std::size_t sortie) {
+    std::vector<std::string> cells{flight.record.flight, fmt::format("{}", sortie)};
+    for (const auto phase : all_phases) {
+        const auto* recorded = row.phases[phase];
+        // An asterisk marks a phase that the log cuts.
+        cells.push_back(recorded == nullptr ? "-"
+                                            : fmt::format("{:.0f}{}", recorded->end_s - recorded->start_s,
+                                                          recorded->complete ? "" : "*"));
+    }
+    for (const auto phase : all_phases) {
+        const auto* recorded = row.phases[phase];
+        cells.push_back(recorded == nullptr ? "-" : fmt::format("{:.1f}", recorded->statistics.mean_power_w));
+    }
+    cells.push_back(fmt::format("{:.3f}", row.energy_wh));
+    cells.push_back(row.has_counter ? fmt::format("{:.3f}", row.counter_wh) : "-");
+    cells.push_back(fmt::format("{}", row.samples));
+    cells.push_back(fmt::format("{}", row.gaps));
+    cells.push_back(fmt::format("{:.1f}", row.longest_gap_s));
+    cells.push_back(fmt::format("{}", flight.record.warnings.size()));
+    return cells;
+}
+
+}  // namespace
+
+TextTable flights_table(const std::vector<BatchFlight>& flights) {
+    TextTable table;
+    table.header = {"flight",     "sortie",   "take-off s", "cruise s",  "landing s",
+                    "take-off W", "cruise W", "landing W",  "energy Wh", "counter Wh",
+                    "samples",    "gaps",     "longest s",  "warnings"};
+    for (const auto& flight : flights) {
+        if (!flight.record.accepted) {
+            std::vector<std::string> row{flight.record.flight, "-"};
+            row.resize(table.header.size(), "-");
+            table.rows.push_back(std::move(row));
+            continue;
+        }
+        const auto rows = sortie_rows(flight.record);
+        for (std::size_t s = 0; s < rows.size(); ++s) table.rows.push_back(cells_of(flight, rows[s], s + 1));
+    }
+    return table;
+}
+
+std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
+    std::string text =
+        "flight,sortie,phase,start_s,end_s,duration_s,samples,mean_power_w,energy_wh,counter_energy_wh,used,"
+        "gaps,"
+        "longest_gap_s,complete,aircraft_id,power_source,error\n";
+    for (const auto& flight : flights) {
+        const auto& record = flight.record;
+        const auto name = csv_cell(record.flight);
+        if (!record.accepted) {
+            text += fmt::format("{},,,,,,,,,,false,,,,,,{}\n", name, csv_cell(record.error));
+            continue;
+        }
+        for (const auto& phase : record.phases) {
+            const auto& statistics = phase.statistics;
+            text += fmt::format(
+                "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},\n", name, phase.sortie,
+                to_string(phase.phase), phase.start_s, phase.end_s, phase.end_s - phase.start_s,
+                statistics.samples, statistics.mean_power_w, statistics.energy_wh,
+                statistics.counter_energy_wh ? fmt::format("{}", *statistics.counter_energy_wh) : "",
+                is_used(flight, phase), statistics.gaps, statistics.longest_gap_s, phase.complete,
+                csv_cell(record.aircraft_id), csv_cell(record.power_source));
+        }
+    }
+    return text;
+}
+
+}  // namespace flightwatt

@@ -1,0 +1,114 @@
+#pragma once
+
+#include "base/error.h"
+#include "base/number.h"
+#include "base/units.h"
+#include "cli/stage.h"
+#include "mechanical/model_fit.h"
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+/// The options of a fit, which fit and batch share.
+namespace flightwatt {
+
+inline void add_fit_options(boost::program_options::options_description& options) {
+    namespace po = boost::program_options;
+    options.add_options()("order", po::value<int>()->value_name("N")->default_value(3),
+                          "order of the Fourier series")(
+        "weights", po::value<std::string>()->value_name("HOW")->default_value("agreement"),
+        "uniform, inverse-variance or agreement")(
+        "weight", po::value<std::vector<std::string>>()->value_name("FLIGHT[:PHASE]=W")->composing(),
+        "a weight by hand; then every flight needs one")(
+        "min-periods", po::value<double>()->value_name("X")->default_value(0.5, "0.5"),
+        "least periods of the series in a phase; fewer make its basis collinear")(
+        "max-periods", po::value<double>()->value_name("X")->default_value(250.0, "250"),
+        "most periods in a phase; the sampling may allow fewer");
+}
+
+/// "FLIGHT=0.4" or "FLIGHT:cruise=0.4".
+inline HandWeight parse_hand_weight(const std::string& text) {
+    const auto equals = text.rfind('=');
+    const auto value = equals == std::string::npos ? std::nullopt : parse_number(text.substr(equals + 1));
+    if (!value)
+        throw UsageError(fmt::format("--weight {}: expected FLIGHT=NUMBER or FLIGHT:PHASE=NUMBER", text));
+    HandWeight weight{text.substr(0, equals), std::nullopt, *value};
+    if (const auto colon = weight.flight.rfind(':'); colon != std::string::npos) {
+        weight.phase = phase_from(weight.flight.substr(colon + 1));
+        if (!weight.phase) {
+            throw UsageError(fmt::format("--weight {}: no phase '{}', expected takeoff, cruise or landing",
+                                         text, weight.flight.substr(colon + 1)));
+        }
+        weight.flight.resize(colon);
+    }
+    return weight;
+}
+
+inline ModelFitOptions read_fit_options(const cli::StageCall& call) {
+    ModelFitOptions options;
+    options.phases.order = call.get<int>("order");
+    options.phases.low_rad = units::rad_from_turns(call.get<double>("min-periods"));
+    options.phases.high_periods = call.get<double>("max-periods");
+    const auto name = call.get<std::string>("weights");
+    const auto weighting = weighting_from(name);
+    if (!weighting || *weighting == Weighting::by_hand) {
+        throw UsageError(fmt::format("--weights {}: expected uniform, inverse-variance or agreement{}", name,
+                                     weighting ? "; give weights by hand with --weight" : ""));
+    }
+    options.weights.weighting = *weighting;
+    if (const auto weights = call.maybe<std::vector<std::string>>("weight")) {
+        options.weights.weighting = Weighting::by_hand;
+        for (const auto& text : *weights) options.weights.by_hand.push_back(parse_hand_weight(text));
+    }
+    return options;
+}
+
+/// The fitted model as the stages' JSON.
+inline nlohmann::ordered_json to_json(const MechanicalModel& model) {
+    using Json = nlohmann::ordered_json;
+    Json json{{"name", model.name},
+              {"weighting", model.weighting},
+              {"phases", Json::object()},
+              {"flights", Json::array()}};
+    for (const auto phase : all_phases) {
+        const auto& fitted = model.phases[phase];
+        auto& entry = json["phases"][std::string(to_string(phase))];
+        entry = {{"duration_s", fitted.duration_s}, {"omega_rad_per_s", fitted.fourier.omega_rad_per_s},
+                 {"a0_w", fitted.fourier.a0_w},     {"cos_w", fitted.fourier.cos_w},
+                 {"sin_w", fitted.fourier.sin_w},   {"rms_w", fitted.rms_w.value_or(0.0)},
+                 {"samples", fitted.samples},       {"flights", fitted.flights}};
+        if (fitted.range) {
+            entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},
+                                           {"high", fitted.range->high_rad},
+                                           {"at_bound", fitted.range->at_bound}};
+        }
+    }
+    for (const auto& flight : model.flights) {
+        Json weights = Json::object();
+        for (const auto phase : all_phases) {
+            const auto& part = flight.phases[phase];
+            weights[std::string(to_string(phase))] = part ? Json(part->weight) : Json();
+        }
+        json["flights"].push_back({{"flight", flight.flight}, {"weights", weights}});
+    }
+    return json;
+}
+
+/// Says where a phase's frequency stands at the edge of what it could be.
+inline void warn_of_bounds(const cli::StageCall& call, const MechanicalModel& model) {
+    for (const auto phase : all_phases) {
+        const auto& fitted = model.phases[phase];
+        if (!fitted.range || fitted.range->at_bound == "none") continue;
+        cli::warn(
+            call,
+            fmt::format("{}: omega * duration stands at its {} bound, {:.3f} rad: the frequency is not "
+                        "determined by the data, the curve is",
+                        to_string(phase), fitted.range->at_bound,
+                        fitted.range->at_bound == "low" ? fitted.range->low_rad : fitted.range->high_rad));
+    }
+}
+
+}  // namespace flightwatt

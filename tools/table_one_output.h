@@ -1,0 +1,29 @@
+#pragma once
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "mechanical/table_one.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace flightwatt {
+
+/// Table I of a model, beside a published one where there is one.
+inline TextTable table_of(const MechanicalModel& model, const std::optional<MechanicalModel>& published) {
+    return published ? table_one_beside(*published, model) : table_one(model);
+}
+
+/// Text, CSV or Markdown, by the file's ending. Throws UsageError for another ending.
+inline std::string table_text(const TextTable& table, const std::filesystem::path& file) {
+    const auto ending = file.extension().string();
+    if (ending == ".txt") return to_text(table);
+    if (ending == ".csv") return to_csv(table);
+    if (ending == ".md") return to_markdown(table);
+    throw UsageError(fmt::format("{}: expected a name that ends in .txt, .csv or .md", file.string()));
+}
+
+}  // namespace flightwatt
