@@ -209,6 +209,9 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     return edges;
 }
 
+/// As the log writes its times.
+double to_millisecond(double time_s) { return std::round(time_s * 1000.0) / 1000.0; }
+
 /// Between the last sample at or before a time and the first one after it; 0 outside of the samples.
 double gap_around_s(const std::vector<double>& sample_s, double time_s) {
     const auto after = std::upper_bound(sample_s.begin(), sample_s.end(), time_s);
@@ -217,7 +220,7 @@ double gap_around_s(const std::vector<double>& sample_s, double time_s) {
 
 PhaseEdge describe_edge(const FlightSeries& series, const FlightGrid& grid, double exact_s) {
     PhaseEdge edge;
-    const double time_s = std::round(exact_s * 1000.0) / 1000.0;  // as the log writes its times
+    const double time_s = to_millisecond(exact_s);
     edge.time_s = time_s;
     const auto nearest = [&](const std::vector<double>& channel) {
         const auto index = std::lround((time_s - grid.begin_s) / grid.step_s);
@@ -261,6 +264,8 @@ Sortie make_sortie(const FlightSeries& series, const FlightGrid& grid, const Act
 }
 
 }  // namespace
+
+double PhaseSpan::duration_s() const { return to_millisecond(end.time_s - start.time_s); }
 
 void validate(const SegmentationOptions& options) {
     const auto require = [](bool good, const char* name, double value, const char* expected) {

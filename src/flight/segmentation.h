@@ -41,7 +41,7 @@ struct PhaseSpan {
     PhaseEdge start;
     PhaseEdge end;
     bool complete = true;  ///< false if the log begins or ends inside of it
-    double duration_s() const { return end.time_s - start.time_s; }
+    double duration_s() const;  ///< rounded to the millisecond, as its edges are
 };
 
 /// From lift-off to touchdown.
