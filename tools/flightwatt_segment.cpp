@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
         po::value<double>()->value_name("X")->default_value(defaults.cruise_fraction, "0.9"),
         "take-off ends and landing begins at this fraction of the height held")(
         "ground-fraction",
-        po::value<double>()->value_name("X")->default_value(defaults.ground_fraction, "0.03"),
+        po::value<double>()->value_name("X")->default_value(defaults.ground_fraction, "0.025"),
         "below this fraction of the flight's height it is on the ground")(
         "flight-height", po::value<double>()->value_name("M")->default_value(defaults.flight_height_m, "10"),
         "what stays below this height [m] is no flight");

@@ -165,6 +165,7 @@ std::vector<std::string> TomlTable::keys() const {
     for (const auto& [key, node] : *table_) placed.emplace_back(key.source().begin, std::string(key.str()));
     std::sort(placed.begin(), placed.end());
     std::vector<std::string> names;
+    names.reserve(placed.size());
     for (auto& [position, name] : placed) names.push_back(std::move(name));
     return names;
 }

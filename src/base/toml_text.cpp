@@ -28,6 +28,7 @@ std::string toml_real(double value) {
 
 std::string toml_reals(const std::vector<double>& values) {
     std::vector<std::string> texts;
+    texts.reserve(values.size());
     for (const double value : values) texts.push_back(toml_real(value));
     return fmt::format("[{}]", fmt::join(texts, ", "));
 }

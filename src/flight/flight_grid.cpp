@@ -29,6 +29,15 @@ Track series_track(const FlightSeries& series, const std::vector<double>& channe
     return channel.empty() ? Track{} : Track{series.time_s, channel};
 }
 
+/// What counts as idle: some airframes never report less than a trimmed or armed idle. Where the speed tells
+/// rest from flight too, the least throttle of the log is taken for that.
+double idle_throttle_percent(const FlightGrid& grid, const SegmentationOptions& options) {
+    if (grid.throttle_percent.empty() || grid.ground_speed_m_per_s.empty())
+        return options.idle_throttle_percent;
+    const double least = *std::min_element(grid.throttle_percent.begin(), grid.throttle_percent.end());
+    return std::max(least, 0.0) + options.idle_throttle_percent;
+}
+
 }  // namespace
 
 FlightGrid make_grid(const FlightSeries& series) {
@@ -58,24 +67,39 @@ FlightGrid make_grid(const FlightSeries& series) {
 }
 
 std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptions& options) {
+    const double idle_percent = idle_throttle_percent(grid, options);
     const auto within = [&](const std::vector<double>& channel, std::size_t i, double limit) {
         return channel.empty() || channel[i] <= limit;
     };
-    const auto window = grid.steps(options.rest_s);
-    std::vector<bool> resting(grid.size(), false);
-    for (std::size_t begin = 0; begin + window < grid.size(); ++begin) {
+    const auto is_still = [&](std::size_t begin, std::size_t end, double height_m) {
         double low = grid.altitude_m[begin];
         double high = low;
-        bool still = true;
-        for (std::size_t i = begin; still && i <= begin + window; ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
             low = std::min(low, grid.altitude_m[i]);
             high = std::max(high, grid.altitude_m[i]);
-            still = high - low <= options.rest_height_m &&
-                    within(grid.throttle_percent, i, options.idle_throttle_percent) &&
-                    within(grid.ground_speed_m_per_s, i, options.rest_speed_m_per_s);
+            if (high - low > height_m || !within(grid.throttle_percent, i, idle_percent) ||
+                !within(grid.ground_speed_m_per_s, i, options.rest_speed_m_per_s)) {
+                return false;
+            }
         }
-        if (!still) continue;
-        std::fill_n(resting.begin() + static_cast<std::ptrdiff_t>(begin), window + 1, true);
+        return true;
+    };
+    std::vector<bool> resting(grid.size(), false);
+    const auto mark = [&](std::size_t begin, std::size_t end) {
+        std::fill(resting.begin() + static_cast<std::ptrdiff_t>(begin),
+                  resting.begin() + static_cast<std::ptrdiff_t>(end), true);
+    };
+    const auto window = grid.steps(options.rest_s) + 1;
+    for (std::size_t begin = 0; begin + window <= grid.size(); ++begin) {
+        if (is_still(begin, begin + window, options.rest_height_m)) mark(begin, begin + window);
+    }
+    // The log may begin just before lift-off or end just after touchdown: there less time does, within less
+    // height.
+    const auto edge = grid.steps(0.3 * options.rest_s) + 1;
+    if (edge <= grid.size()) {
+        if (is_still(0, edge, 0.3 * options.rest_height_m)) mark(0, edge);
+        if (is_still(grid.size() - edge, grid.size(), 0.3 * options.rest_height_m))
+            mark(grid.size() - edge, grid.size());
     }
     std::vector<GridSpan> rests;
     for (std::size_t i = 0; i < grid.size(); ++i) {

@@ -157,7 +157,9 @@ double held_height(Height&& height, std::size_t count, std::size_t hold, double 
         highest[i] = std::max(height(i), i > 0 ? highest[i - 1] : height(0));
     for (std::size_t i = 0; i < count; ++i) {
         const double later = highest[std::min(i + hold, count - 1)];
-        if (highest[i] > 0.3 * top_m && later - highest[i] <= options.hold_fraction * top_m) return later;
+        const bool holds = later - highest[i] <= options.hold_fraction * top_m;
+        // Lower down it waits for the final approach, or trims after the launch.
+        if (holds && highest[i] > 0.5 * top_m) return later;
     }
     return highest[count - 1];
 }

@@ -12,13 +12,13 @@ namespace flightwatt {
 
 /// The few physical thresholds of the segmentation.
 struct SegmentationOptions {
-    double rest_s = 10.0;             ///< an aircraft rests when, for this long, its motor idles and
-    double rest_height_m = 3.0;       ///< its altitude stays within this range
-    double rest_speed_m_per_s = 4.0;  ///< and (where known) it is no faster than someone who carries it
-    double idle_throttle_percent = 5.0;
+    double rest_s = 10.0;                ///< an aircraft rests when, for this long, its motor idles and
+    double rest_height_m = 3.0;          ///< its altitude stays within this range
+    double rest_speed_m_per_s = 4.0;     ///< and (where known) it is no faster than someone who carries it
+    double idle_throttle_percent = 5.0;  ///< idle is up to this (above the log's least, where speed is known)
     double flight_throttle_percent = 20.0;  ///< what rises without ever using as much is no flight
     double flight_height_m = 10.0;          ///< what stays below this is a run-up, a taxi or a hop
-    double ground_fraction = 0.03;          ///< of the flight's height: below, it stands or rolls
+    double ground_fraction = 0.025;         ///< of the flight's height: below, it stands or rolls
     double cruise_fraction = 0.90;          ///< of the height held: there take-off ends and landing begins
     double hold_s = 30.0;                   ///< a height is held when it grows for this long by less than
     double hold_fraction = 0.10;            ///< this fraction of the flight's height
@@ -40,7 +40,7 @@ struct PhaseSpan {
     Phase phase = Phase::cruise;
     PhaseEdge start;
     PhaseEdge end;
-    bool complete = true;  ///< false if the log begins or ends inside of it
+    bool complete = true;       ///< false if the log begins or ends inside of it
     double duration_s() const;  ///< rounded to the millisecond, as its edges are
 };
 

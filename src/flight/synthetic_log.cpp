@@ -72,7 +72,12 @@ std::vector<Report> flight_reports() {
                                 {"pos_y", "float", "m", "", {}},
                                 {"dist_wp", "float", "m", "", {}},
                                 {"dist_home", "float", "m", "", {}},
-                                {"flight_time", "uint16", "s", "", {}}}),
+                                {"flight_time", "uint16", "s", "", {}},
+                                {"block_time", "uint16", "s", "", {}},
+                                {"stage_time", "uint16", "s", "", {}},
+                                {"kill_auto_throttle", "uint8", "bool", "", {}},
+                                {"circle_count", "uint8", "", "", {}},
+                                {"oval_count", "uint8", "", "", {}}}),
          [](const Moment& m) {
              const auto tenths = [](double value) { return ocaml_float(std::round(value * 10.0) / 10.0); };
              return std::vector{std::to_string(m.state.block),
@@ -81,7 +86,12 @@ std::vector<Report> flight_reports() {
                                 tenths(m.state.north_m),
                                 tenths(0.0),
                                 tenths(std::hypot(m.state.east_m, m.state.north_m)),
-                                whole(m.flight_time_s)};
+                                whole(m.flight_time_s),
+                                std::string("0"),
+                                std::string("0"),
+                                std::string(m.state.power_w > 0.0 ? "0" : "1"),
+                                std::string("0"),
+                                std::string("0")};
          }},
         {5.0,
          message("PPRZ_MODE", {{"ap_mode", "uint8", "", "", {}},

@@ -179,6 +179,36 @@ TEST(Segmentation, MarksAFlightThatTheLogEntersOrLeavesInTheAir) {
     EXPECT_FALSE(out.sorties[0].phases[1].complete);
 }
 
+TEST(Segmentation, TakesALowCircleBeforeTheFinalApproachForLanding) {
+    auto points = sortie(100);
+    points.resize(7);
+    points.insert(points.end(), {{431, 98, 20}, {480, 35, 30}, {540, 35, 40}, {560, 0, 0}, {620, 0, 0}});
+    const auto phases = segment(series_of(points));
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    expect_sortie(phases.sorties[0], {101, 127, 437, 558});
+}
+
+TEST(Segmentation, NeedsLittleGroundAtTheEndsOfTheLog) {
+    auto points = sortie(100);
+    points.front() = {94, 0, 0};
+    points.back() = {475, 0.2, 0};
+    const auto phases = segment(series_of(points));
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    expect_sortie(phases.sorties[0], plain);
+}
+
+TEST(Segmentation, KnowsAnArmedIdleByTheSpeed) {
+    auto series = series_of(sortie(100));
+    for (auto& throttle : series.throttle_percent) throttle = std::max(throttle, 12.0);
+    series.ground_speed_m_per_s.assign(series.time_s.size(), 0.3);
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        if (series.time_s[i] > 100 && series.time_s[i] < 470) series.ground_speed_m_per_s[i] = 13.0;
+    }
+    const auto phases = segment(series);
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    expect_sortie(phases.sorties[0], plain);
+}
+
 TEST(Segmentation, WorksThroughGapsAndSpikes) {
     auto series = series_of(sortie(100));
     const auto drop = [&](double from, double to) {
