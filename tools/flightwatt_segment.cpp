@@ -2,68 +2,14 @@
 
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
-#include "flight/phase_statistics.h"
-#include "flight/segmentation.h"
+#include "segment_explanation.h"
+#include "segment_json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace {
 
 using namespace flightwatt;
-using Json = nlohmann::ordered_json;
-
-template <typename T>
-Json optional_json(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
-Json edge_json(const PhaseEdge& edge) {
-    return {{"altitude_m", edge.altitude_m},
-            {"gap_s", edge.gap_s},
-            {"throttle_percent", optional_json(edge.throttle_percent)},
-            {"mode", optional_json(edge.mode)},
-            {"block", optional_json(edge.block)},
-            {"takeoff_message_after_s", optional_json(edge.takeoff_after_s)}};
-}
-
-Json sortie_json(const FlightSeries& series, const Sortie& sortie) {
-    Json phases = Json::array();
-    for (const auto& span : sortie.phases) {
-        const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
-        phases.push_back({{"phase", to_string(span.phase)},
-                          {"start_s", span.start.time_s},
-                          {"end_s", span.end.time_s},
-                          {"duration_s", span.duration_s()},
-                          {"samples", statistics.samples},
-                          {"mean_power_w", statistics.mean_power_w},
-                          {"energy_wh", statistics.energy_wh},
-                          {"counter_energy_wh", optional_json(statistics.counter_energy_wh)},
-                          {"gaps", statistics.gaps},
-                          {"longest_gap_s", statistics.longest_gap_s},
-                          {"complete", span.complete},
-                          {"evidence", {{"start", edge_json(span.start)}, {"end", edge_json(span.end)}}}});
-    }
-    return {
-        {"ground_altitude_m", sortie.ground_altitude_m}, {"height_m", sortie.height_m}, {"phases", phases}};
-}
-
-Json flight_json(const FlightSeries& series, const FlightPhases& phases) {
-    Json sorties = Json::array();
-    for (const auto& sortie : phases.sorties) sorties.push_back(sortie_json(series, sortie));
-    Json others = Json::array();
-    for (const auto& other : phases.others) {
-        others.push_back({{"start_s", other.start_s}, {"end_s", other.end_s}, {"what", other.what}});
-    }
-    auto warnings = series.warnings;
-    warnings.insert(warnings.end(), phases.warnings.begin(), phases.warnings.end());
-    return {{"flight", series.flight},
-            {"aircraft_id", series.aircraft_id},
-            {"power_source", series.power_source},
-            {"sorties", sorties},
-            {"not_flights", others},
-            {"warnings", warnings}};
-}
 
 int segment_flight(const cli::StageCall& call) {
     const auto& file = call.inputs.front();
@@ -72,6 +18,9 @@ int segment_flight(const cli::StageCall& call) {
     options.cruise_fraction = call.get<double>("cruise-fraction");
     options.ground_fraction = call.get<double>("ground-fraction");
     options.flight_height_m = call.get<double>("flight-height");
+    options.rest_s = call.get<double>("rest");
+    options.hold_s = call.get<double>("hold");
+    options.idle_throttle_percent = call.get<double>("idle-throttle");
     const auto phases = segment(series, options);
     require_sortie(series, phases, file);
     for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
@@ -80,8 +29,17 @@ int segment_flight(const cli::StageCall& call) {
         cli::note(call, fmt::format("{}: no flight from {:.0f} to {:.0f} s: {}", file, other.start_s,
                                     other.end_s, other.what));
     }
-    cli::write_result(call, phases_csv(series, phases));
-    if (call.json) cli::print(flight_json(series, phases).dump(2) + "\n");
+    const auto power = examine_power(series, phases);
+    for (const auto& absurdity : power.absurdities) {
+        cli::warn(call, fmt::format("{}: absurd power record: {}", file, absurdity));
+    }
+    const bool explain = call.has("explain");
+    if (!explain || call.output) cli::write_result(call, phases_csv(series, phases));
+    if (call.json) {
+        cli::print(to_json(series, phases, power).dump(2) + "\n");
+    } else if (explain) {
+        cli::print(explanation(series, phases, power));
+    }
     return cli::ok;
 }
 
@@ -99,8 +57,16 @@ int main(int argc, char** argv) {
         "touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide "
         "nothing.";
     stage.max_inputs = 1;
-    stage.options.add_options()("aircraft", po::value<std::string>()->value_name("ID"),
-                                "the aircraft to read, where several flew")(
+    stage.options.add_options()("explain",
+                                "show the reasons for each edge, and what the power record is worth")(
+        "rest", po::value<double>()->value_name("S")->default_value(defaults.rest_s, "10"),
+        "an aircraft that keeps its height so long [s] with its motor idling is at rest")(
+        "hold", po::value<double>()->value_name("S")->default_value(defaults.hold_s, "30"),
+        "a height that grows by less than a tenth of the flight's in this time [s] is held")(
+        "idle-throttle",
+        po::value<double>()->value_name("P")->default_value(defaults.idle_throttle_percent, "5"),
+        "up to this throttle [%] the motor idles")("aircraft", po::value<std::string>()->value_name("ID"),
+                                                   "the aircraft to read, where several flew")(
         "cruise-fraction",
         po::value<double>()->value_name("X")->default_value(defaults.cruise_fraction, "0.9"),
         "take-off ends and landing begins at this fraction of the height held")(

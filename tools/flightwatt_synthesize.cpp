@@ -7,10 +7,12 @@
 #include "mechanical/flight_spread.h"
 #include "mechanical/mechanical_model.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <random>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace {
@@ -37,46 +39,91 @@ SyntheticFlight make_flight(const PerPhase<PhaseModel>& phases, std::mt19937_64&
     return flight;
 }
 
-std::string truth_csv(const SyntheticFlight& flight) {
-    std::string text = "phase,start_s,end_s\n";
-    for (const auto phase : all_phases) {
-        text += fmt::format("{},{},{}\n", to_string(phase), flight.start_s(phase), flight.end_s(phase));
+/// The phases that the log shows, cut where it begins and ends.
+std::string truth_csv(const SyntheticScenario& scenario) {
+    std::string text = "sortie,phase,start_s,end_s,complete\n";
+    for (std::size_t s = 0; s < scenario.flights.size(); ++s) {
+        const auto& flight = scenario.flights[s];
+        for (const auto phase : all_phases) {
+            const double start_s = std::max(flight.start_s(phase), scenario.begin_s);
+            const double end_s = std::min(flight.end_s(phase), scenario.end_s);
+            if (end_s <= start_s) continue;
+            const bool complete = start_s == flight.start_s(phase) && end_s == flight.end_s(phase);
+            text += fmt::format("{},{},{},{},{}\n", s + 1, to_string(phase), start_s, end_s, complete);
+        }
     }
     return text;
 }
 
-int synthesize(const cli::StageCall& call) {
-    const auto count = call.get<unsigned>("flights");
-    const auto seed = call.get<std::uint64_t>("seed");
-    const auto spread = call.get<double>("spread");
-    if (count == 0) throw UsageError("--flights is 0, expected at least 1");
-    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
-    if (!(spread >= 0.0)) throw UsageError(fmt::format("--spread is {}, expected 0 or more", spread));
+/// The hazards asked for: none, one by its name, or all.
+std::vector<std::pair<std::string, Hazard>> chosen_hazards(const std::string& name) {
+    if (name == "none") return {{"", Hazard::none}};
+    if (name == "all") return hazards();
+    std::vector<std::string> names{"none", "all"};
+    for (const auto& known : hazards()) {
+        if (known.first == name) return {known};
+        names.push_back(known.first);
+    }
+    throw UsageError(fmt::format("--hazard {}: expected {}", name, fmt::join(names, ", ")));
+}
+
+/// What one made-up log is of, for its names.
+struct LogIdentity {
+    std::string name;
+    std::string made_by;
+};
+
+/// Writes NAME.log, NAME.data and, if asked for, NAME.truth.csv; returns the log's size in bytes.
+std::size_t write_log(const cli::StageCall& call, const SyntheticScenario& scenario,
+                      const LogIdentity& identity, std::uint64_t seed) {
     SyntheticSensors sensors;
     sensors.current_noise_a = call.get<double>("current-noise");
-    if (!(sensors.current_noise_a >= 0.0))
-        throw UsageError("--current-noise is negative, expected 0 A or more");
+    const auto log = make_synthetic_log(scenario, sensors, identity.name, identity.made_by, seed);
+    const auto stem = std::filesystem::path(*call.output) / identity.name;
+    write_file_atomically(stem.string() + ".log", log.log);
+    write_file_atomically(stem.string() + ".data", log.data);
+    if (call.has("truth")) write_file_atomically(stem.string() + ".truth.csv", truth_csv(scenario));
+    if (!call.json) {
+        cli::note(call, fmt::format("{}: synthetic log of {:.0f} s", stem.string(),
+                                    scenario.end_s - scenario.begin_s));
+    }
+    return log.data.size() + log.log.size();
+}
+
+void check_options(const cli::StageCall& call) {
+    if (call.get<unsigned>("flights") == 0) throw UsageError("--flights is 0, expected at least 1");
+    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
+    for (const auto* option : {"spread", "current-noise"}) {
+        const auto value = call.get<double>(option);
+        if (!(value >= 0.0)) throw UsageError(fmt::format("--{} is {}, expected 0 or more", option, value));
+    }
+}
+
+int synthesize(const cli::StageCall& call) {
+    check_options(call);
+    const auto count = call.get<unsigned>("flights");
+    const auto seed = call.get<std::uint64_t>("seed");
+    const auto hazard_list = chosen_hazards(call.get<std::string>("hazard"));
     const auto model = read_mechanical_model(call.inputs.front());
-    const std::filesystem::path folder = *call.output;
-    make_directories(folder);
-    SpreadOptions spread_options;
-    spread_options.bands = spread;
-    const auto flights = draw_flights(model, count, seed, spread_options);
+    make_directories(*call.output);
+    SpreadOptions spread;
+    spread.bands = call.get<double>("spread");
+    const auto flights = draw_flights(model, count, seed, spread);
     nlohmann::ordered_json written = nlohmann::ordered_json::array();
     for (unsigned i = 0; i < count; ++i) {
-        const auto name = fmt::format("{}_{:02}", call.get<std::string>("name"), i + 1);
         std::mt19937_64 random(seed + 1000 * (i + 1));
         const auto flight = make_flight(flights[i], random);
-        const auto made_by = fmt::format("Made by flightwatt synthesize: model {}, flight {} of {}, seed {}.",
-                                         model.name, i + 1, count, seed);
-        const auto log = make_synthetic_log(flight, sensors, name, made_by, random());
-        write_file_atomically(folder / (name + ".log"), log.log);
-        write_file_atomically(folder / (name + ".data"), log.data);
-        if (call.has("truth")) write_file_atomically(folder / (name + ".truth.csv"), truth_csv(flight));
-        written.push_back({{"flight", name}, {"bytes", log.data.size() + log.log.size()}});
-        if (!call.json)
-            cli::note(call, fmt::format("{}: synthetic flight of {:.0f} s", (folder / name).string(),
-                                        flight.log_end_s()));
+        const auto log_seed = random();
+        for (const auto& [hazard_name, hazard] : hazard_list) {
+            LogIdentity identity;
+            identity.name = fmt::format("{}_{:02}{}{}", call.get<std::string>("name"), i + 1,
+                                        hazard_name.empty() ? "" : "_", hazard_name);
+            identity.made_by = fmt::format(
+                "Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
+                count, seed, hazard_name.empty() ? "" : ", hazard ", hazard_name);
+            const auto bytes = write_log(call, scenario_with(flight, hazard), identity, log_seed);
+            written.push_back({{"flight", identity.name}, {"bytes", bytes}});
+        }
     }
     if (call.json) cli::print(nlohmann::ordered_json{{"flights", written}}.dump(2) + "\n");
     return cli::ok;
@@ -106,6 +153,11 @@ int main(int argc, char** argv) {
         "current-noise",
         po::value<double>()->value_name("A")->default_value(SyntheticSensors{}.current_noise_a, "0.001"),
         "noise of the current sensor, as a standard deviation")(
-        "truth", "write the true phases beside each log, as NAME.truth.csv");
+        "truth", "write the true phases beside each log, as NAME.truth.csv")(
+        "hazard", po::value<std::string>()->value_name("NAME")->default_value("none"),
+        "something that real logs do and that must not fool the segmentation: "
+        "estimator-starts-at-zero, dives-in-cruise, power-burst-after-landing, "
+        "throttle-burst-before-touchdown, two-sorties, begins-in-the-air, ends-in-the-air, or all, a log "
+        "each");
     return cli::run_stage(argc, argv, stage, synthesize);
 }

@@ -42,7 +42,9 @@ struct FlightSeries {
     std::vector<double> ground_speed_m_per_s;
 
     std::map<std::string, std::string> sources;  ///< channel name to the message and field it came from
-    std::string power_source;                    ///< "ENERGY.power", "ENERGY.voltage * ENERGY.current", ...
+    std::string current_origin =
+        "unknown";             ///< "measured by a sensor", "computed from throttle" or "unknown"
+    std::string power_source;  ///< "ENERGY.power", "ENERGY.voltage * ENERGY.current", ...
 
     /// Altitude and speed on their own, faster clocks; empty in a series read from CSV.
     Track altitude_track;

@@ -44,24 +44,28 @@ double usual_interval_s(const FlightSeries& series) {
     return *middle;
 }
 
-double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s) {
-    const auto& time_s = series.time_s;
-    const auto at = [&](double t) { return interpolated(time_s, series.power_w, t); };
-    double energy_j = 0.0;
+double gap_threshold_s(const FlightSeries& series) { return 3.0 * usual_interval_s(series); }
+
+double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s,
+                  double end_s) {
+    double integral = 0.0;
     double last_s = start_s;
-    double last_w = at(start_s);
+    double last = interpolated(time_s, values, start_s);
     for (auto i = first_at_or_after(time_s, start_s); i < time_s.size() && time_s[i] < end_s; ++i) {
-        energy_j += 0.5 * (last_w + series.power_w[i]) * (time_s[i] - last_s);
+        integral += 0.5 * (last + values[i]) * (time_s[i] - last_s);
         last_s = time_s[i];
-        last_w = series.power_w[i];
+        last = values[i];
     }
-    energy_j += 0.5 * (last_w + at(end_s)) * (end_s - last_s);
-    return units::wh_from_joule(energy_j);
+    return integral + 0.5 * (last + interpolated(time_s, values, end_s)) * (end_s - last_s);
+}
+
+double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s) {
+    return units::wh_from_joule(integrated(series.time_s, series.power_w, start_s, end_s));
 }
 
 PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s) {
     PhaseStatistics statistics;
-    const double gap_s = 3.0 * usual_interval_s(series);
+    const double gap_s = gap_threshold_s(series);
     double last_s = start_s;
     const auto count_gap = [&](double until_s) {
         const double interval_s = until_s - last_s;

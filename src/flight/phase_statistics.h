@@ -26,6 +26,13 @@ PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, dou
 /// Energy [Wh] of the series' power between two times: trapezoids, the ends interpolated.
 double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s);
 
+/// Integral of any channel over time between two times, linear between samples [channel * s].
+double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s,
+                  double end_s);
+
+/// A longer interval without a power sample is a gap: three usual ones [s].
+double gap_threshold_s(const FlightSeries& series);
+
 /// Median interval of the power samples [s].
 double usual_interval_s(const FlightSeries& series);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace flightwatt {
 namespace {
@@ -16,9 +17,31 @@ constexpr double motor_off_after_s = 3.0;
 constexpr double hand_over_s = 1.5;  // from one phase's power to the next one's
 constexpr double run_up_s = 4.0;
 constexpr double run_up_power_w = 35.0;
+constexpr double full_power_w = 95.0;
+constexpr double dive_part = 0.7;  // of the height
+constexpr double dive_down_s = 8.0;
+constexpr double dive_low_s = 5.0;
+constexpr double dive_up_s = 20.0;
+constexpr double estimator_climb_s = 15.0;
 constexpr double settling_s = 4.0;     // how slowly the climb ends in the cruise height
 constexpr double oscillation = 0.008;  // of the height, while the autopilot holds it
 constexpr double oscillation_period_s = 47.0;
+
+/// Propeller power grows about with the cube of its speed.
+double throttle_for(double power_w) {
+    return 100.0 * std::cbrt(std::clamp(power_w / full_power_w, 0.0, 1.0));
+}
+
+/// How far a dive takes the aircraft down at `time_s`, as a part of its height.
+double dive_depth(const SyntheticFlight& flight, double time_s) {
+    for (const double start_s : flight.dives_s) {
+        const double since_s = time_s - start_s;
+        if (since_s < 0.0 || since_s > dive_down_s + dive_low_s + dive_up_s) continue;
+        return dive_part * std::min({since_s / dive_down_s, 1.0,
+                                     (dive_down_s + dive_low_s + dive_up_s - since_s) / dive_up_s});
+    }
+    return 0.0;
+}
 
 /// Height above the ground. Phases begin and end where the segmentation's definitions put them: take-off at
 /// its fraction of the height for the ground and at that of the height held, which the oscillation raises.
@@ -46,7 +69,31 @@ double height_m(const SyntheticFlight& flight, double time_s) {
     } else {
         fraction = ground * std::clamp(1.0 - (time_s - touchdown) / flare_s, 0.0, 1.0);
     }
-    return fraction * flight.height_m;
+    return (fraction - dive_depth(flight, time_s)) * flight.height_m;
+}
+
+/// The motor while something unusual goes on: power and throttle.
+struct Motor {
+    double power_w;
+    double throttle_percent;
+};
+
+std::optional<Motor> unusual_motor(const SyntheticFlight& flight, double time_s) {
+    constexpr Motor off{0.0, 0.0};
+    for (const double start_s : flight.dives_s) {
+        const double since_s = time_s - start_s;
+        if (since_s >= 0.0 && since_s < dive_down_s) return off;
+        if (since_s >= dive_down_s && since_s < dive_down_s + dive_low_s + dive_up_s)
+            return Motor{full_power_w, 100.0};
+    }
+    const double landed_s = time_s - flight.end_s(Phase::landing);
+    if (flight.power_burst_after_landing && landed_s > 15.0 && landed_s < 18.0) return Motor{40.0, 0.0};
+    if (flight.throttle_burst_before_touchdown && landed_s > -flight.duration_s[Phase::landing] &&
+        landed_s < 0.0) {
+        const bool burst = landed_s > -9.0 && landed_s < -3.0;
+        return burst ? Motor{20.0, throttle_for(20.0)} : off;
+    }
+    return std::nullopt;
 }
 
 double power_w_at(const SyntheticFlight& flight, double time_s) {
@@ -68,12 +115,6 @@ double power_w_at(const SyntheticFlight& flight, double time_s) {
            (1.0 - from_climb - to_landing) * phase_power_w(Phase::cruise);
 }
 
-/// Propeller power grows about with the cube of its speed.
-double throttle_for(double power_w) {
-    constexpr double full_power_w = 95.0;
-    return 100.0 * std::cbrt(std::clamp(power_w / full_power_w, 0.0, 1.0));
-}
-
 }  // namespace
 
 double SyntheticFlight::start_s(Phase phase) const {
@@ -92,8 +133,12 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     state.altitude_m = flight.ground_altitude_m + height;
     state.climb_m_per_s = (height_m(flight, time_s + half_step_s) - height_m(flight, time_s - half_step_s)) /
                           (2.0 * half_step_s);
-    state.power_w = power_w_at(flight, time_s);
-    state.throttle_percent = throttle_for(state.power_w);
+    const double usual_w = power_w_at(flight, time_s);
+    const auto motor = unusual_motor(flight, time_s).value_or(Motor{usual_w, throttle_for(usual_w)});
+    state.power_w = motor.power_w;
+    state.throttle_percent = motor.throttle_percent;
+    const double fixed = std::clamp((time_s - flight.estimator_fix_s) / estimator_climb_s, 0.0, 1.0);
+    state.estimated_altitude_m = flight.estimator_fix_s > 0.0 ? fixed * state.altitude_m : state.altitude_m;
     state.airborne = time_s >= flight.lift_off_s && time_s < flight.end_s(Phase::landing);
     const double flown_s =
         std::clamp(time_s, flight.lift_off_s, flight.end_s(Phase::landing)) - flight.lift_off_s;
@@ -121,6 +166,47 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     if (time_s > flight.end_s(Phase::takeoff)) state.block = 5;
     if (time_s > flight.start_s(Phase::landing)) state.block = 6;
     return state;
+}
+
+SyntheticScenario plain_scenario(const SyntheticFlight& flight) {
+    return {{flight}, 8.0, flight.log_end_s()};
+}
+
+const std::vector<std::pair<std::string, Hazard>>& hazards() {
+    static const std::vector<std::pair<std::string, Hazard>> all{
+        {"estimator-starts-at-zero", Hazard::estimator_starts_at_zero},
+        {"dives-in-cruise", Hazard::dives_in_cruise},
+        {"power-burst-after-landing", Hazard::power_burst_after_landing},
+        {"throttle-burst-before-touchdown", Hazard::throttle_burst_before_touchdown},
+        {"two-sorties", Hazard::two_sorties},
+        {"begins-in-the-air", Hazard::begins_in_the_air},
+        {"ends-in-the-air", Hazard::ends_in_the_air},
+    };
+    return all;
+}
+
+SyntheticScenario scenario_with(SyntheticFlight flight, Hazard hazard) {
+    const double cruise_s = flight.duration_s[Phase::cruise];
+    if (hazard == Hazard::estimator_starts_at_zero) flight.estimator_fix_s = 12.0;
+    if (hazard == Hazard::power_burst_after_landing) flight.power_burst_after_landing = true;
+    if (hazard == Hazard::throttle_burst_before_touchdown) flight.throttle_burst_before_touchdown = true;
+    if (hazard == Hazard::dives_in_cruise) {
+        for (const double part : {0.2, 0.5, 0.55, 0.8}) {
+            flight.dives_s.push_back(flight.start_s(Phase::cruise) + part * cruise_s);
+        }
+    }
+    auto scenario = plain_scenario(flight);
+    const double middle_s = flight.start_s(Phase::cruise) + 0.5 * cruise_s;
+    if (hazard == Hazard::begins_in_the_air) scenario.begin_s = middle_s;
+    if (hazard == Hazard::ends_in_the_air) scenario.end_s = middle_s;
+    if (hazard == Hazard::two_sorties) {
+        const double later_s = scenario.end_s + 20.0;
+        flight.motor_run_up_s += later_s;
+        flight.lift_off_s += later_s;
+        scenario.flights.push_back(flight);
+        scenario.end_s = flight.log_end_s();
+    }
+    return scenario;
 }
 
 }  // namespace flightwatt

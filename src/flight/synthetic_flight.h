@@ -3,7 +3,7 @@
 #include "flight/flight_phases.h"
 
 #include <functional>
-#include <string>
+#include <vector>
 
 namespace flightwatt {
 
@@ -20,6 +20,10 @@ struct SyntheticFlight {
     double airspeed_m_per_s = 13.0;
     double wind_east_m_per_s = 2.0;
     double wind_north_m_per_s = -1.0;
+    std::vector<double> dives_s;   ///< in cruise: down to a third of the height and up again
+    double estimator_fix_s = 0.0;  ///< until then the estimator reads 0, then it climbs to the truth
+    bool power_burst_after_landing = false;        ///< without throttle
+    bool throttle_burst_before_touchdown = false;  ///< at the end of a glide with the motor off
     /// Power [W] of a phase at tau in [0, 1] of it.
     std::function<double(Phase phase, double tau)> power_w;
 
@@ -41,8 +45,37 @@ struct SyntheticState {
     int mode = 0;
     int block = 0;
     bool airborne = false;
+    double estimated_altitude_m = 0.0;  ///< what the estimator makes of it, without noise
 };
 
 SyntheticState state_at(const SyntheticFlight& flight, double time_s);
+
+/// What a log holds: flights one after the other (their times are the log's), and where it begins and ends.
+struct SyntheticScenario {
+    std::vector<SyntheticFlight> flights;
+    double begin_s = 8.0;  ///< the server's clock starts before the first message comes in
+    double end_s = 0.0;
+};
+
+/// One flight from ground to ground.
+SyntheticScenario plain_scenario(const SyntheticFlight& flight);
+
+/// Things that real logs do and that must not fool the segmentation.
+enum class Hazard {
+    none,
+    estimator_starts_at_zero,
+    dives_in_cruise,
+    power_burst_after_landing,
+    throttle_burst_before_touchdown,
+    two_sorties,
+    begins_in_the_air,
+    ends_in_the_air,
+};
+
+/// All but none, with their names on the command line.
+const std::vector<std::pair<std::string, Hazard>>& hazards();
+
+/// The scenario of a flight with a hazard.
+SyntheticScenario scenario_with(SyntheticFlight flight, Hazard hazard);
 
 }  // namespace flightwatt

@@ -18,7 +18,6 @@ constexpr double tick_s = 0.05;
 constexpr auto aircraft_id = "7";
 constexpr double reference_east_m = 588000.0;
 constexpr double reference_north_m = 6148000.0;
-constexpr double log_begin_s = 8.0;  // the server's clock starts before the first message comes in
 
 /// Everything that a message can tell at one moment.
 struct Moment {
@@ -182,13 +181,13 @@ double rest_voltage_v(double charge_ah, double capacity_ah) { return 12.5 - 1.4 
 /// Sensors and counters, stepped through the flight.
 class Simulation {
   public:
-    Simulation(const SyntheticFlight& flight, const SyntheticSensors& sensors, std::mt19937_64& random)
-        : flight_(flight), sensors_(sensors), random_(random) {}
+    Simulation(const SyntheticSensors& sensors, std::mt19937_64& random)
+        : sensors_(sensors), random_(random) {}
 
-    Moment step(double time_s) {
+    Moment step(const SyntheticFlight& flight, double time_s) {
         Moment moment;
         moment.time_s = time_s;
-        moment.state = state_at(flight_, time_s);
+        moment.state = state_at(flight, time_s);
         const double rest_v = rest_voltage_v(charge_ah_, sensors_.pack_capacity_ah);
         const double true_current_a = moment.state.power_w / rest_v;
         moment.voltage_v = rest_v - sensors_.pack_resistance_ohm * true_current_a;
@@ -200,8 +199,8 @@ class Simulation {
         moment.energy_wh = energy_wh_;
         const double noisy_a = current_a + idle_a(moment) + sensors_.current_noise_a * normal_(random_);
         moment.current_a = std::round(noisy_a / sensors_.current_step_a) * sensors_.current_step_a;
-        moment.altitude_m = moment.state.altitude_m + sensors_.altitude_noise_m * normal_(random_);
-        moment.flight_time_s = std::max(0.0, time_s - flight_.lift_off_s);
+        moment.altitude_m = moment.state.estimated_altitude_m + sensors_.altitude_noise_m * normal_(random_);
+        moment.flight_time_s = std::max(0.0, time_s - flight.lift_off_s);
         return moment;
     }
 
@@ -210,7 +209,6 @@ class Simulation {
         return moment.state.power_w > 0.0 ? 0.0 : sensors_.idle_current_a;
     }
 
-    const SyntheticFlight& flight_;
     const SyntheticSensors& sensors_;
     std::mt19937_64& random_;
     std::normal_distribution<double> normal_{0.0, 1.0};
@@ -266,26 +264,35 @@ std::string log_document(const SyntheticFlight& flight, const std::vector<Report
 
 }  // namespace
 
-SyntheticLog make_synthetic_log(const SyntheticFlight& flight, const SyntheticSensors& sensors,
+SyntheticLog make_synthetic_log(const SyntheticScenario& scenario, const SyntheticSensors& sensors,
                                 const std::string& name, const std::string& made_by, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     auto reports = flight_reports();
     for (auto& report : other_reports()) reports.push_back(std::move(report));
-    Simulation simulation(flight, sensors, random);
+    Simulation simulation(sensors, random);
     LossyLink link(sensors.lost_fraction, random);
     std::vector<double> due_s;
-    for (std::size_t i = 0; i < reports.size(); ++i)
-        due_s.push_back(log_begin_s + 0.05 * static_cast<double>(i));
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        due_s.push_back(scenario.begin_s + tick_s * static_cast<double>(i));
+    }
     SyntheticLog log;
-    log.data = data_line(log_begin_s, "ground", "INFO_MSG",
+    log.data = data_line(scenario.begin_s, "ground", "INFO_MSG",
                          {fmt::format("\"SYNTHETIC: no aircraft flew this. {}\"", made_by)});
-    bool takeoff_sent = false;
-    const auto ticks = static_cast<std::size_t>(flight.log_end_s() / tick_s);
+    std::size_t current = 0;
+    bool takeoff_sent = false;  // of the current flight
+    const auto ticks = static_cast<std::size_t>(scenario.end_s / tick_s);
     for (std::size_t tick = 0; tick <= ticks; ++tick) {
         const double time_s = static_cast<double>(tick) * tick_s;
-        const auto moment = simulation.step(time_s);
+        if (time_s > scenario.flights[current].log_end_s() && current + 1 < scenario.flights.size()) {
+            ++current;
+            takeoff_sent = false;
+        }
+        const auto& flight = scenario.flights[current];
+        const auto moment = simulation.step(flight, time_s);  // the counters count before the log begins, too
         if (!takeoff_sent && moment.state.airborne) {
-            log.data += data_line(time_s, aircraft_id, "TAKEOFF", {whole(time_s - log_begin_s)});
+            const bool logged = time_s >= scenario.begin_s;
+            if (logged)
+                log.data += data_line(time_s, aircraft_id, "TAKEOFF", {whole(time_s - scenario.begin_s)});
             takeoff_sent = true;
         }
         const bool far_off =
@@ -297,7 +304,7 @@ SyntheticLog make_synthetic_log(const SyntheticFlight& flight, const SyntheticSe
             log.data += data_line(time_s, aircraft_id, reports[i].definition.name, reports[i].fields(moment));
         }
     }
-    log.log = log_document(flight, reports, name, made_by);
+    log.log = log_document(scenario.flights.front(), reports, name, made_by);
     return log;
 }
 

@@ -24,9 +24,9 @@ struct SyntheticLog {
     std::string log;
 };
 
-/// Plays a flight through sensors and a lossy link. `name` is the file's name without ending; `made_by`
+/// Plays a scenario through sensors and a lossy link. `name` is the file's name without ending; `made_by`
 /// stands in both files, which say that they are synthetic. The same seed gives the same log.
-SyntheticLog make_synthetic_log(const SyntheticFlight& flight, const SyntheticSensors& sensors,
+SyntheticLog make_synthetic_log(const SyntheticScenario& scenario, const SyntheticSensors& sensors,
                                 const std::string& name, const std::string& made_by, std::uint64_t seed);
 
 }  // namespace flightwatt

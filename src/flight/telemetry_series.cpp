@@ -181,7 +181,9 @@ void add_configuration(FlightSeries& series, const TelemetryLog& log) {
         series.sources.at("altitude_m").starts_with("ROTORCRAFT_FP")) {
         series.ground_altitude_m = 0.0;  // its heights are above the reference on the ground
     }
+    if (aircraft.current_origin == CurrentOrigin::sensor) series.current_origin = "measured by a sensor";
     if (aircraft.current_origin == CurrentOrigin::throttle) {
+        series.current_origin = "computed from throttle";
         series.warnings.emplace_back(
             "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: its current was computed "
             "from "

@@ -4,6 +4,8 @@
 #include "flight/telemetry_series.h"
 #include "telemetry/log_writer.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace flightwatt {
@@ -23,7 +25,8 @@ FlightSeries read_back(const SyntheticLog& log) {
 TEST(SyntheticLog, IsReadAndSegmentedAsItWasFlown) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const auto flight = flight_at(27.0);
-        const auto series = read_back(make_synthetic_log(flight, {}, "x", "Made by a test.", seed));
+        const auto series =
+            read_back(make_synthetic_log(plain_scenario(flight), {}, "x", "Made by a test.", seed));
         EXPECT_TRUE(series.warnings.empty());
         const auto phases = segment(series);
         ASSERT_EQ(phases.sorties.size(), 1u) << "seed " << seed;
@@ -36,12 +39,50 @@ TEST(SyntheticLog, IsReadAndSegmentedAsItWasFlown) {
     }
 }
 
+/// The phases that a scenario's log shows, cut where it begins and ends.
+std::vector<std::vector<std::pair<double, double>>> truth_of(const SyntheticScenario& scenario) {
+    std::vector<std::vector<std::pair<double, double>>> sorties;
+    for (const auto& flight : scenario.flights) {
+        auto& phases = sorties.emplace_back();
+        for (const auto phase : all_phases) {
+            const double start_s = std::max(flight.start_s(phase), scenario.begin_s);
+            const double end_s = std::min(flight.end_s(phase), scenario.end_s);
+            if (end_s > start_s) phases.emplace_back(start_s, end_s);
+        }
+    }
+    return sorties;
+}
+
+TEST(SyntheticLog, HazardsDoNotFoolTheSegmentation) {
+    for (const auto& [name, hazard] : hazards()) {
+        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+            SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+            const auto scenario = scenario_with(flight_at(27.0), hazard);
+            const auto series = read_back(make_synthetic_log(scenario, {}, "x", "", seed));
+            const auto phases = segment(series);
+            const auto truth = truth_of(scenario);
+            ASSERT_EQ(phases.sorties.size(), truth.size());
+            for (std::size_t s = 0; s < truth.size(); ++s) {
+                const auto& spans = phases.sorties[s].phases;
+                ASSERT_EQ(spans.size(), truth[s].size());
+                for (std::size_t p = 0; p < spans.size(); ++p) {
+                    EXPECT_NEAR(spans[p].start.time_s, truth[s][p].first, 3.0) << to_string(spans[p].phase);
+                    EXPECT_NEAR(spans[p].end.time_s, truth[s][p].second, 3.0) << to_string(spans[p].phase);
+                    const bool cut =
+                        truth[s][p].first == scenario.begin_s || truth[s][p].second == scenario.end_s;
+                    EXPECT_EQ(spans[p].complete, !cut) << to_string(spans[p].phase);
+                }
+            }
+        }
+    }
+}
+
 TEST(SyntheticLog, MeasuresThePowerThatWasFlown) {
     SyntheticSensors sensors;
     sensors.lost_fraction = 0.0;
     sensors.current_noise_a = 0.0;
     const auto flight = flight_at(27.0);
-    const auto series = read_back(make_synthetic_log(flight, sensors, "x", "", 1));
+    const auto series = read_back(make_synthetic_log(plain_scenario(flight), sensors, "x", "", 1));
     for (std::size_t i = 0; i < series.time_s.size(); ++i) {
         if (series.time_s[i] < flight.lift_off_s || series.time_s[i] > flight.end_s(Phase::landing)) continue;
         EXPECT_NEAR(series.power_w[i], 27.0, 0.04);
@@ -53,17 +94,19 @@ TEST(SyntheticLog, LosesLinesAtTheRateAskedFor) {
     whole.lost_fraction = 0.0;
     SyntheticSensors lossy;
     lossy.lost_fraction = 0.3;
-    const auto all = make_synthetic_log(flight_at(27.0), whole, "x", "", 1).data.size();
-    const auto kept = make_synthetic_log(flight_at(27.0), lossy, "x", "", 1).data.size();
+    const auto all = make_synthetic_log(plain_scenario(flight_at(27.0)), whole, "x", "", 1).data.size();
+    const auto kept = make_synthetic_log(plain_scenario(flight_at(27.0)), lossy, "x", "", 1).data.size();
     EXPECT_NEAR(static_cast<double>(kept) / static_cast<double>(all), 0.7, 0.1);
 }
 
 TEST(SyntheticLog, SaysThatItIsSyntheticAndRepeatsItself) {
-    const auto log = make_synthetic_log(flight_at(27.0), {}, "x", "Made by a test.", 5);
+    const auto log = make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 5);
     EXPECT_NE(log.data.substr(0, log.data.find('\n')).find("SYNTHETIC"), std::string::npos);
     EXPECT_NE(log.log.find("SYNTHETIC"), std::string::npos);
-    EXPECT_EQ(make_synthetic_log(flight_at(27.0), {}, "x", "Made by a test.", 5).data, log.data);
-    EXPECT_NE(make_synthetic_log(flight_at(27.0), {}, "x", "Made by a test.", 6).data, log.data);
+    EXPECT_EQ(make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 5).data,
+              log.data);
+    EXPECT_NE(make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 6).data,
+              log.data);
 }
 
 TEST(OcamlFloat, WritesAsPaparazziDoes) {

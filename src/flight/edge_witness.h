@@ -1,0 +1,43 @@
+#pragma once
+
+#include "flight/flight_series.h"
+#include "flight/segmentation.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flightwatt {
+
+/// What a sortie's four edges are called.
+enum class EdgeKind { lift_off, takeoff_end, landing_start, touchdown };
+
+std::string_view to_string(EdgeKind kind);
+
+/// What the autopilot says of an edge: when, and how far from where altitude and throttle put it.
+struct EdgeWitness {
+    std::string what;  ///< "TAKEOFF", "mode 2 -> 1", "block Takeoff -> Standby"
+    double time_s = 0.0;
+    double after_s = 0.0;  ///< the witness's time less the edge's
+};
+
+/// An edge with its reasons. The first witness is the best of its kind, and the verdict is about it.
+struct ExplainedEdge {
+    EdgeKind kind = EdgeKind::lift_off;
+    PhaseEdge edge;
+    double height_percent = 0.0;  ///< of the flight's own height, above the ground before it
+    std::vector<EdgeWitness> witnesses;
+    std::string verdict;  ///< "agrees", "differs by 12 s" or "no witness"
+};
+
+/// A witness this near to an edge agrees with it.
+inline constexpr double agreement_s = 5.0;
+/// A witness further away than this speaks of something else.
+inline constexpr double witness_reach_s = 60.0;
+
+/// The edges that the log shows of a sortie, in order. Witnesses are: of lift-off TAKEOFF messages; of the
+/// end of take-off the block that follows a block called take-off and the change to AUTO2; of the landing's
+/// start a block called landing and the change from AUTO2; of touchdown the change to MANUAL.
+std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sortie& sortie);
+
+}  // namespace flightwatt

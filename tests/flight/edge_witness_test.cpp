@@ -1,0 +1,73 @@
+#include "flight/edge_witness.h"
+
+#include "flight/flight_reader.h"
+#include "test_paths.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+Sortie sortie_at(double lift_off_s, double takeoff_end_s, double landing_start_s, double touchdown_s) {
+    Sortie sortie;
+    sortie.height_m = 100.0;
+    const auto edge = [](double time_s) {
+        PhaseEdge result;
+        result.time_s = time_s;
+        return result;
+    };
+    sortie.phases = {{Phase::takeoff, edge(lift_off_s), edge(takeoff_end_s), true},
+                     {Phase::cruise, edge(takeoff_end_s), edge(landing_start_s), true},
+                     {Phase::landing, edge(landing_start_s), edge(touchdown_s), true}};
+    return sortie;
+}
+
+std::vector<std::string> verdicts(const FlightSeries& series, const Sortie& sortie) {
+    std::vector<std::string> texts;
+    for (const auto& edge : explain_edges(series, sortie)) texts.push_back(edge.verdict);
+    return texts;
+}
+
+TEST(EdgeWitness, GivesAVerdictOnEveryEdge) {
+    FlightSeries series;
+    series.witnesses.takeoff_s = {20.0, 98.0};  // a false one, and the true one
+    series.witnesses.block = {{0, 120, 700}, {3, 4, 6}};
+    series.witnesses.block_names = {{3, "Take-off"}, {4, "Standby"}, {6, "Land Right"}};
+    series.witnesses.mode = {{0, 110, 703}, {0, 2, 1}};
+    const auto sortie = sortie_at(100, 130, 702, 760);
+    EXPECT_THAT(verdicts(series, sortie),
+                testing::ElementsAre("agrees", "differs by 10 s", "agrees", "no witness"));
+    const auto edges = explain_edges(series, sortie);
+    EXPECT_EQ(edges[0].witnesses.size(), 1u);
+    EXPECT_EQ(edges[0].witnesses[0].after_s, -2.0);
+    EXPECT_EQ(edges[1].witnesses[0].what, "block Take-off -> Standby");
+    EXPECT_EQ(edges[1].witnesses[1].what, "mode 0 -> 2");
+    EXPECT_EQ(edges[2].witnesses[0].what, "block Standby -> Land Right");
+}
+
+TEST(EdgeWitness, HasNoneInASeriesWithoutMessagesAndNoEdgeThatTheLogCuts) {
+    auto sortie = sortie_at(100, 130, 702, 760);
+    EXPECT_THAT(verdicts({}, sortie), testing::Each("no witness"));
+    sortie.phases.erase(sortie.phases.begin());
+    sortie.phases.back().complete = false;
+    const auto edges = explain_edges({}, sortie);
+    ASSERT_EQ(edges.size(), 1u);
+    EXPECT_EQ(edges[0].kind, EdgeKind::landing_start);
+}
+
+TEST(EdgeWitness, AgreesWithTakeoffMessagesOfTheRealFlights) {
+    FLIGHTWATT_NEEDS_SHARED();
+    for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
+        SCOPED_TRACE(name);
+        const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
+        const auto edges = explain_edges(series, segment(series).sorties.at(0));
+        ASSERT_EQ(edges.size(), 4u);
+        ASSERT_EQ(edges[0].witnesses.size(), 1u);
+        EXPECT_LT(std::abs(edges[0].witnesses[0].after_s), 3.0);
+        EXPECT_EQ(edges[2].verdict, "agrees") << "the pilot took over to land";
+    }
+}
+
+}  // namespace
+}  // namespace flightwatt
