@@ -3,7 +3,6 @@
 #include "base/units.h"
 #include "flight/flight_grid.h"
 #include "flight/phase_statistics.h"
-#include "flight/track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -126,21 +125,14 @@ void find_absurdities(const FlightSeries& series, const FlightPhases& phases, Po
         report.absurdities.emplace_back("power does not change in flight");
 }
 
-/// Integral over counter, less 100 %, over all sorties; absent without a counter that counted.
+/// Integral over counter, less 100 %, over the whole record; absent without a counter that counted.
 std::optional<double> closure_percent(const std::vector<double>& time_s, const std::vector<double>& rate,
-                                      const std::vector<double>& counter, const FlightPhases& phases) {
+                                      const std::vector<double>& counter) {
     if (rate.empty() || counter.empty()) return std::nullopt;
-    const Track counted{time_s, counter};
-    double integral = 0.0;
-    double difference = 0.0;
-    for (const auto& sortie : phases.sorties) {
-        const double start_s = sortie.phases.front().start.time_s;
-        const double end_s = sortie.phases.back().end.time_s;
-        integral += integrated(time_s, rate, start_s, end_s) / units::seconds_per_hour;
-        difference += value_at(counted, end_s) - value_at(counted, start_s);
-    }
-    if (!(difference > 0.0)) return std::nullopt;
-    return (integral / difference - 1.0) * units::percent_per_whole;
+    const double counted = counter.back() - counter.front();
+    if (!(counted > 0.0)) return std::nullopt;
+    const double integral = integrated(time_s, rate, time_s.front(), time_s.back()) / units::seconds_per_hour;
+    return (integral / counted - 1.0) * units::percent_per_whole;
 }
 
 }  // namespace
@@ -149,9 +141,8 @@ PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases
     PowerReport report;
     report.origin = series.current_origin;
     report.idle = idle_current(series.current_a, resting_samples(series, {}));
-    report.energy_closure_percent = closure_percent(series.time_s, series.power_w, series.energy_wh, phases);
-    report.charge_closure_percent =
-        closure_percent(series.time_s, series.current_a, series.charge_ah, phases);
+    report.energy_closure_percent = closure_percent(series.time_s, series.power_w, series.energy_wh);
+    report.charge_closure_percent = closure_percent(series.time_s, series.current_a, series.charge_ah);
     const double gap_s = gap_threshold_s(series);
     for (const auto& sortie : phases.sorties) {
         for (std::size_t i = 1; i < series.time_s.size(); ++i) {

@@ -33,10 +33,10 @@ struct PowerReport {
     std::vector<std::string> absurdities;          ///< what cannot be: such a record is not fitted
 };
 
-/// Examines a power record: the closure is over all sorties together; the idle current over the rests with
-/// the motor off. Absurd are: a current above 5 A at rest (median) with the motor off; power that is not
-/// voltage times current (more than 10 % apart, median, above 1 W); a counter that runs back by more than 5 %
-/// of what it counted; power that does not change at all in flight.
+/// Examines a power record: the closure is over the whole of it (that of a phase stands in its statistics);
+/// the idle current over the rests with the motor off. Absurd are: a current above 5 A at rest (median) with
+/// the motor off; power that is not voltage times current (more than 10 % apart, median, above 1 W); a
+/// counter that runs back by more than 5 % of what it counted; power that does not change at all in flight.
 PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases);
 
 /// Takes the idle current out of current and power (with the voltage measured at the same time; without one,
