@@ -4,13 +4,13 @@
 #include "base/number.h"
 #include "base/units.h"
 #include "cli/stage.h"
+#include "json_text.h"
 #include "mechanical/model_fit.h"
 
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 /// The options of a fit, which fit and batch share.
 namespace flightwatt {
@@ -52,6 +52,7 @@ inline ModelFitOptions read_fit_options(const cli::StageCall& call) {
     options.phases.order = call.get<int>("order");
     options.phases.low_rad = units::rad_from_turns(call.get<double>("min-periods"));
     options.phases.high_periods = call.get<double>("max-periods");
+    admissible_range({}, options.phases);  // refuses bad options before any log is read
     const auto name = call.get<std::string>("weights");
     const auto weighting = weighting_from(name);
     if (!weighting || *weighting == Weighting::by_hand) {
@@ -60,6 +61,8 @@ inline ModelFitOptions read_fit_options(const cli::StageCall& call) {
     }
     options.weights.weighting = *weighting;
     if (const auto weights = call.maybe<std::vector<std::string>>("weight")) {
+        if (!call.options["weights"].defaulted())
+            throw UsageError("--weights and --weight exclude each other: give one of them");
         options.weights.weighting = Weighting::by_hand;
         for (const auto& text : *weights) options.weights.by_hand.push_back(parse_hand_weight(text));
     }

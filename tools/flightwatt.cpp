@@ -4,6 +4,7 @@
 #include "cli/stage.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -44,6 +45,14 @@ std::filesystem::path own_folder() {
     return error ? std::filesystem::path() : self.parent_path();
 }
 
+/// Prints the text; the exit code tells whether it was written.
+int show(const std::string& text) {
+    const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+    if (written) return flightwatt::cli::ok;
+    fmt::print(stderr, "flightwatt: error: cannot write the standard output: {}\n", std::strerror(errno));
+    return flightwatt::cli::internal_error;
+}
+
 int refuse_stage(const std::string& stage) {
     std::vector<std::string> names;
     for (const auto& line : stages) {
@@ -65,14 +74,8 @@ int refuse_stage(const std::string& stage) {
 
 int main(int argc, char** argv) {
     const std::string stage = argc > 1 ? argv[1] : "--help";
-    if (stage == "--help" || stage == "-h") {
-        fmt::print("{}", overview());
-        return flightwatt::cli::ok;
-    }
-    if (stage == "--version") {
-        fmt::print("flightwatt {}\n", FLIGHTWATT_VERSION);
-        return flightwatt::cli::ok;
-    }
+    if (stage == "--help" || stage == "-h") return show(overview());
+    if (stage == "--version") return show("flightwatt " FLIGHTWATT_VERSION "\n");
     if (stage.find('/') != std::string::npos || stage.starts_with('-')) return refuse_stage(stage);
     const auto program = "flightwatt-" + stage;
     const auto beside = own_folder() / program;

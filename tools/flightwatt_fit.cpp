@@ -49,7 +49,7 @@ int fit(const cli::StageCall& call) {
     cli::write_result(call, to_toml(model));
     warn_of_bounds(call, model);
     if (call.json)
-        cli::print(to_json(model).dump(2) + "\n");
+        cli::print(json_text(to_json(model)));
     else if (call.output)
         cli::print(to_text(table));
     return cli::ok;

@@ -4,9 +4,9 @@
 #include "flight/flight_reader.h"
 #include "flight/phase_statistics.h"
 #include "flight/series_csv.h"
+#include "json_text.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -31,7 +31,7 @@ int parse(const cli::StageCall& call) {
     for (const auto& warning : series.warnings)
         cli::warn(call, fmt::format("{}: {}", call.inputs.front(), warning));
     if (call.json) {
-        cli::print(summary(series).dump(2) + "\n");
+        cli::print(json_text(summary(series)));
         return cli::ok;
     }
     cli::note(call,

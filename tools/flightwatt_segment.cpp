@@ -2,6 +2,7 @@
 
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
+#include "json_text.h"
 #include "segment_explanation.h"
 #include "segment_json.h"
 
@@ -36,7 +37,7 @@ int segment_flight(const cli::StageCall& call) {
     const bool explain = call.has("explain");
     if (!explain || call.output) cli::write_result(call, phases_csv(series, phases));
     if (call.json) {
-        cli::print(to_json(series, phases, power).dump(2) + "\n");
+        cli::print(json_text(to_json(series, phases, power)));
     } else if (explain) {
         cli::print(explanation(series, phases, power));
     }

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "cli/stage.h"
 #include "flight/synthetic_log.h"
+#include "json_text.h"
 #include "mechanical/flight_spread.h"
 #include "mechanical/mechanical_model.h"
 
@@ -90,19 +91,34 @@ std::size_t write_log(const cli::StageCall& call, const SyntheticScenario& scena
     return log.data.size() + log.log.size();
 }
 
+constexpr int most_flights = 1000;
+constexpr double widest_spread = 100.0;  // bands: beyond, hardly a flight has power left
+constexpr double most_noise_a = 1000.0;
+
+/// Refuses numbers that are not in [low, high], nan among them.
+void require_between(const char* option, double value, double low, double high) {
+    if (value >= low && value <= high) return;
+    throw UsageError(fmt::format("--{} is {}, expected {} to {}", option, value, low, high));
+}
+
 void check_options(const cli::StageCall& call) {
-    if (call.get<unsigned>("flights") == 0) throw UsageError("--flights is 0, expected at least 1");
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
-    for (const auto* option : {"spread", "current-noise"}) {
-        const auto value = call.get<double>(option);
-        if (!(value >= 0.0)) throw UsageError(fmt::format("--{} is {}, expected 0 or more", option, value));
+    require_between("flights", call.get<int>("flights"), 1, most_flights);
+    require_between("spread", call.get<double>("spread"), 0.0, widest_spread);
+    require_between("current-noise", call.get<double>("current-noise"), 0.0, most_noise_a);
+    const auto seed = call.get<std::int64_t>("seed");
+    if (seed < 0) throw UsageError(fmt::format("--seed is {}, expected 0 or more", seed));
+    const auto name = call.get<std::string>("name");
+    if (name.empty() || name.find('/') != std::string::npos) {
+        throw UsageError(
+            fmt::format("--name is '{}', expected the beginning of a file name, without '/'", name));
     }
 }
 
 int synthesize(const cli::StageCall& call) {
     check_options(call);
-    const auto count = call.get<unsigned>("flights");
-    const auto seed = call.get<std::uint64_t>("seed");
+    const auto count = static_cast<std::size_t>(call.get<int>("flights"));
+    const auto seed = static_cast<std::uint64_t>(call.get<std::int64_t>("seed"));
     const auto hazard_list = chosen_hazards(call.get<std::string>("hazard"));
     const auto model = read_mechanical_model(call.inputs.front());
     make_directories(*call.output);
@@ -110,7 +126,7 @@ int synthesize(const cli::StageCall& call) {
     spread.bands = call.get<double>("spread");
     const auto flights = draw_flights(model, count, seed, spread);
     nlohmann::ordered_json written = nlohmann::ordered_json::array();
-    for (unsigned i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         std::mt19937_64 random(seed + 1000 * (i + 1));
         const auto flight = make_flight(flights[i], random);
         const auto log_seed = random();
@@ -125,7 +141,7 @@ int synthesize(const cli::StageCall& call) {
             written.push_back({{"flight", identity.name}, {"bytes", bytes}});
         }
     }
-    if (call.json) cli::print(nlohmann::ordered_json{{"flights", written}}.dump(2) + "\n");
+    if (call.json) cli::print(json_text({{"flights", written}}));
     return cli::ok;
 }
 
@@ -144,9 +160,8 @@ int main(int argc, char** argv) {
         "synthetic. The same seed gives the same files.";
     stage.max_inputs = 1;
     stage.output_help = "the folder to write into";
-    stage.options.add_options()("flights", po::value<unsigned>()->value_name("N")->default_value(6),
-                                "how many")(
-        "seed", po::value<std::uint64_t>()->value_name("S")->default_value(1), "seed of everything random")(
+    stage.options.add_options()("flights", po::value<int>()->value_name("N")->default_value(6), "how many")(
+        "seed", po::value<std::int64_t>()->value_name("S")->default_value(1), "seed of everything random")(
         "name", po::value<std::string>()->value_name("NAME")->default_value("opterra_synthetic"),
         "file names begin with it")("spread", po::value<double>()->value_name("X")->default_value(1.0, "1"),
                                     "flight-to-flight spread, as a multiple of the paper's bands")(

@@ -1,10 +1,9 @@
 #pragma once
 
+#include "json_text.h"
 #include "mission/simulation.h"
 
-#include <string>
-
-#include <nlohmann/json.hpp>
+#include <optional>
 
 namespace flightwatt {
 
@@ -24,11 +23,6 @@ inline nlohmann::ordered_json to_json(const MissionSummary& summary) {
     json["depleted_at_s"] = or_null(summary.depleted_at_s);
     json["feasible"] = summary.feasible;
     return json;
-}
-
-/// Indented, with a line break at its end. A name that is not UTF-8 (a file's) does not spoil the answer.
-inline std::string json_text(const nlohmann::ordered_json& json) {
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace flightwatt

@@ -43,8 +43,7 @@ inline TextTable edges_table(const FlightSeries& series, const FlightPhases& pha
 
 /// What the power record is worth, a line each.
 inline std::string power_text(const FlightSeries& series, const PowerReport& power) {
-    std::string text =
-        fmt::format("power: {}, current {}\n", series.power_source, power.origin);
+    std::string text = fmt::format("power: {}, current {}\n", series.power_source, power.origin);
     if (power.idle) {
         text += fmt::format("idle current on the ground: {:.4f} A, standard deviation {:.4f} A, {} samples\n",
                             power.idle->mean_a, power.idle->deviation_a, power.idle->samples);

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "cli/stage.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -24,12 +25,19 @@ void write_result(const StageCall& call, std::string_view content) {
     }
 }
 
+std::string one_line(std::string_view text) {
+    std::string line(text);
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+    return line;
+}
+
 void warn(const StageCall& call, std::string_view message) {
-    fmt::print(stderr, "{}: warning: {}\n", call.program, message);
+    fmt::print(stderr, "{}: warning: {}\n", call.program, one_line(message));
 }
 
 void note(const StageCall& call, std::string_view message) {
-    fmt::print(stderr, "{}: {}\n", call.program, message);
+    fmt::print(stderr, "{}: {}\n", call.program, one_line(message));
 }
 
 }  // namespace flightwatt::cli

@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -16,13 +15,6 @@ namespace {
 namespace po = boost::program_options;
 
 constexpr const char* inputs_option = "inputs";
-
-/// Errors stay on one line, whatever a file's content put into them.
-std::string one_line(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-    return text;
-}
 
 void print_error(const std::string& program, const std::string& where, const std::string& message) {
     const auto place = where.empty() ? "" : where + ": ";

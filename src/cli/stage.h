@@ -55,6 +55,10 @@ void write_result(const StageCall& call, std::string_view content);
 /// To the standard output. Throws OutputError (full disk, closed pipe).
 void print(std::string_view text);
 
+/// `text` with blanks for control characters: diagnostics stay on one line, whatever a file (or its name) put
+/// into them.
+std::string one_line(std::string_view text);
+
 /// A line on the standard error: "flightwatt-fit: warning: ...".
 void warn(const StageCall& call, std::string_view message);
 void note(const StageCall& call, std::string_view message);
