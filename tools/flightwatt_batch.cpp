@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "batch/batch_run.h"
+#include "batch/folder_lock.h"
 #include "cli/stage.h"
 #include "fit_options.h"
 #include "table_one_output.h"
@@ -41,8 +42,7 @@ void report_notes(const cli::StageCall& call, const std::vector<BatchFlight>& fl
                                         to_string(left_out.phase), left_out.reason));
         }
         if (!flight.record.accepted) {
-            fmt::print(stderr, "{}: {}: rejected: {}\n", call.program, flight.record.flight,
-                       flight.record.error);
+            cli::note(call, fmt::format("{}: rejected: {}", flight.record.flight, flight.record.error));
         }
     }
 }
@@ -79,17 +79,28 @@ nlohmann::ordered_json summary_json(const std::vector<BatchFlight>& flights, con
     return json;
 }
 
+unsigned read_jobs(const cli::StageCall& call) {
+    constexpr int most_jobs = 256;  // threads
+    const auto jobs = call.get<int>("jobs");
+    if (jobs < 0 || jobs > most_jobs) {
+        throw UsageError(fmt::format("--jobs is {}, expected 1 to {}, or 0 for one a core", jobs, most_jobs));
+    }
+    return static_cast<unsigned>(jobs);
+}
+
 int batch(const cli::StageCall& call) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
     const auto fit_options = read_fit_options(call);  // refuses bad options before the work
     std::optional<MechanicalModel> published;
     if (const auto file = call.maybe<std::string>("published")) published = read_mechanical_model(*file);
-    const auto logs = find_logs(call.inputs);
     BatchOptions options;
     options.out = *call.output;
     options.aircraft_id = call.maybe<std::string>("aircraft");
-    options.jobs = call.get<unsigned>("jobs");
+    options.jobs = read_jobs(call);
     options.needed_samples = samples_needed(fit_options.phases.order);
+    const auto logs = find_logs(call.inputs);
+    make_directories(options.out);
+    const FolderLock lock(options.out);
     const auto flights = run_batch(logs, options, progress_line(call));
     report_notes(call, flights);
     write_file_atomically(options.out / "flights.csv", catalogue_csv(flights));
@@ -108,9 +119,7 @@ int batch(const cli::StageCall& call) {
     }
     warn_of_bounds(call, model);
     if (call.json)
-        cli::print(summary_json(flights, model)
-                       .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                   "\n");
+        cli::print(json_text(summary_json(flights, model)));
     else
         cli::print("\n" + to_text(table));
     if (rejected > 0) {
@@ -140,7 +149,7 @@ int main(int argc, char** argv) {
     stage.options.add_options()("name", po::value<std::string>()->value_name("NAME")->default_value("batch"),
                                 "the model's name")(
         "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
-        "jobs", po::value<unsigned>()->value_name("N")->default_value(0, "one a core"), "logs at a time")(
+        "jobs", po::value<int>()->value_name("N")->default_value(0, "one a core"), "logs at a time")(
         "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
     return cli::run_stage(argc, argv, stage, batch);
 }

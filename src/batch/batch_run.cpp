@@ -34,7 +34,7 @@ std::filesystem::path result_path(const BatchOptions& options, const std::string
 /// Of everything that the result depends on.
 std::string fingerprint_of(const LogFile& log, const BatchOptions& options) {
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 1");
+    fingerprint.add(FLIGHTWATT_VERSION " record 2");
     fingerprint.add(log.flight);
     fingerprint.add(log.path.string());
     fingerprint.add(options.aircraft_id.value_or(""));
@@ -44,18 +44,34 @@ std::string fingerprint_of(const LogFile& log, const BatchOptions& options) {
     return fingerprint.hex();
 }
 
-/// The remembered result of a log, if it is that of this fingerprint and its files are there.
+/// Of the files that an accepted log left; empty if one is missing.
+std::string results_fingerprint(const BatchOptions& options, const std::string& flight) {
+    Fingerprint fingerprint;
+    for (const auto* ending : {series_ending, phases_ending}) {
+        const auto path = result_path(options, flight, ending);
+        if (!std::filesystem::is_regular_file(path)) return "";
+        fingerprint.add(read_file(path));
+    }
+    return fingerprint.hex();
+}
+
+bool has_results(const BatchOptions& options, const std::string& flight) {
+    return std::filesystem::exists(result_path(options, flight, series_ending)) ||
+           std::filesystem::exists(result_path(options, flight, phases_ending));
+}
+
+/// The remembered result of a log, if it is that of this fingerprint and its files are as they were written.
 std::optional<FlightRecord> remembered(const BatchOptions& options, const LogFile& log,
                                        const std::string& fingerprint) {
     const auto path = result_path(options, log.flight, record_ending);
     if (!std::filesystem::is_regular_file(path)) return std::nullopt;
     auto record = record_from_json(read_file(path));
     if (!record || record->fingerprint != fingerprint) return std::nullopt;
-    for (const auto* ending : {series_ending, phases_ending}) {
-        if (std::filesystem::is_regular_file(result_path(options, log.flight, ending)) != record->accepted) {
-            return std::nullopt;
-        }
-    }
+    const bool as_written = record->accepted ? !record->results.empty() &&
+                                                   record->results == results_fingerprint(options, log.flight)
+                                             : !has_results(options, log.flight);
+    if (!as_written) return std::nullopt;
+    record->flight = log.flight;  // JSON holds no name that is not UTF-8
     return record;
 }
 
@@ -109,20 +125,39 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     done.record.flight = log.flight;
     done.record.log = log.path.string();
     done.record.fingerprint = fingerprint;
-    write_file_atomically(result_path(options, log.flight, record_ending), to_json_text(done.record));
+    if (done.record.accepted) done.record.results = results_fingerprint(options, log.flight);
+    const auto text = to_json_text(done.record);
+    write_file_atomically(result_path(options, log.flight, record_ending), text);
+    done.record = record_from_json(text).value();  // what later runs remember: both must report the same
+    done.record.flight = log.flight;
     return done;
 }
 
-/// Results that an earlier run left of logs that are gone now.
-void remove_vanished(const std::vector<LogFile>& logs, const BatchOptions& options) {
+/// Whether a file of the flights folder is one that a batch wrote, for a flight that is not in `names`, or
+/// did not get to rename (see write_file_atomically) when it was killed.
+bool is_left_over(const std::string& file, const std::set<std::string>& names) {
+    constexpr std::string_view unfinished = ".XXXXXX";
+    for (const std::string_view ending : {record_ending, series_ending, phases_ending}) {
+        if (file.ends_with(ending)) return !names.contains(file.substr(0, file.size() - ending.size()));
+        const auto at = file.rfind(ending);
+        if (at != std::string::npos && at + ending.size() + unfinished.size() == file.size() &&
+            file[at + ending.size()] == '.') {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// What earlier runs left of logs that are gone now, and what a killed one left unfinished.
+void remove_left_overs(const std::vector<LogFile>& logs, const BatchOptions& options) {
     std::set<std::string> names;
     for (const auto& log : logs) names.insert(log.flight);
+    std::vector<std::filesystem::path> left_over;
     for (const auto& entry : std::filesystem::directory_iterator(flights_folder(options))) {
-        const auto file = entry.path().filename().string();
-        if (!file.ends_with(record_ending)) continue;
-        const auto flight = file.substr(0, file.size() - std::string_view(record_ending).size());
-        if (!names.contains(flight)) remove_results(options, flight);
+        if (is_left_over(entry.path().filename().string(), names)) left_over.push_back(entry.path());
     }
+    std::error_code ignored;
+    for (const auto& path : left_over) std::filesystem::remove(path, ignored);
 }
 
 }  // namespace
@@ -130,7 +165,7 @@ void remove_vanished(const std::vector<LogFile>& logs, const BatchOptions& optio
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
                                    const BatchProgress& progress) {
     make_directories(flights_folder(options));
-    remove_vanished(logs, options);
+    remove_left_overs(logs, options);
     std::vector<BatchFlight> flights(logs.size());
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;  // guards what follows

@@ -33,9 +33,9 @@ using BatchProgress = std::function<void(std::size_t done, std::size_t all, cons
 
 /// Parses and segments every log, several at a time, into OUT/flights/NAME.series.csv, NAME.phases.csv and
 /// NAME.record.json, the last one written last. A log whose record has the fingerprint of its content, its
-/// .log and the options is not done again. Logs that cannot be used are recorded as rejected; the rest goes
-/// on. Results of logs that are no longer among `logs` are removed. Returned in the order of `logs`. Throws
-/// OutputError where OUT cannot be written.
+/// .log and the options, and whose files are as they were written, is not done again. Logs that cannot be
+/// used are recorded as rejected; the rest goes on. Results of logs that are no longer among `logs` are
+/// removed. Returned in the order of `logs`. Throws OutputError where OUT cannot be written.
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
                                    const BatchProgress& progress);
 

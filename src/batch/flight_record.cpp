@@ -87,6 +87,7 @@ std::string to_json_text(const FlightRecord& record) {
     const Json json{{"flight", record.flight},
                     {"log", record.log},
                     {"fingerprint", record.fingerprint},
+                    {"results", record.results},
                     {"accepted", record.accepted},
                     {"error", record.error},
                     {"aircraft_id", record.aircraft_id},
@@ -104,6 +105,7 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
         record.flight = json.at("flight");
         record.log = json.at("log");
         record.fingerprint = json.at("fingerprint");
+        record.results = json.at("results");
         record.accepted = json.at("accepted");
         record.error = json.at("error");
         record.aircraft_id = json.at("aircraft_id");

@@ -29,6 +29,7 @@ struct FlightRecord {
     std::string flight;
     std::string log;          ///< the path it was read from
     std::string fingerprint;  ///< of the log's content, its .log and the options
+    std::string results;      ///< fingerprint of the series and phases that were written; empty if rejected
     bool accepted = false;
     std::string error;  ///< why it was rejected
     std::string aircraft_id;

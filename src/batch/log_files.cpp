@@ -4,8 +4,9 @@
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
-#include <map>
 #include <regex>
+#include <set>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,11 +21,39 @@ bool is_log_name(const std::filesystem::path& path) {
 
 void add_folder(const std::filesystem::path& folder, std::vector<std::filesystem::path>& paths) {
     std::error_code error;
-    std::filesystem::recursive_directory_iterator entries(folder, error);
-    if (error) throw InputError({folder.string()}, fmt::format("cannot be listed: {}", error.message()));
-    for (const auto& entry : entries) {
-        if (entry.is_regular_file() && is_log_name(entry.path())) paths.push_back(entry.path());
+    std::filesystem::recursive_directory_iterator entry(folder, error);
+    while (!error && entry != std::filesystem::recursive_directory_iterator()) {
+        std::error_code ignored;
+        // What has a log's name and is no file (a link to nowhere) is rejected later, not passed over.
+        if (is_log_name(entry->path()) && !entry->is_directory(ignored)) paths.push_back(entry->path());
+        entry.increment(error);
     }
+    if (error) throw InputError({folder.string()}, fmt::format("cannot be listed: {}", error.message()));
+}
+
+/// The same for every way to write a file's path. Links to a file stay apart: each has its own .log.
+std::filesystem::path identity(const std::filesystem::path& path) {
+    std::error_code error;
+    const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    const auto canonical = std::filesystem::canonical(folder, error);
+    return error ? path : canonical / path.filename();
+}
+
+std::vector<std::filesystem::path> each_once(std::vector<std::filesystem::path> paths) {
+    for (auto& path : paths) path = path.lexically_normal();
+    std::sort(paths.begin(), paths.end());
+    std::set<std::filesystem::path> seen;
+    std::erase_if(paths, [&](const auto& path) { return !seen.insert(identity(path)).second; });
+    return paths;
+}
+
+/// The log's own name, or, where another log has that, the next free one of NAME_2, NAME_3, ...
+std::string free_name(const std::filesystem::path& path, const std::set<std::string>& taken) {
+    auto name = flight_name(path);
+    if (name.empty()) name = "unnamed";
+    auto free = name;
+    for (int use = 2; taken.contains(free); ++use) free = fmt::format("{}_{}", name, use);
+    return free;
 }
 
 }  // namespace
@@ -32,26 +61,31 @@ void add_folder(const std::filesystem::path& folder, std::vector<std::filesystem
 std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
     std::vector<std::filesystem::path> paths;
     for (const auto& input : inputs) {
-        if (std::filesystem::is_directory(input))
+        std::error_code error;
+        const auto status = std::filesystem::status(input, error);
+        if (std::filesystem::is_directory(status)) {
             add_folder(input, paths);
-        else if (std::filesystem::exists(input))
-            paths.emplace_back(input);
-        else
-            throw InputError({input}, "does not exist", "expected a .data log or a folder of them");
+            continue;
+        }
+        if (!std::filesystem::exists(status)) {
+            const auto cause = input.empty() || !error || error == std::errc::no_such_file_or_directory
+                                   ? "does not exist"
+                                   : error.message();
+            throw InputError({input.empty() ? "''" : input}, cause,
+                             "expected a .data log or a folder of them");
+        }
+        paths.emplace_back(input);
     }
-    for (auto& path : paths) path = path.lexically_normal();
-    std::sort(paths.begin(), paths.end());
-    paths.erase(std::unique(paths.begin(), paths.end()), paths.end());
+    paths = each_once(std::move(paths));
     if (paths.empty()) {
         throw InputError({}, fmt::format("no .data log in {}", fmt::join(inputs, ", ")),
                          "expected *.data, also .gz, .bz2, .xz or .zst");
     }
     std::vector<LogFile> logs;
-    std::map<std::string, std::size_t> uses;
+    std::set<std::string> taken;
     for (auto& path : paths) {
-        auto name = flight_name(path);
-        const auto use = ++uses[name];
-        if (use > 1) name += fmt::format("_{}", use);
+        auto name = free_name(path, taken);
+        taken.insert(name);
         logs.push_back({std::move(path), std::move(name)});
     }
     return logs;

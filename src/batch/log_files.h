@@ -13,7 +13,7 @@ struct LogFile {
 };
 
 /// The logs among files and folders (searched to the bottom for .data files, compressed or not), in the order
-/// of their paths, each once. Flights of the same name in different folders get the names NAME, NAME_2, ...
+/// of their paths, each once however it is written. Flights of the same name get the names NAME, NAME_2, ...
 /// Throws InputError for an input that does not exist, or where there is no log at all.
 std::vector<LogFile> find_logs(const std::vector<std::string>& inputs);
 
