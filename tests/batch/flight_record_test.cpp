@@ -1,0 +1,117 @@
+#include "batch/flight_record.h"
+
+#include "flight/flight_reader.h"
+#include "sample_logs.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace flightwatt {
+namespace {
+
+/// A record with every field away from its default.
+FlightRecord full_record() {
+    FlightRecord record;
+    record.flight = "20_07_03__12_17_45";
+    record.log = "logs/20_07_03__12_17_45.data";
+    record.fingerprint = "0123456789abcdef";
+    record.results = "fedcba9876543210";
+    record.accepted = true;
+    record.aircraft_id = "20";
+    record.power_source = "ENERGY.power";
+    RecordedPhase takeoff{1, Phase::takeoff, 147.0, 178.1, 0.5, 1.0 / 3.0, false, {}};
+    takeoff.statistics.samples = 25;
+    takeoff.statistics.mean_power_w = 83.1;
+    takeoff.statistics.energy_wh = 0.1;
+    takeoff.statistics.gaps = 2;
+    takeoff.statistics.longest_gap_s = 22.5;
+    auto landing = takeoff;
+    landing.sortie = 2;
+    landing.phase = Phase::landing;
+    landing.complete = true;
+    landing.statistics.counter_energy_wh = 0.7;
+    record.phases = {takeoff, landing};
+    record.warnings = {"a \"quoted\" one", "another"};
+    return record;
+}
+
+TEST(FlightRecord, SurvivesJson) {
+    const auto text = to_json_text(full_record());
+    const auto read = record_from_json(text);
+    ASSERT_TRUE(read);
+    EXPECT_EQ(to_json_text(*read), text);
+    EXPECT_EQ(read->flight, "20_07_03__12_17_45");
+    EXPECT_EQ(read->results, "fedcba9876543210");
+    EXPECT_TRUE(read->accepted);
+    ASSERT_EQ(read->phases.size(), 2U);
+    EXPECT_EQ(read->phases[0].phase, Phase::takeoff);
+    EXPECT_EQ(read->phases[0].end_gap_s, 1.0 / 3.0);
+    EXPECT_FALSE(read->phases[0].complete);
+    EXPECT_EQ(read->phases[0].statistics.counter_energy_wh, std::nullopt);
+    EXPECT_EQ(read->phases[1].sortie, 2U);
+    EXPECT_EQ(read->phases[1].statistics.counter_energy_wh, 0.7);
+    EXPECT_EQ(read->phases[1].statistics.samples, 25U);
+    EXPECT_THAT(read->warnings, testing::ElementsAre("a \"quoted\" one", "another"));
+}
+
+TEST(FlightRecord, IsNoneWhereAnythingIsMissingOrWrong) {
+    const auto text = to_json_text(full_record());
+    EXPECT_FALSE(record_from_json(""));
+    EXPECT_FALSE(record_from_json("[]"));
+    EXPECT_FALSE(record_from_json(text.substr(0, text.size() / 2)));
+    const auto json = nlohmann::json::parse(text);
+    for (const auto& [key, value] : json.items()) {
+        auto lacking = json;
+        lacking.erase(key);
+        EXPECT_FALSE(record_from_json(lacking.dump())) << key;
+        auto wrong = json;
+        wrong[key] = value.is_array() ? nlohmann::json("x") : nlohmann::json::object();
+        EXPECT_FALSE(record_from_json(wrong.dump())) << key;
+    }
+    auto other_phase = json;
+    other_phase["phases"][0]["phase"] = "taxi";
+    EXPECT_FALSE(record_from_json(other_phase.dump()));
+}
+
+TEST(FlightRecord, HoldsNamesThatAreNotUtf8) {
+    auto record = full_record();
+    record.flight = "caf\xE9";
+    const auto read = record_from_json(to_json_text(record));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->flight, "caf\xEF\xBF\xBD");
+}
+
+TEST(FlightRecord, GivesThePhasesBack) {
+    const auto series = read_flight(test::sample(1));
+    const auto phases = segment(series);
+    const auto record = record_of(series, phases);
+    EXPECT_TRUE(record.accepted);
+    EXPECT_EQ(record.flight, "opterra_synthetic_01");
+    EXPECT_EQ(record.aircraft_id, "7");
+    const auto back = phases_of(record);
+    ASSERT_EQ(back.sorties.size(), phases.sorties.size());
+    ASSERT_EQ(back.sorties[0].phases.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto& a = phases.sorties[0].phases[i];
+        const auto& b = back.sorties[0].phases[i];
+        EXPECT_EQ(a.phase, b.phase);
+        EXPECT_EQ(a.start.time_s, b.start.time_s);
+        EXPECT_EQ(a.end.time_s, b.end.time_s);
+        EXPECT_EQ(a.start.gap_s, b.start.gap_s);
+        EXPECT_EQ(a.end.gap_s, b.end.gap_s);
+        EXPECT_EQ(a.complete, b.complete);
+    }
+}
+
+TEST(FlightRecord, KeepsSortiesApart) {
+    const auto phases = phases_of(full_record());
+    ASSERT_EQ(phases.sorties.size(), 2U);
+    EXPECT_EQ(phases.sorties[0].phases[0].phase, Phase::takeoff);
+    EXPECT_EQ(phases.sorties[1].phases[0].phase, Phase::landing);
+}
+
+}  // namespace
+}  // namespace flightwatt

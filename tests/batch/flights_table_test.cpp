@@ -1,0 +1,88 @@
+#include "base/csv.h"
+#include "batch/batch_run.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+RecordedPhase phase(std::size_t sortie, Phase which, double start_s, double end_s) {
+    RecordedPhase recorded{sortie, which, start_s, end_s, 0.5, 0.5, true, {}};
+    recorded.statistics.samples = 10;
+    recorded.statistics.mean_power_w = 25.0;
+    recorded.statistics.energy_wh = 0.5;
+    recorded.statistics.counter_energy_wh = 0.25;
+    return recorded;
+}
+
+/// Two sorties; of the second one, the cruise alone goes into a fit, and the landing is cut off.
+BatchFlight two_sorties() {
+    BatchFlight flight;
+    flight.record.flight = "twice, \"up\"";
+    flight.record.accepted = true;
+    flight.record.aircraft_id = "7";
+    flight.record.power_source = "ENERGY.power";
+    flight.record.phases = {phase(1, Phase::takeoff, 10, 30), phase(2, Phase::cruise, 100, 400),
+                            phase(2, Phase::landing, 400, 450)};
+    flight.record.phases[2].complete = false;
+    flight.record.phases[2].statistics.counter_energy_wh.reset();
+    FlightSamples first{flight.record.flight, {}};
+    first.phases[Phase::takeoff] = PhaseSamples{};
+    FlightSamples second{flight.record.flight + "#2", {}};
+    second.phases[Phase::cruise] = PhaseSamples{};
+    flight.selection.flights = {first, second};
+    return flight;
+}
+
+BatchFlight rejected_flight() {
+    BatchFlight flight;
+    flight.record.flight = "bad";
+    flight.record.error = "bad.data:1: holds no telemetry, \"none\"";
+    return flight;
+}
+
+TEST(Catalogue, HasARowAPhaseAndARejectedLog) {
+    const auto table = parse_csv(catalogue_csv({two_sorties(), rejected_flight()}), "flights.csv");
+    const std::vector<std::string> first(table.columns.begin(), table.columns.begin() + 11);
+    EXPECT_THAT(first,
+                testing::ElementsAre("flight", "sortie", "phase", "start_s", "end_s", "duration_s", "samples",
+                                     "mean_power_w", "energy_wh", "counter_energy_wh", "used"));
+    ASSERT_EQ(table.rows.size(), 4U);
+    const auto cell = [&](std::size_t row, const char* column) {
+        return table.rows[row].cells[column_index(table, column)].text;
+    };
+    EXPECT_EQ(cell(0, "flight"), "twice, \"up\"");
+    EXPECT_EQ(cell(0, "sortie"), "1");
+    EXPECT_EQ(cell(0, "phase"), "takeoff");
+    EXPECT_EQ(cell(0, "duration_s"), "20");
+    EXPECT_EQ(cell(0, "counter_energy_wh"), "0.25");
+    EXPECT_EQ(cell(0, "used"), "true");
+    EXPECT_EQ(cell(1, "sortie"), "2");
+    EXPECT_EQ(cell(1, "used"), "true");
+    EXPECT_EQ(cell(2, "used"), "false");
+    EXPECT_EQ(cell(2, "complete"), "false");
+    EXPECT_EQ(cell(2, "counter_energy_wh"), "");
+    EXPECT_EQ(cell(3, "flight"), "bad");
+    EXPECT_EQ(cell(3, "phase"), "");
+    EXPECT_EQ(cell(3, "used"), "false");
+    EXPECT_EQ(cell(3, "error"), "bad.data:1: holds no telemetry, \"none\"");
+}
+
+TEST(FlightsTable, HasARowASortie) {
+    const auto table = flights_table({two_sorties(), rejected_flight()});
+    ASSERT_EQ(table.rows.size(), 3U);
+    for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
+    EXPECT_THAT(table.rows[0], testing::ElementsAre("twice, \"up\"", "1", "20", "-", "-", "25.0", "-", "-",
+                                                    "0.500", "0.250", "10", "0", "0.0", "0"));
+    // An asterisk: the log ends in the landing. Its counter is not known, so neither is the sortie's.
+    EXPECT_THAT(table.rows[1], testing::ElementsAre("twice, \"up\"", "2", "-", "300", "50*", "-", "25.0",
+                                                    "25.0", "1.000", "-", "20", "0", "0.0", "0"));
+    EXPECT_EQ(table.rows[2][0], "bad");
+    EXPECT_EQ(table.rows[2][2], "-");
+}
+
+}  // namespace
+}  // namespace flightwatt

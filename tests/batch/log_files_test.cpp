@@ -1,0 +1,96 @@
+#include "batch/log_files.h"
+
+#include "rejected.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using test::rejected;
+using test::write_text;
+using testing::ElementsAre;
+
+std::vector<std::string> names(const std::vector<LogFile>& logs) {
+    std::vector<std::string> result;
+    for (const auto& log : logs) result.push_back(log.flight);
+    return result;
+}
+
+std::filesystem::path touch(const std::filesystem::path& path) {
+    std::filesystem::create_directories(path.parent_path());
+    return write_text(path, "x");
+}
+
+TEST(FindLogs, SearchesFoldersToTheBottom) {
+    const auto folder = test::scratch_dir();
+    touch(folder / "b.data");
+    touch(folder / "2020" / "july" / "a.data.xz");
+    touch(folder / "2020" / "c.data.zst");
+    touch(folder / "2020" / "c.log");
+    touch(folder / "notes.data.txt");
+    touch(folder / "data");
+    std::filesystem::create_directories(folder / "folder.data");
+    const auto logs = find_logs({folder.string()});
+    EXPECT_THAT(names(logs), ElementsAre("c", "a", "b"));  // by path
+    EXPECT_EQ(logs[1].path, folder / "2020" / "july" / "a.data.xz");
+}
+
+TEST(FindLogs, TakesFilesOfAnyName) {
+    const auto folder = test::scratch_dir();
+    const auto file = touch(folder / "flight.csv");
+    EXPECT_THAT(names(find_logs({file.string()})), ElementsAre("flight"));
+}
+
+TEST(FindLogs, TakesALogOnceHoweverItIsWritten) {
+    const auto folder = test::scratch_dir();
+    const auto log = touch(folder / "logs" / "a.data");
+    std::filesystem::create_directory_symlink(folder / "logs", folder / "link");
+    const auto logs = find_logs({log.string(), (folder / "logs").string(), log.string(),
+                                 (folder / "logs" / ".." / "logs").string(), (folder / "link").string(),
+                                 std::filesystem::relative(log).string()});
+    EXPECT_THAT(names(logs), ElementsAre("a"));
+}
+
+TEST(FindLogs, GivesEachLogANameOfItsOwn) {
+    const auto folder = test::scratch_dir();
+    for (const auto* name : {"1/x.data", "2/x.data", "3/x.data", "4/x_2.data", "5/.data", "6/.data"}) {
+        touch(folder / name);
+    }
+    EXPECT_THAT(names(find_logs({folder.string()})),
+                ElementsAre("x", "x_2", "x_3", "x_2_2", "unnamed", "unnamed_2"));
+}
+
+TEST(FindLogs, KeepsLinksToNowhereToBeReported) {
+    const auto folder = test::scratch_dir();
+    touch(folder / "good.data");
+    std::filesystem::create_symlink("nowhere", folder / "gone.data");
+    std::filesystem::create_symlink("loop.data", folder / "loop.data");
+    EXPECT_THAT(names(find_logs({folder.string()})), ElementsAre("gone", "good", "loop"));
+}
+
+TEST(FindLogs, RefusesWhatIsNotThere) {
+    const auto folder = test::scratch_dir();
+    touch(folder / "a.log");
+    EXPECT_EQ(rejected(
+                  [&] {
+                      find_logs({folder.string(), folder.string()});
+                  },
+                  folder.parent_path()),
+              ": no .data log in FindLogs.RefusesWhatIsNotThere, FindLogs.RefusesWhatIsNotThere; expected "
+              "*.data, also .gz, .bz2, .xz or .zst");
+    EXPECT_EQ(rejected([&] { find_logs({(folder / "b.data").string()}); }, folder),
+              "b.data: does not exist; expected a .data log or a folder of them");
+    EXPECT_EQ(rejected([&] { find_logs({(folder / std::string(300, 'x')).string()}); }, folder),
+              std::string(300, 'x') + ": File name too long; expected a .data log or a folder of them");
+    EXPECT_EQ(rejected([&] { find_logs({""}); }),
+              "'': does not exist; expected a .data log or a folder of them");
+}
+
+}  // namespace
+}  // namespace flightwatt

@@ -1,0 +1,2 @@
+: > flight.data
+flightwatt parse flight.data -o result.csv; code=$?; ls; exit $code

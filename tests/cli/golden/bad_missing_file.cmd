@@ -1,0 +1,1 @@
+flightwatt parse nothing.data -o result.csv; code=$?; ls; exit $code

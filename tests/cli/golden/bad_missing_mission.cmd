@@ -1,0 +1,1 @@
+flightwatt compare nothing.toml -o result.csv; code=$?; ls; exit $code

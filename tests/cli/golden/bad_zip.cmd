@@ -1,0 +1,2 @@
+printf 'PK\003\004rest' > flight.data
+flightwatt parse flight.data -o result.csv; code=$?; ls; exit $code

@@ -1,0 +1,1 @@
+flightwatt-batch --version && flightwatt batch --version

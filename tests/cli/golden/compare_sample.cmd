@@ -1,0 +1,1 @@
+flightwatt compare "$SOURCE"/missions/paper/*.toml

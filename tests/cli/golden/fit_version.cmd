@@ -1,0 +1,1 @@
+flightwatt-fit --version && flightwatt fit --version

@@ -1,0 +1,3 @@
+flightwatt parse --version > /dev/null; echo $?
+flightwatt parse; echo $?
+flightwatt parse missing.data; echo $?

@@ -1,0 +1,1 @@
+flightwatt segment --help

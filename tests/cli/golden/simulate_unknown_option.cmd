@@ -1,0 +1,1 @@
+flightwatt simulate --outptu x something

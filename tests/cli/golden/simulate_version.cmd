@@ -1,0 +1,1 @@
+flightwatt-simulate --version && flightwatt simulate --version

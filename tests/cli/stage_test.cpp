@@ -1,0 +1,225 @@
+// The frame of the stage programs: options, exit codes, and what reaches which stream.
+
+#include "cli/stage.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "test_paths.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct Outcome {
+    int code = -1;
+    std::string out;
+    std::string err;
+};
+
+/// Points a stream of this process at a file.
+void redirect(int stream, const std::filesystem::path& path) {
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (file < 0 || ::dup2(file, stream) < 0) std::_Exit(99);
+}
+
+StageDefinition definition() {
+    StageDefinition stage;
+    stage.name = "trial";
+    stage.arguments = "FILE...";
+    stage.description = "Tries things.";
+    stage.max_inputs = 2;
+    namespace po = boost::program_options;
+    stage.options.add_options()("count", po::value<int>()->default_value(3), "how many")(
+        "name", po::value<std::string>(), "whose");
+    return stage;
+}
+
+/// Runs the stage in a process of its own: run_stage closes the standard output.
+Outcome run(std::vector<std::string> arguments, const StageBody& body,
+            const std::filesystem::path& out = {}) {
+    const auto folder = test::scratch_dir();
+    const auto out_file = out.empty() ? folder / "stdout" : out;
+    std::fflush(nullptr);  // or the child would print the rest of this process again
+    const auto child = ::fork();
+    if (child == 0) {
+        redirect(STDOUT_FILENO, out_file);
+        redirect(STDERR_FILENO, folder / "stderr");
+        arguments.insert(arguments.begin(), "flightwatt-trial");
+        std::vector<char*> argv;
+        for (auto& argument : arguments) argv.push_back(argument.data());
+        std::_Exit(run_stage(static_cast<int>(argv.size()), argv.data(), definition(), body));
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, out.empty() ? read_file(out_file) : "",
+            read_file(folder / "stderr")};
+}
+
+int succeed(const StageCall&) { return ok; }
+
+/// A body that throws.
+template <typename Error>
+StageBody failing_with(Error error) {
+    return [error](const StageCall&) -> int { throw error; };
+}
+
+TEST(RunStage, HandsOverWhatTheUserGave) {
+    const auto result =
+        run({"a", "--count", "7", "-o", "result.csv", "--json", "b"}, [](const StageCall& call) {
+            print(call.program + " " + call.inputs.at(0) + call.inputs.at(1) + " " +
+                  std::to_string(call.get<int>("count")) + " " + call.output.value() +
+                  (call.json ? " json" : "") + (call.maybe<std::string>("name") ? " named" : " nameless"));
+            return ok;
+        });
+    EXPECT_EQ(result.code, 0);
+    EXPECT_EQ(result.out, "flightwatt-trial ab 7 result.csv json nameless");
+    EXPECT_EQ(result.err, "");
+}
+
+TEST(RunStage, HasDefaults) {
+    const auto result = run({"a"}, [](const StageCall& call) {
+        return call.get<int>("count") == 3 && !call.json && !call.output ? ok : no_answer;
+    });
+    EXPECT_EQ(result.code, 0);
+}
+
+TEST(RunStage, TakesFileNamesThatLookLikeOptionsAfterTwoDashes) {
+    const auto result = run({"--", "--count"}, [](const StageCall& call) {
+        print(call.inputs.at(0));
+        return ok;
+    });
+    EXPECT_EQ(result.out, "--count");
+}
+
+TEST(RunStage, HelpsWithoutRunningTheBody) {
+    for (const auto* option : {"--help", "-h"}) {
+        const auto result = run({option}, failing_with(std::runtime_error("ran")));
+        EXPECT_EQ(result.code, 0);
+        EXPECT_THAT(result.out,
+                    StartsWith("usage: flightwatt trial FILE... [options]\n\nTries things.\n\nOptions:\n"));
+        EXPECT_THAT(result.out, HasSubstr("--count arg (=3)"));
+        EXPECT_EQ(result.err, "");
+    }
+    EXPECT_EQ(run({"--version"}, failing_with(std::runtime_error("ran"))).out,
+              "flightwatt-trial " FLIGHTWATT_VERSION "\n");
+}
+
+TEST(RunStage, RefusesWrongUsage) {
+    const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+        {{}, "no input given; usage: flightwatt trial FILE... [options]"},
+        {{"a", "b", "c"}, "unexpected argument 'c'; usage: flightwatt trial FILE... [options]"},
+        {{"a", "--counts", "1"}, "unrecognised option '--counts'; see --help"},
+        {{"a", "--coun", "1"}, "unrecognised option '--coun'; see --help"},  // no guessing
+        {{"a", "--count", "x"}, "the argument ('x') for option '--count' is invalid; see --help"},
+        {{"a", "--count=1", "--count=2"}, "option '--count' cannot be specified more than once; see --help"},
+        {{"a", "--name"}, "the required argument for option '--name' is missing; see --help"},
+    };
+    for (const auto& [arguments, message] : cases) {
+        const auto result = run(arguments, succeed);
+        EXPECT_EQ(result.code, 2);
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(result.err, "flightwatt-trial: error: " + message + "\n");
+    }
+}
+
+TEST(RunStage, TurnsExceptionsIntoALineAndAnExitCode) {
+    const auto result = run({"a"}, failing_with(InputError({"f.csv", 12, 7}, "is wrong", "mend it")));
+    EXPECT_EQ(result.code, 3);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, "flightwatt-trial: f.csv:12:7: error: is wrong; mend it\n");
+    const auto nowhere = run({"a"}, failing_with(InputError({}, "is wrong")));
+    EXPECT_EQ(nowhere.err, "flightwatt-trial: error: is wrong\n");
+    EXPECT_EQ(run({"a"}, failing_with(UsageError("x"))).code, 2);
+    EXPECT_EQ(run({"a"}, failing_with(NoAnswerError("x"))).code, 4);
+    EXPECT_EQ(run({"a"}, failing_with(OutputError("x"))).code, 1);
+    EXPECT_EQ(run({"a"}, failing_with(OutputError("x"))).err, "flightwatt-trial: error: x\n");
+    const auto unknown = run({"a"}, failing_with(std::runtime_error("x")));
+    EXPECT_EQ(unknown.code, 1);
+    EXPECT_EQ(unknown.err, "flightwatt-trial: error: internal error: x\n");
+}
+
+TEST(RunStage, PassesTheBodysExitCodeOn) {
+    EXPECT_EQ(run({"a"}, [](const StageCall&) { return int(input_rejected); }).code, 3);
+}
+
+TEST(RunStage, KeepsDiagnosticsOnOneLine) {
+    const auto error = run({"a"}, failing_with(InputError({"a\nb", 1}, "holds '\x1b[2J\r\n'")));
+    EXPECT_EQ(error.err, "flightwatt-trial: a b:1: error: holds ' [2J  '\n");
+    const auto notes = run({"a"}, [](const StageCall& call) {
+        warn(call, "one\ntwo");
+        note(call, "three\tfour");
+        return ok;
+    });
+    EXPECT_EQ(notes.err, "flightwatt-trial: warning: one two\nflightwatt-trial: three four\n");
+    EXPECT_EQ(one_line("\xC3\xBC \xFF"), "\xC3\xBC \xFF");  // what is no control character stays
+}
+
+TEST(RunStage, FailsWhereTheStandardOutputCannotBeWritten) {
+    const auto small = run(
+        {"a"},
+        [](const StageCall&) {
+            print("x");
+            return int(ok);
+        },
+        "/dev/full");
+    EXPECT_EQ(small.code, 1);  // found when the buffer is flushed, after the body
+    EXPECT_EQ(small.err,
+              "flightwatt-trial: error: cannot write the standard output: No space left on device\n");
+    const auto large = run(
+        {"a"},
+        [](const StageCall&) {
+            print(std::string(1 << 20, 'x'));
+            return int(ok);
+        },
+        "/dev/full");
+    EXPECT_EQ(large.code, 1);
+    EXPECT_EQ(run({"--help"}, succeed, "/dev/full").code, 1);
+}
+
+TEST(RunStage, DoesNotSayOkWhenTheBodyFailsAndTheOutputIsFull) {
+    const auto result = run(
+        {"a"},
+        [](const StageCall&) -> int {
+            print("x");
+            throw InputError({}, "is wrong");
+        },
+        "/dev/full");
+    EXPECT_EQ(result.code, 3);
+}
+
+TEST(WriteResult, GoesToTheFileOrTheStandardOutput) {
+    const auto body = [](const StageCall& call) {
+        write_result(call, "result\n");
+        return int(ok);
+    };
+    EXPECT_EQ(run({"a"}, body).out, "result\n");
+    EXPECT_EQ(run({"a", "--json"}, body).out, "");  // JSON has the standard output to itself
+    const auto file = test::scratch_dir().parent_path() / "WriteResult.csv";
+    std::filesystem::remove(file);
+    EXPECT_EQ(run({"a", "-o", file.string()}, body).out, "");
+    EXPECT_EQ(read_file(file), "result\n");
+    std::filesystem::remove(file);
+    const auto missing = run({"a", "-o", "/missing/folder/x"}, body);
+    EXPECT_EQ(missing.code, 1);
+    EXPECT_EQ(missing.err,
+              "flightwatt-trial: error: cannot write /missing/folder/x: No such file or directory\n");
+}
+
+}  // namespace
+}  // namespace flightwatt::cli
