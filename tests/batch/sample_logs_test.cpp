@@ -1,0 +1,192 @@
+// The project's promise, from end to end: the sample logs give the paper's Table I back, however they are
+// kept.
+
+#include "sample_logs.h"
+
+#include "base/units.h"
+#include "flight/flight_reader.h"
+#include "flight/phase_statistics.h"
+#include "flight/series_csv.h"
+#include "mechanical/model_fit.h"
+#include "mechanical/phase_curve.h"
+#include "rejected.h"
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include <boost/iostreams/copy.hpp>
+#include <boost/iostreams/device/array.hpp>
+#include <boost/iostreams/device/back_inserter.hpp>
+#include <boost/iostreams/filter/bzip2.hpp>
+#include <boost/iostreams/filter/gzip.hpp>
+#include <boost/iostreams/filter/lzma.hpp>
+#include <boost/iostreams/filter/zstd.hpp>
+#include <boost/iostreams/filtering_stream.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+namespace io = boost::iostreams;
+
+MechanicalModel fit_of(const std::vector<BatchFlight>& flights) {
+    std::vector<FlightSamples> samples;
+    for (const auto& flight : flights) {
+        samples.insert(samples.end(), flight.selection.flights.begin(), flight.selection.flights.end());
+    }
+    return fit_mechanical_model(samples);
+}
+
+void expect_weights_that_sum_to_one(const MechanicalModel& model) {
+    for (const auto phase : all_phases) {
+        double sum = 0.0;
+        for (const auto& flight : model.flights) {
+            if (!flight.phases[phase]) continue;
+            EXPECT_GE(flight.phases[phase]->weight, 0.0);
+            EXPECT_LE(flight.phases[phase]->weight, 1.0);
+            sum += flight.phases[phase]->weight;
+        }
+        EXPECT_NEAR(sum, 1.0, 1e-12) << to_string(phase);
+    }
+}
+
+TEST(SampleLogs, GiveTableOneBack) {
+    const auto published =
+        read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
+    const auto flights = test::batch(test::source_dir() / "logs", test::scratch_dir() / "out");
+    ASSERT_EQ(flights.size(), 6U);
+    const auto model = fit_of(flights);
+    const PerPhase<double> largest_rms_w{{0.10, 0.10, 0.30}};
+    for (const auto phase : all_phases) {
+        const auto& is = model.phases[phase];
+        const auto& should = published.phases[phase];
+        EXPECT_LE(curve_rms_difference_w(is, should), largest_rms_w[phase]) << to_string(phase);
+        EXPECT_NEAR(is.fourier.a0_w / should.fourier.a0_w, 1.0, 0.01) << to_string(phase);
+        EXPECT_NEAR(is.duration_s / should.duration_s, 1.0, 0.05) << to_string(phase);
+        EXPECT_EQ(is.flights, 6U);
+    }
+    expect_weights_that_sum_to_one(model);
+}
+
+template <typename Compressor>
+void write_compressed(const Compressor& compressor, const std::filesystem::path& from,
+                      const std::filesystem::path& to) {
+    const auto text = read_file(from);
+    std::string compressed;
+    io::filtering_ostream stream;
+    stream.push(compressor);
+    stream.push(io::back_inserter(compressed));
+    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+    stream.reset();
+    ASSERT_LT(compressed.size(), text.size() / 2);
+    write_file_atomically(to, compressed);
+}
+
+TEST(SampleLogs, AreTheSameCompressed) {
+    const auto folder = test::scratch_dir();
+    std::filesystem::copy_file(test::sample(3, ".log"), folder / "opterra_synthetic_03.log");
+    const auto data = folder / "opterra_synthetic_03.data";
+    write_compressed(io::gzip_compressor(), test::sample(3), data.string() + ".gz");
+    write_compressed(io::bzip2_compressor(), test::sample(3), data.string() + ".bz2");
+    write_compressed(io::lzma_compressor(), test::sample(3), data.string() + ".xz");
+    write_compressed(io::zstd_compressor(), test::sample(3), data.string() + ".zst");
+    const auto plain = read_flight(test::sample(3));
+    for (const auto* ending : {".gz", ".bz2", ".xz", ".zst"}) {
+        const auto series = read_flight(data.string() + ending);
+        EXPECT_EQ(series.flight, "opterra_synthetic_03");
+        EXPECT_EQ(series.warnings, plain.warnings);
+        EXPECT_EQ(to_csv(series), to_csv(plain)) << ending;
+        EXPECT_EQ(phases_csv(series, segment(series)), phases_csv(plain, segment(plain))) << ending;
+    }
+}
+
+TEST(SampleLogs, OfSeveralAircraftAskWhich) {
+    const auto folder = test::scratch_dir();
+    auto text = read_file(test::copy_sample(1, folder));
+    const auto second = read_file(test::sample(2));
+    for (std::size_t at = 0; at < second.size();) {
+        const auto end = second.find('\n', at);
+        auto line = second.substr(at, end - at);
+        at = end == std::string::npos ? second.size() : end + 1;
+        if (const auto id = line.find(" 7 "); id != std::string::npos) line.replace(id, 3, " 8 ");
+        text += line + "\n";
+    }
+    const auto both = test::write_text(folder / "opterra_synthetic_01.data", text);
+    EXPECT_EQ(test::rejected([&] { read_flight(both); }, folder),
+              "opterra_synthetic_01.data: several aircraft flew: 7, 8; choose one with --aircraft ID");
+    const auto seventh = read_flight(both, "7");
+    const auto alone = read_flight(test::sample(1));
+    EXPECT_EQ(phases_csv(seventh, segment(seventh)), phases_csv(alone, segment(alone)));
+    EXPECT_EQ(read_flight(both, "8").power_w, read_flight(test::sample(2)).power_w);
+}
+
+/// Where lift-off and touchdown are, read off plots (shared/formats.md, tolerance 5 s), and cruise power.
+struct KnownFlight {
+    const char* name;
+    double lift_off_s;
+    double touchdown_s;
+    double cruise_w;
+};
+
+TEST(RealFlights, GoThroughTheWholeBatch) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto out = test::scratch_dir() / "out";
+    const auto flights = test::batch(test::shared_dir() / "flights", out);
+    const std::vector<KnownFlight> known{{"20_07_03__12_17_45", 147, 1586, 29.9},
+                                         {"20_07_05__10_26_44", 210, 1937, 18.9},
+                                         {"20_07_10__06_53_03", 321, 1100, 22.0}};
+    std::size_t found = 0;
+    for (const auto& flight : flights) {
+        // The other two measured no current.
+        EXPECT_EQ(flight.record.accepted, flight.record.flight.starts_with("20_07_")) << flight.record.flight;
+        for (const auto& [name, lift_off_s, touchdown_s, cruise_w] : known) {
+            if (flight.record.flight != name) continue;
+            ++found;
+            ASSERT_EQ(flight.record.phases.size(), 3U);
+            EXPECT_NEAR(flight.record.phases[0].start_s, lift_off_s, 5.0) << name;
+            EXPECT_NEAR(flight.record.phases[2].end_s, touchdown_s, 5.0) << name;
+            EXPECT_NEAR(flight.record.phases[1].statistics.mean_power_w, cruise_w, 0.3) << name;
+        }
+    }
+    EXPECT_EQ(found, known.size());
+}
+
+double weight_of(const MechanicalModel& model, const std::string& flight, Phase phase) {
+    for (const auto& part : model.flights) {
+        if (part.flight == flight) return part.phases[phase].value().weight;
+    }
+    throw std::runtime_error("the model has no flight " + flight);
+}
+
+TEST(RealFlights, ConvergeToAModel) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto flights = test::batch(test::shared_dir() / "flights", test::scratch_dir() / "out");
+    const auto model = fit_of(flights);
+    ASSERT_EQ(model.flights.size(), 3U);
+    expect_weights_that_sum_to_one(model);
+    for (const auto phase : all_phases) {
+        const auto& fitted = model.phases[phase];
+        EXPECT_EQ(fitted.flights, 3U) << to_string(phase);
+        // The weighted average of the flights' measured energy is what the model's curve needs.
+        double measured_w = 0.0;
+        for (const auto& flight : flights) {
+            for (const auto& recorded : flight.record.phases) {
+                if (recorded.phase != phase) continue;
+                measured_w += weight_of(model, flight.record.flight, phase) *
+                              units::joule_from_wh(recorded.statistics.energy_wh) /
+                              (recorded.end_s - recorded.start_s);
+            }
+        }
+        const double fitted_w = energy_j(fitted.fourier, fitted.duration_s) / fitted.duration_s;
+        EXPECT_NEAR(fitted_w, measured_w, 0.05 * measured_w + 0.2) << to_string(phase);
+    }
+    // It is written as a model that can be read again.
+    const auto file = test::scratch_dir() / "model.toml";
+    write_file_atomically(file, to_toml(model));
+    EXPECT_EQ(to_toml(read_mechanical_model(file)), to_toml(model));
+}
+
+}  // namespace
+}  // namespace flightwatt
