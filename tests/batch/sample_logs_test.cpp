@@ -70,6 +70,14 @@ TEST(SampleLogs, GiveTableOneBack) {
     expect_weights_that_sum_to_one(model);
 }
 
+TEST(SampleLogs, GiveTheSameModelWithAnyNumberOfJobs) {
+    const auto folder = test::scratch_dir();
+    const auto logs = test::source_dir() / "logs";
+    const auto model = to_toml(fit_of(test::batch(logs, folder / "1", 1)));
+    EXPECT_EQ(to_toml(fit_of(test::batch(logs, folder / "5", 5))), model);
+    EXPECT_EQ(to_toml(fit_of(test::batch(logs, folder / "1", 5))), model);  // remembered
+}
+
 template <typename Compressor>
 void write_compressed(const Compressor& compressor, const std::filesystem::path& from,
                       const std::filesystem::path& to) {
