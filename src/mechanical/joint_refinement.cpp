@@ -75,16 +75,19 @@ ceres::Solver::Options solver_options() {
 JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                         double start_rad) {
     double theta_rad = start_rad;
-    std::vector<Eigen::VectorXd> coefficients(flights.size());
+    // Side by side, in the flights' order: Ceres goes through a group's blocks in the order of their
+    // addresses, and the answer's last digits must not depend on where the heap put them.
+    Eigen::MatrixXd coefficients(coefficient_count(order), static_cast<Eigen::Index>(flights.size()));
     ceres::Problem problem;
     auto options = solver_options();
     options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     for (std::size_t i = 0; i < flights.size(); ++i) {
         const auto start = fit_at(flights[i], order, start_rad);
-        coefficients[i] = start.orthonormal;
+        auto own = coefficients.col(static_cast<Eigen::Index>(i));
+        own = start.orthonormal;
         problem.AddResidualBlock(new FlightCost(flights[i], start.from_orthonormal), nullptr, &theta_rad,
-                                 coefficients[i].data());
-        options.linear_solver_ordering->AddElementToGroup(coefficients[i].data(), 0);
+                                 own.data());
+        options.linear_solver_ordering->AddElementToGroup(own.data(), 0);
     }
     options.linear_solver_ordering->AddElementToGroup(&theta_rad, 1);
     problem.SetParameterLowerBound(&theta_rad, 0, range.low_rad);
