@@ -1,6 +1,7 @@
 // flightwatt batch: parse and segment every log, incrementally, and fit them.
 
 #include "base/atomic_file.h"
+#include "base/toml_reader.h"
 #include "batch/batch_run.h"
 #include "batch/folder_lock.h"
 #include "cli/stage.h"
@@ -38,8 +39,7 @@ void report_notes(const cli::StageCall& call, const std::vector<BatchFlight>& fl
             cli::warn(call, fmt::format("{}: {}", flight.record.flight, warning));
         }
         for (const auto& left_out : flight.selection.left_out) {
-            cli::warn(call, fmt::format("{}: {} is left out of the fit: {}", left_out.flight,
-                                        to_string(left_out.phase), left_out.reason));
+            cli::warn(call, to_string(left_out));
         }
         if (!flight.record.accepted) {
             cli::note(call, fmt::format("{}: rejected: {}", flight.record.flight, flight.record.error));
@@ -88,6 +88,18 @@ unsigned read_jobs(const cli::StageCall& call) {
     return static_cast<unsigned>(jobs);
 }
 
+void refuse_unknown_flights(const std::set<std::string>& keep, const std::vector<LogFile>& logs) {
+    std::vector<std::string> names;
+    names.reserve(logs.size());
+    for (const auto& log : logs) names.push_back(log.flight);
+    for (const auto& name : keep) {
+        if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+        const auto near = nearest_word(name, names);
+        throw UsageError(fmt::format("--keep {}: there is no such flight{}", name,
+                                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+    }
+}
+
 int batch(const cli::StageCall& call) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
     const auto fit_options = read_fit_options(call);  // refuses bad options before the work
@@ -97,8 +109,13 @@ int batch(const cli::StageCall& call) {
     options.out = *call.output;
     options.aircraft_id = call.maybe<std::string>("aircraft");
     options.jobs = read_jobs(call);
-    options.needed_samples = samples_needed(fit_options.phases.order);
+    options.correct_idle_offset = call.has("correct-idle-offset");
     const auto logs = find_logs(call.inputs);
+    if (const auto keep = call.maybe<std::vector<std::string>>("keep")) {
+        options.keep.insert(keep->begin(), keep->end());
+        refuse_unknown_flights(options.keep, logs);
+    }
+    options.needed_samples = samples_needed(fit_options.phases.order);
     make_directories(options.out);
     const FolderLock lock(options.out);
     const auto flights = run_batch(logs, options, progress_line(call));
@@ -146,6 +163,7 @@ int main(int argc, char** argv) {
         "others go on; the exit code is then 3.";
     stage.output_help = "the folder of the results";
     add_fit_options(stage.options);
+    add_power_options(stage.options);
     stage.options.add_options()("name", po::value<std::string>()->value_name("NAME")->default_value("batch"),
                                 "the model's name")(
         "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(

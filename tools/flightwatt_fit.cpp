@@ -3,10 +3,12 @@
 #include "cli/stage.h"
 #include "fit_options.h"
 #include "flight/flight_reader.h"
+#include "flight/power_report.h"
 #include "flight/segmentation.h"
 #include "mechanical/flight_samples.h"
 #include "table_one_output.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -17,15 +19,20 @@ using namespace flightwatt;
 
 FlightSelection read_selection(const cli::StageCall& call, const std::string& file,
                                std::size_t needed_samples) {
-    const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
+    auto series = read_flight(file, call.maybe<std::string>("aircraft"));
     const auto phases = segment(series);
     require_sortie(series, phases, file);
+    const auto power = examine_power(series, phases);
+    if (call.has("correct-idle-offset")) correct_idle_offset(series, power.idle);
     for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
     for (const auto& warning : phases.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
     auto selection = select_samples(series, phases, needed_samples);
+    const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
+    if (!power.absurdities.empty() && std::find(keep.begin(), keep.end(), series.flight) == keep.end()) {
+        leave_out_all(selection, series.flight, describe_absurdities(power.absurdities));
+    }
     for (const auto& left_out : selection.left_out) {
-        cli::warn(call, fmt::format("{}: {} is left out: {}", left_out.flight, to_string(left_out.phase),
-                                    left_out.reason));
+        cli::warn(call, to_string(left_out));
     }
     return selection;
 }
@@ -69,6 +76,7 @@ int main(int argc, char** argv) {
         "output\n"
         "as TOML; with -o it goes to the file and Table I is shown.";
     add_fit_options(stage.options);
+    add_power_options(stage.options);
     stage.options.add_options()("name", po::value<std::string>()->value_name("NAME"), "the model's name")(
         "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
         "table", po::value<std::string>()->value_name("FILE"), "write Table I as .txt, .csv or .md")(

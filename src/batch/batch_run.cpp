@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/fingerprint.h"
 #include "flight/flight_reader.h"
+#include "flight/power_report.h"
 #include "flight/series_csv.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
@@ -34,10 +35,11 @@ std::filesystem::path result_path(const BatchOptions& options, const std::string
 /// Of everything that the result depends on.
 std::string fingerprint_of(const LogFile& log, const BatchOptions& options) {
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 2");
+    fingerprint.add(FLIGHTWATT_VERSION " record 3");
     fingerprint.add(log.flight);
     fingerprint.add(log.path.string());
     fingerprint.add(options.aircraft_id.value_or(""));
+    fingerprint.add(options.correct_idle_offset ? "idle offset corrected" : "");
     fingerprint.add(DataFile(log.path).text());
     const auto configuration = find_log_file(log.path);
     fingerprint.add(configuration ? read_file(*configuration) : "no .log");
@@ -87,6 +89,16 @@ std::string describe(const InputError& error) {
                        error.hint());
 }
 
+/// What is fitted of a flight: nothing if its power record is absurd, unless the user keeps it.
+FlightSelection select_for_fit(const FlightSeries& series, const FlightPhases& phases,
+                               const FlightRecord& record, const BatchOptions& options) {
+    auto selection = select_samples(series, phases, options.needed_samples);
+    if (!record.absurdities.empty() && !options.keep.contains(series.flight)) {
+        leave_out_all(selection, series.flight, describe_absurdities(record.absurdities));
+    }
+    return selection;
+}
+
 /// Reads, segments and writes one log. Throws InputError where it cannot be used.
 BatchFlight do_accepted(const LogFile& log, const BatchOptions& options) {
     BatchFlight done;
@@ -94,8 +106,11 @@ BatchFlight do_accepted(const LogFile& log, const BatchOptions& options) {
     series.flight = log.flight;
     const auto phases = segment(series);
     require_sortie(series, phases, log.path.string());
+    const auto power = examine_power(series, phases);
+    if (options.correct_idle_offset) correct_idle_offset(series, power.idle);
     done.record = record_of(series, phases);
-    done.selection = select_samples(series, phases, options.needed_samples);
+    done.record.absurdities = power.absurdities;
+    done.selection = select_for_fit(series, phases, done.record, options);
     write_file_atomically(result_path(options, log.flight, series_ending), to_csv(series));
     write_file_atomically(result_path(options, log.flight, phases_ending), phases_csv(series, phases));
     return done;
@@ -112,7 +127,7 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
             if (!done.record.accepted) return done;
             auto series = read_series_csv(result_path(options, log.flight, series_ending));
             series.flight = log.flight;
-            done.selection = select_samples(series, phases_of(done.record), options.needed_samples);
+            done.selection = select_for_fit(series, phases_of(done.record), done.record, options);
             return done;
         }
         remove_results(options, log.flight);

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct BatchOptions {
     std::optional<std::string> aircraft_id;
     unsigned jobs = 0;  ///< logs at a time; 0: one a core
     std::size_t needed_samples = 8;
+    bool correct_idle_offset = false;  ///< see correct_idle_offset()
+    std::set<std::string> keep = {};   ///< flights that are fitted though their power record is absurd
 };
 
 /// One log of a batch, done or found up to date.

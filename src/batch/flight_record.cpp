@@ -93,7 +93,8 @@ std::string to_json_text(const FlightRecord& record) {
                     {"aircraft_id", record.aircraft_id},
                     {"power_source", record.power_source},
                     {"phases", phases},
-                    {"warnings", record.warnings}};
+                    {"warnings", record.warnings},
+                    {"absurdities", record.absurdities}};
     // File names need not be UTF-8, and a record must never fail for that.
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -112,6 +113,7 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
         record.power_source = json.at("power_source");
         for (const auto& phase : json.at("phases")) record.phases.push_back(recorded_phase(phase));
         record.warnings = json.at("warnings").get<std::vector<std::string>>();
+        record.absurdities = json.at("absurdities").get<std::vector<std::string>>();
         return record;
     } catch (const std::exception&) {
         return std::nullopt;  // damaged or of another version: the log is done again

@@ -36,6 +36,7 @@ struct FlightRecord {
     std::string power_source;
     std::vector<RecordedPhase> phases;
     std::vector<std::string> warnings;
+    std::vector<std::string> absurdities;  ///< of its power record: see PowerReport
 };
 
 /// The record of a flight that was read and segmented.

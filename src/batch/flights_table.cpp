@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt {
 namespace {
@@ -63,6 +64,10 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
     cells.push_back(fmt::format("{}", row.gaps));
     cells.push_back(fmt::format("{:.1f}", row.longest_gap_s));
     cells.push_back(fmt::format("{}", flight.record.warnings.size()));
+    const auto fitted =
+        std::count_if(row.phases.values.begin(), row.phases.values.end(),
+                      [&](const auto* phase) { return phase != nullptr && is_used(flight, *phase); });
+    cells.push_back(fmt::format("{} of 3", fitted));
     return cells;
 }
 
@@ -72,11 +77,12 @@ TextTable flights_table(const std::vector<BatchFlight>& flights) {
     TextTable table;
     table.header = {"flight",     "sortie",   "take-off s", "cruise s",  "landing s",
                     "take-off W", "cruise W", "landing W",  "energy Wh", "counter Wh",
-                    "samples",    "gaps",     "longest s",  "warnings"};
+                    "samples",    "gaps",     "longest s",  "warnings",  "phases fitted"};
     for (const auto& flight : flights) {
         if (!flight.record.accepted) {
             std::vector<std::string> row{flight.record.flight, "-"};
             row.resize(table.header.size(), "-");
+            row.back() = "rejected";
             table.rows.push_back(std::move(row));
             continue;
         }
@@ -90,23 +96,24 @@ std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
     std::string text =
         "flight,sortie,phase,start_s,end_s,duration_s,samples,mean_power_w,energy_wh,counter_energy_wh,used,"
         "gaps,"
-        "longest_gap_s,complete,aircraft_id,power_source,error\n";
+        "longest_gap_s,complete,aircraft_id,power_source,absurdities,error\n";
     for (const auto& flight : flights) {
         const auto& record = flight.record;
         const auto name = csv_cell(record.flight);
         if (!record.accepted) {
-            text += fmt::format("{},,,,,,,,,,false,,,,,,{}\n", name, csv_cell(record.error));
+            text += fmt::format("{},,,,,,,,,,false,,,,,,,{}\n", name, csv_cell(record.error));
             continue;
         }
         for (const auto& phase : record.phases) {
             const auto& statistics = phase.statistics;
             text += fmt::format(
-                "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},\n", name, phase.sortie,
+                "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},\n", name, phase.sortie,
                 to_string(phase.phase), phase.start_s, phase.end_s, phase.end_s - phase.start_s,
                 statistics.samples, statistics.mean_power_w, statistics.energy_wh,
                 statistics.counter_energy_wh ? fmt::format("{}", *statistics.counter_energy_wh) : "",
                 is_used(flight, phase), statistics.gaps, statistics.longest_gap_s, phase.complete,
-                csv_cell(record.aircraft_id), csv_cell(record.power_source));
+                csv_cell(record.aircraft_id), csv_cell(record.power_source),
+                csv_cell(fmt::format("{}", fmt::join(record.absurdities, "; "))));
         }
     }
     return text;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt {
 namespace {
@@ -154,6 +155,10 @@ PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases
     }
     find_absurdities(series, phases, report);
     return report;
+}
+
+std::string describe_absurdities(const std::vector<std::string>& absurdities) {
+    return fmt::format("absurd power record: {}; --keep overrules this", fmt::join(absurdities, ", "));
 }
 
 void correct_idle_offset(FlightSeries& series, const std::optional<IdleCurrent>& idle) {

@@ -39,6 +39,9 @@ struct PowerReport {
 /// counter that runs back by more than 5 % of what it counted; power that does not change at all in flight.
 PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases);
 
+/// The absurdities as the reason why a flight is not fitted, and how to overrule that.
+std::string describe_absurdities(const std::vector<std::string>& absurdities);
+
 /// Takes the idle current out of current and power (with the voltage measured at the same time; without one,
 /// the idle power out of the power). Counters stay as they are. Does nothing where no idle current is known.
 void correct_idle_offset(FlightSeries& series, const std::optional<IdleCurrent>& idle);

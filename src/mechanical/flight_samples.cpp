@@ -35,6 +35,12 @@ PhaseSamples samples_of(const FlightSeries& series, const PhaseSpan& span, const
 
 }  // namespace
 
+std::string to_string(const LeftOut& left_out) {
+    const auto what =
+        left_out.phase ? fmt::format("{} is", to_string(*left_out.phase)) : std::string("it is");
+    return fmt::format("{}: {} left out of the fit: {}", left_out.flight, what, left_out.reason);
+}
+
 FlightSelection select_samples(const FlightSeries& series, const FlightPhases& phases,
                                std::size_t needed_samples) {
     FlightSelection selection;
@@ -60,6 +66,11 @@ FlightSelection select_samples(const FlightSeries& series, const FlightPhases& p
         if (any) selection.flights.push_back(std::move(flight));
     }
     return selection;
+}
+
+void leave_out_all(FlightSelection& selection, const std::string& flight, const std::string& reason) {
+    selection.flights.clear();
+    selection.left_out.push_back({flight, std::nullopt, reason});
 }
 
 }  // namespace flightwatt

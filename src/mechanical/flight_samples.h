@@ -4,17 +4,21 @@
 #include "flight/segmentation.h"
 #include "mechanical/phase_samples.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace flightwatt {
 
-/// A phase that cannot be fitted, and why.
-struct LeftOutPhase {
+/// What is not fitted, and why.
+struct LeftOut {
     std::string flight;
-    Phase phase;
+    std::optional<Phase> phase;  ///< absent: the whole flight
     std::string reason;
 };
+
+/// "NAME: landing is left out: REASON".
+std::string to_string(const LeftOut& left_out);
 
 /// What a fit takes from one flight: the power samples of its complete phases, each on its own normalised
 /// time. Every sortie counts as a flight; from the second on it is called "NAME#2". Phases that are
@@ -22,10 +26,13 @@ struct LeftOutPhase {
 /// them (so that their time is not known) are left out, and reported.
 struct FlightSelection {
     std::vector<FlightSamples> flights;
-    std::vector<LeftOutPhase> left_out;
+    std::vector<LeftOut> left_out;
 };
 
 FlightSelection select_samples(const FlightSeries& series, const FlightPhases& phases,
                                std::size_t needed_samples);
+
+/// Leaves out every flight of the selection, for one reason.
+void leave_out_all(FlightSelection& selection, const std::string& flight, const std::string& reason);
 
 }  // namespace flightwatt
