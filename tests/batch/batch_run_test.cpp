@@ -208,6 +208,25 @@ TEST(Batch, TellsItsProgressOfEveryLogOnce) {
     EXPECT_THAT(names, UnorderedElementsAre(one, two, "opterra_synthetic_03", "opterra_synthetic_04"));
 }
 
+TEST(Batch, KeepsFlightsOfOneNameApart) {
+    const auto folder = test::scratch_dir();
+    copy_sample(1, folder / "in" / "monday", "flight");
+    copy_sample(2, folder / "in" / "tuesday", "flight");
+    const auto flights = batch(folder / "in", folder / "out");
+    ASSERT_EQ(flights.size(), 2U);
+    EXPECT_EQ(flights[0].selection.flights.at(0).flight, "flight");
+    EXPECT_EQ(flights[1].selection.flights.at(0).flight, "flight_2");
+    const auto written = folder / "out" / "flights";
+    EXPECT_NE(read_file(written / "flight.series.csv"), read_file(written / "flight_2.series.csv"));
+    EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), IsEmpty());
+    // The name belongs to the place in the list: what moves up is done again, not mistaken for the other.
+    const auto tuesday = read_file(written / "flight_2.series.csv");
+    std::filesystem::remove_all(folder / "in" / "monday");
+    EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), ElementsAre("flight"));
+    EXPECT_EQ(read_file(written / "flight.series.csv"), tuesday);
+    EXPECT_FALSE(std::filesystem::exists(written / "flight_2.series.csv"));
+}
+
 TEST(Batch, ReadsTheNamedAircraft) {
     const auto folder = test::scratch_dir();
     copy_sample(1, folder / "in");
