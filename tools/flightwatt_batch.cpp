@@ -24,8 +24,8 @@ BatchProgress progress_line(const cli::StageCall& call) {
                            : flight.was_up_to_date ? "up to date"
                                                    : "done";
         if (::isatty(STDERR_FILENO) != 0) {
-            fmt::print(stderr, "\r\033[K[{}/{}] {} {}{}", done, all, flight.record.flight, what,
-                       done == all ? "\r\033[K" : "");
+            fmt::print(stderr, "\r\033[K[{}/{}] {} {}{}", done, all, cli::one_line(flight.record.flight),
+                       what, done == all ? "\r\033[K" : "");
             std::fflush(stderr);
         } else {
             cli::note(call, fmt::format("[{}/{}] {}: {}", done, all, flight.record.flight, what));

@@ -9,6 +9,9 @@
 #include "mechanical/mechanical_model.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <random>
 
@@ -101,6 +104,28 @@ void require_between(const char* option, double value, double low, double high) 
     throw UsageError(fmt::format("--{} is {}, expected {} to {}", option, value, low, high));
 }
 
+/// Refuses models of which no log could be made: days long, or with power beyond any number.
+void require_flyable(const MechanicalModel& model, const std::string& file) {
+    constexpr double longest_phase_s = 1e5;
+    constexpr double most_power_w = 1e6;
+    for (const auto phase : all_phases) {
+        const auto& fourier = model.phases[phase].fourier;
+        const double duration_s = model.phases[phase].duration_s;
+        double most_w = std::abs(fourier.a0_w);
+        for (const double part_w : fourier.cos_w) most_w += std::abs(part_w);
+        for (const double part_w : fourier.sin_w) most_w += std::abs(part_w);
+        if (duration_s > longest_phase_s) {
+            throw InputError({file}, fmt::format("{} takes {} s, expected at most {} s", to_string(phase),
+                                                 duration_s, longest_phase_s));
+        }
+        if (!(most_w <= most_power_w)) {
+            throw InputError({file},
+                             fmt::format("the coefficients of {} add up to {} W, expected at most {} W",
+                                         to_string(phase), most_w, most_power_w));
+        }
+    }
+}
+
 void check_options(const cli::StageCall& call) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
     require_between("flights", call.get<int>("flights"), 1, most_flights);
@@ -121,6 +146,7 @@ int synthesize(const cli::StageCall& call) {
     const auto seed = static_cast<std::uint64_t>(call.get<std::int64_t>("seed"));
     const auto hazard_list = chosen_hazards(call.get<std::string>("hazard"));
     const auto model = read_mechanical_model(call.inputs.front());
+    require_flyable(model, call.inputs.front());
     make_directories(*call.output);
     SpreadOptions spread;
     spread.bands = call.get<double>("spread");

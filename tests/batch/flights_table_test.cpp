@@ -76,10 +76,10 @@ TEST(FlightsTable, HasARowASortie) {
     ASSERT_EQ(table.rows.size(), 3U);
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
     EXPECT_THAT(table.rows[0], testing::ElementsAre("twice, \"up\"", "1", "20", "-", "-", "25.0", "-", "-",
-                                                    "0.500", "0.250", "10", "0", "0.0", "0"));
+                                                    "0.500", "0.250", "10", "0", "0.0", "0", "1 of 3"));
     // An asterisk: the log ends in the landing. Its counter is not known, so neither is the sortie's.
     EXPECT_THAT(table.rows[1], testing::ElementsAre("twice, \"up\"", "2", "-", "300", "50*", "-", "25.0",
-                                                    "25.0", "1.000", "-", "20", "0", "0.0", "0"));
+                                                    "25.0", "1.000", "-", "20", "0", "0.0", "0", "1 of 3"));
     EXPECT_EQ(table.rows[2][0], "bad");
     EXPECT_EQ(table.rows[2][2], "-");
 }
