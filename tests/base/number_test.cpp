@@ -24,6 +24,7 @@ TEST(ParseNumber, RefusesWhatIsNoWholeFiniteNumber) {
     for (const auto* text : {"", " ", "12,5", "12.5x", "nan", "inf", "-", ".", "1e", "1 ", " 1", "0x10",
                              "--1", "1.2.3", "1e999"}) {
         EXPECT_FALSE(parse_number(text).has_value()) << "'" << text << "'";
+        EXPECT_TRUE(std::isnan(number_or_nan(text))) << "'" << text << "'";
     }
 }
 

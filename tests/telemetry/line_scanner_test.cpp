@@ -20,8 +20,16 @@ std::vector<std::vector<std::string>> scan(const std::string& text) {
     const auto count = scan_lines({exact.data(), exact.size()}, [&](const ScannedLine& line) {
         std::vector<std::string> words;
         WordCursor cursor(line);
+        const WordCursor at_begin = cursor;
         std::string_view word;
-        while (cursor.next(word)) words.emplace_back(word);
+        while (cursor.next(word)) {
+            words.emplace_back(word);
+            EXPECT_EQ(at_begin.words_left(), words.size() + cursor.words_left());
+        }
+        EXPECT_EQ(at_begin.words_left(), words.size());
+        const auto third = third_word(line);
+        EXPECT_EQ(third.data() != nullptr, words.size() >= 3);
+        EXPECT_EQ(third, words.size() >= 3 ? words[2] : "");
         EXPECT_EQ(line.number, lines.size() + 1);
         lines.push_back(words);
     });
@@ -55,6 +63,15 @@ TEST(LineScanner, AgreesWithASimpleSplitOnLinesOfAnyLength) {
         }
         ASSERT_EQ(scan(text), expected) << "round " << round;
     }
+}
+
+TEST(LineScanner, CallsBeforeTheLastLinesGo) {
+    std::string last;
+    ScannedLine kept{};
+    scan_lines(
+        "1 20 PONG \n2 20 GPS 1", [&](const ScannedLine& line) { kept = line; },
+        [&] { last.assign(kept.begin, kept.end); });
+    EXPECT_EQ(last, "2 20 GPS 1");
 }
 
 }  // namespace

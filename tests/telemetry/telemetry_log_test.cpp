@@ -91,6 +91,22 @@ TEST(TelemetryLog, KeepsSendersApartAndReadsWindowsLineEnds) {
     EXPECT_TRUE(log.senders[0].table("ENERGY")->column("voltage")->values == std::vector<double>{11.5});
 }
 
+TEST(TelemetryLog, KeepsSendersInTheOrderOfTheirFirstLine) {
+    std::string text = "1 7 ENERGY 0 12. 0. 0. 0. 0.\n";
+    for (int i = 2; i < 100; ++i) text += std::to_string(i) + " 20 GPS 1\n";
+    // Read message by message, the first of sender 3 comes before the first of sender 20.
+    text += "100 20 PONG \n101 3 ENERGY 69 11.5 3. 34.5 0.1 0.2\n";
+    const auto log = parse_telemetry(
+        text, "x.data",
+        LogConfiguration{
+            {}, {{"ENERGY", builtin_definitions("ENERGY")[1]}, {"PONG", {"PONG", {}, ".log"}}}, {}},
+        energy);
+    ASSERT_EQ(log.senders.size(), 3u);
+    EXPECT_EQ(log.senders[0].id, "7");
+    EXPECT_EQ(log.senders[1].id, "20");
+    EXPECT_EQ(log.senders[2].id, "3");
+}
+
 TEST(TelemetryLog, SurvivesEveryCutAndEveryChangedByte) {
     const std::string text =
         "1.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n2 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n3 20 PONG \n";
