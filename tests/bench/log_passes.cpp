@@ -1,0 +1,70 @@
+#include "log_passes.h"
+
+#include "base/number.h"
+#include "flight/telemetry_series.h"
+#include "telemetry/line_scanner.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+namespace flightwatt::bench {
+
+std::vector<MessageRequest> energy_messages() {
+    constexpr std::array<std::string_view, 5> names{"ENERGY", "ESTIMATOR", "NAVIGATION", "PPRZ_MODE",
+                                                    "TAKEOFF"};
+    auto requests = flight_messages();
+    std::erase_if(requests, [&](const MessageRequest& request) {
+        return std::find(names.begin(), names.end(), request.message) == names.end();
+    });
+    return requests;
+}
+
+std::size_t row_count(const TelemetryLog& log) {
+    std::size_t rows = 0;
+    for (const auto& sender : log.senders) {
+        for (const auto& table : sender.tables) rows += table.time_s.size();
+    }
+    return rows;
+}
+
+WordCount count_words(std::string_view text) {
+    WordCount count;
+    count.lines = scan_lines(text, [&](const ScannedLine& line) {
+        WordCursor words(line);
+        std::string_view word;
+        while (words.next(word)) {
+            ++count.words;
+            count.characters += word.size();
+        }
+    });
+    return count;
+}
+
+NumberCount count_numbers(std::string_view text) {
+    NumberCount count;
+    count.lines = scan_lines(text, [&](const ScannedLine& line) {
+        WordCursor words(line);
+        std::string_view word;
+        for (int i = 0; words.next(word); ++i) {
+            if (i == 1 || i == 2) continue;  // the sender and the message's name
+            const double number = number_or_nan(word);
+            if (std::isnan(number)) {
+                ++count.others;
+            } else {
+                ++count.numbers;
+                count.sum += number;
+            }
+        }
+    });
+    return count;
+}
+
+std::filesystem::path benchmark_log() {
+    if (const char* named = std::getenv("FLIGHTWATT_BENCH_LOG"); named != nullptr && *named != '\0')
+        return named;
+    return std::filesystem::path(FLIGHTWATT_SOURCE_DIR) / "logs" / "opterra_synthetic_01.data";
+}
+
+}  // namespace flightwatt::bench
