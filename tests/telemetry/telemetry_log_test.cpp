@@ -137,7 +137,7 @@ TEST(TelemetryLog, RefusesFilesWithoutTelemetry) {
     std::ofstream(folder / "rubbish.data", std::ios::binary) << std::string(
         "\x7F"
         "ELF\0\1 \2 \3\n\0\0\0 x y",
-        20);
+        18);
     std::ofstream(folder / "packed.data", std::ios::binary) << std::string("PK\x03\x04zip", 7);
     std::ofstream(folder / "broken.data.gz", std::ios::binary) << std::string("\x1F\x8B\x08\0\0broken", 11);
     std::filesystem::create_directory(folder / "folder.data");
