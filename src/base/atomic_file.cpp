@@ -33,7 +33,8 @@ bool write_all(int file, std::string_view content) {
 }  // namespace
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
-    if (std::filesystem::is_directory(path)) fail(path, EISDIR);
+    std::error_code unknown;  // a name that is too long, say: opening it will tell
+    if (std::filesystem::is_directory(path, unknown)) fail(path, EISDIR);
     // Devices and pipes (-o /dev/stdout) cannot be replaced: write them directly.
     std::error_code ignored;
     const bool special =
@@ -65,7 +66,8 @@ void make_directories(const std::filesystem::path& path) {
 }
 
 std::string read_file(const std::filesystem::path& path) {
-    if (std::filesystem::is_directory(path)) {
+    std::error_code unknown;
+    if (std::filesystem::is_directory(path, unknown)) {
         throw InputError({path.string()}, "is a folder, expected a file");
     }
     std::ifstream file(path, std::ios::binary);

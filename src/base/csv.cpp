@@ -49,6 +49,8 @@ std::vector<CsvTable::Cell> split_line(std::string_view text, const Location& wh
 
 CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header) {
     CsvTable table{file, {}, {}};
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // spreadsheets begin with it
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     std::size_t line_number = 0;
     std::size_t width = 0;
     while (!text.empty()) {

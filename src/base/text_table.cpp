@@ -23,6 +23,28 @@ bool is_numeric_column(const TextTable& table, std::size_t column) {
     });
 }
 
+/// A name may hold a line break or a tab: in a table it must not.
+TextTable without_controls(TextTable table) {
+    const auto clean = [](std::vector<std::string>& cells) {
+        for (auto& cell : cells) {
+            std::replace_if(
+                cell.begin(), cell.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+        }
+    };
+    clean(table.header);
+    for (auto& row : table.rows) clean(row);
+    return table;
+}
+
+std::string escaped_bars(const std::string& cell) {
+    std::string escaped;
+    for (const char c : cell) {
+        if (c == '|') escaped += '\\';
+        escaped += c;
+    }
+    return escaped;
+}
+
 std::string padded(const std::string& cell, std::size_t width, bool right) {
     const std::string blanks(width - std::min(width, width_of(cell)), ' ');
     return right ? blanks + cell : cell + blanks;
@@ -30,7 +52,8 @@ std::string padded(const std::string& cell, std::size_t width, bool right) {
 
 }  // namespace
 
-std::string to_text(const TextTable& table) {
+std::string to_text(const TextTable& raw) {
+    const auto table = without_controls(raw);
     std::vector<std::size_t> widths;
     std::vector<bool> right;
     for (std::size_t column = 0; column < table.header.size(); ++column) {
@@ -54,11 +77,12 @@ std::string to_text(const TextTable& table) {
     return text;
 }
 
-std::string to_markdown(const TextTable& table) {
+std::string to_markdown(const TextTable& raw) {
+    const auto table = without_controls(raw);
     std::string text;
     const auto add_row = [&](const std::vector<std::string>& row) {
         text += '|';
-        for (const auto& cell : row) text += ' ' + cell + " |";
+        for (const auto& cell : row) text += ' ' + escaped_bars(cell) + " |";
         text += '\n';
     };
     add_row(table.header);

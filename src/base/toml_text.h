@@ -7,7 +7,7 @@
 /// Values as TOML spells them.
 namespace flightwatt {
 
-/// A basic string, quoted and escaped.
+/// A basic string, quoted and escaped; bytes that are not UTF-8 become U+FFFD.
 std::string toml_string(std::string_view text);
 
 /// The shortest text that reads back as the same double, and as a float rather than an integer.

@@ -29,8 +29,10 @@ double internal_current_a(const Battery& battery, double power_w) {
 Battery battery_from(const TomlTable& table) {
     const auto positive = [&](std::string_view key) {
         const double value = table.number(key);
-        if (value <= 0.0) {
-            throw InputError(table.where(key), fmt::format("{} = {} is not positive", key, value));
+        constexpr double absurd = 1e6;  // squared and divided, values below stay numbers
+        if (value <= 0.0 || value > absurd) {
+            throw InputError(table.where(key), fmt::format("{} = {} is not {}", key, value,
+                                                           value <= 0.0 ? "positive" : "of this world"));
         }
         return value;
     };

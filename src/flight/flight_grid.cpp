@@ -1,11 +1,14 @@
 #include "flight/flight_grid.h"
 
 #include "base/error.h"
+#include "base/units.h"
 #include "flight/track.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace flightwatt {
 namespace {
@@ -51,6 +54,11 @@ FlightGrid make_grid(const FlightSeries& series) {
     FlightGrid grid;
     grid.begin_s = series.time_s.front();
     const double span_s = series.time_s.back() - grid.begin_s;
+    constexpr double longest_s = 30.0 * 24.0 * units::seconds_per_hour;
+    if (!(span_s <= longest_s)) {
+        throw InputError({series.file}, fmt::format("lasts {:.4g} s, more than a month", span_s),
+                         "are its times in seconds?");
+    }
     const auto count = static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
     std::vector<double> time_s(count);
     for (std::size_t i = 0; i < count; ++i) time_s[i] = grid.time_s(i);

@@ -25,6 +25,7 @@ struct FlightWitnesses {
 /// The physical channels of one aircraft in one log, on the clock of its power samples: `time_s` rises
 /// strictly, and every channel is as long as it or empty (the log has none).
 struct FlightSeries {
+    std::string file;           ///< it was read from, for errors
     std::string flight;         ///< the log's name without folder and ending
     std::string aircraft_id;    ///< as the log writes it; empty if unknown (a series CSV)
     std::string aircraft_name;  ///< from the .log; may be empty

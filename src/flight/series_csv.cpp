@@ -18,7 +18,12 @@ std::vector<std::vector<double> FlightSeries::*> bind_columns(const CsvTable& ta
     std::vector<std::vector<double> FlightSeries::*> targets;
     std::vector<std::string> known{"time_s"};
     for (const auto& channel : series_channels()) known.emplace_back(channel.name);
-    for (const auto& column : table.columns) {
+    for (auto column_at = table.columns.begin(); column_at != table.columns.end(); ++column_at) {
+        const auto& column = *column_at;
+        if (std::find(table.columns.begin(), column_at, column) != column_at) {
+            throw InputError({table.file, 1}, fmt::format("column '{}' stands there twice", column),
+                             "keep one of them");
+        }
         if (column == "time_s") {
             targets.push_back(&FlightSeries::time_s);
             continue;
@@ -82,6 +87,7 @@ FlightSeries read_series_csv(const std::filesystem::path& path) {
     if (table.rows.size() < 2) throw InputError({table.file}, "has fewer than two samples");
     FlightSeries series;
     series.flight = flight_name(path);
+    series.file = path.string();
     series.power_source = "series CSV";
     for (const auto& column : table.columns) series.sources[column] = "series CSV";
     for (const auto& row : table.rows) {

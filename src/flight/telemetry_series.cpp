@@ -257,6 +257,7 @@ std::vector<std::string> flown_aircraft(const TelemetryLog& log) {
 
 FlightSeries flight_series(const TelemetryLog& log, const std::string& aircraft_id) {
     FlightSeries series;
+    series.file = log.data_file.string();
     series.flight = log.flight;
     series.aircraft_id = aircraft_id;
     const auto sender = std::find_if(log.senders.begin(), log.senders.end(),

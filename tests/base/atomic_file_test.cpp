@@ -24,6 +24,7 @@ TEST(AtomicFile, RefusesWhatCannotBeWrittenAndKeepsWhatWasThere) {
     EXPECT_THROW(write_file_atomically(folder, "x"), OutputError);
     EXPECT_TRUE(std::filesystem::is_directory(folder));
     EXPECT_THROW(write_file_atomically("/dev/full", "x"), OutputError);
+    EXPECT_THROW(write_file_atomically(folder / std::string(300, 'x'), "x"), OutputError);
     EXPECT_THROW(make_directories(folder / "a.txt" / "b" / std::string(300, 'x')), OutputError);
 }
 

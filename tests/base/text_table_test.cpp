@@ -16,5 +16,11 @@ TEST(TextTable, IsMarkdownAndCsvToo) {
     EXPECT_EQ(to_csv(table), "flight,power_w\n\"a, b\",1.5\nÜnal,-\n");
 }
 
+TEST(TextTable, KeepsOddNamesFromBreakingTheTable) {
+    const TextTable odd{{"name"}, {{"two\nlines | one"}}};
+    EXPECT_EQ(to_text(odd), "name\ntwo lines | one\n");
+    EXPECT_EQ(to_markdown(odd), "| name |\n|---|\n| two lines \\| one |\n");
+}
+
 }  // namespace
 }  // namespace flightwatt

@@ -61,6 +61,14 @@ TEST(TomlText, ReadsBackExactly) {
     EXPECT_THAT(root.numbers("z"), ElementsAre(1.0, 1e-300));
 }
 
+TEST(TomlText, ReplacesWhatIsNotUtf8) {
+    EXPECT_EQ(toml_string("Ünal \xF0\x9F\x9B\xA9"), "\"Ünal \xF0\x9F\x9B\xA9\"");
+    for (const auto* bad : {"\xFF", "\xC0\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xE2\x82"}) {
+        const auto root = parse_toml("s = " + toml_string(std::string("a") + bad), "m.toml");
+        EXPECT_THAT(root.string("s"), HasSubstr("\xEF\xBF\xBD")) << toml_string(bad);
+    }
+}
+
 TEST(NearestWord, FindsMisspellingsAndNothingElse) {
     EXPECT_EQ(nearest_word("landng", {"takeoff", "cruise", "landing"}), "landing");
     EXPECT_EQ(nearest_word("elephant", {"takeoff", "cruise", "landing"}), "");

@@ -251,6 +251,9 @@ TEST(Segmentation, RefusesWhatCannotBeSegmented) {
     auto series = series_of(sortie(100));
     series.altitude_m.clear();
     EXPECT_THROW(segment(series), InputError);
+    auto slow = series_of(sortie(100));
+    for (auto& t : slow.time_s) t *= 1e9;
+    EXPECT_THROW(segment(slow), InputError);
     SegmentationOptions options;
     options.cruise_fraction = 1.5;
     EXPECT_THROW(segment(series_of(sortie(100)), options), UsageError);

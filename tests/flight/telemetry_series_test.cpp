@@ -152,6 +152,13 @@ TEST_F(ReadFlight, RefusesBadSeriesWithTheirPlace) {
                 HasSubstr("has no column 'power_w'; its columns are time_s, power_kw"));
     EXPECT_THAT(at("time_s,power_w,altitud_m\n1,2,3\n"), HasSubstr("did you mean 'altitude_m'?"));
     EXPECT_THAT(at("time_s,power_w\n1,2\n"), HasSubstr("fewer than two samples"));
+    EXPECT_THAT(at("time_s,power_w,power_w\n1,2,3\n2,2,3\n"),
+                HasSubstr("column 'power_w' stands there twice"));
+}
+
+TEST_F(ReadFlight, ReadsASeriesThatBeginsWithAByteOrderMark) {
+    const auto path = write("bom.csv", "\xEF\xBB\xBFtime_s,power_w\n1,2\n2,3\n");
+    EXPECT_THAT(read_flight(path).power_w, ElementsAre(2, 3));
 }
 
 TEST_F(ReadFlight, RefusesTheRealLogsThatMeasuredNoPower) {
