@@ -140,6 +140,9 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     const double fixed = std::clamp((time_s - flight.estimator_fix_s) / estimator_climb_s, 0.0, 1.0);
     state.estimated_altitude_m = flight.estimator_fix_s > 0.0 ? fixed * state.altitude_m : state.altitude_m;
     state.airborne = time_s >= flight.lift_off_s && time_s < flight.end_s(Phase::landing);
+    state.airspeed_m_per_s = flight.airspeed_m_per_s;
+    state.wind_east_m_per_s = flight.wind_east_m_per_s;
+    state.wind_north_m_per_s = flight.wind_north_m_per_s;
     const double flown_s =
         std::clamp(time_s, flight.lift_off_s, flight.end_s(Phase::landing)) - flight.lift_off_s;
     const double angle = flown_s * flight.airspeed_m_per_s / flight.circle_radius_m;

@@ -40,6 +40,9 @@ struct SyntheticState {
     double north_m = 0.0;
     double course_rad = 0.0;  ///< clockwise from north
     double ground_speed_m_per_s = 0.0;
+    double airspeed_m_per_s = 0.0;
+    double wind_east_m_per_s = 0.0;
+    double wind_north_m_per_s = 0.0;
     double power_w = 0.0;
     double throttle_percent = 0.0;
     int mode = 0;

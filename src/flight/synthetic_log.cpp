@@ -1,6 +1,7 @@
 #include "flight/synthetic_log.h"
 
 #include "base/units.h"
+#include "flight/synthetic_reports.h"
 #include "telemetry/log_writer.h"
 
 #include <cmath>
@@ -16,164 +17,6 @@ namespace {
 
 constexpr double tick_s = 0.05;
 constexpr auto aircraft_id = "7";
-constexpr double reference_east_m = 588000.0;
-constexpr double reference_north_m = 6148000.0;
-
-/// Everything that a message can tell at one moment.
-struct Moment {
-    double time_s = 0.0;
-    SyntheticState state;
-    double voltage_v = 0.0;
-    double current_a = 0.0;
-    double charge_ah = 0.0;
-    double energy_wh = 0.0;
-    double altitude_m = 0.0;  ///< as the estimator sees it
-    double flight_time_s = 0.0;
-};
-
-/// A periodic telemetry message: its definition and how its fields are written.
-struct Report {
-    double period_s;
-    MessageDefinition definition;
-    std::function<std::vector<std::string>(const Moment&)> fields;
-};
-
-MessageDefinition message(const char* name, std::vector<FieldDefinition> fields) {
-    return {name, std::move(fields), ".log"};
-}
-
-std::string whole(double value) { return fmt::format("{}", std::llround(value)); }
-
-/// Messages that power and phases are read from.
-std::vector<Report> flight_reports() {
-    return {
-        {1.1,
-         message("ENERGY", {{"throttle", "uint8", "%", "", {}},
-                            {"voltage", "float", "V", "", {}},
-                            {"current", "float", "A", "", {}},
-                            {"power", "float", "W", "", {}},
-                            {"charge", "float", "Ah", "", {}},
-                            {"energy", "float", "Wh", "", {}}}),
-         [](const Moment& m) {
-             return std::vector{whole(m.state.throttle_percent), ocaml_float(m.voltage_v),
-                                ocaml_float(m.current_a),        ocaml_float(m.voltage_v * m.current_a),
-                                ocaml_float(m.charge_ah),        ocaml_float(m.energy_wh)};
-         }},
-        {0.5, message("ESTIMATOR", {{"z", "float", "m", "", {}}, {"z_dot", "float", "m/s", "", {}}}),
-         [](const Moment& m) {
-             return std::vector{ocaml_float(m.altitude_m),
-                                ocaml_float(std::round(m.state.climb_m_per_s * 100.0) / 100.0)};
-         }},
-        {0.5,
-         message("NAVIGATION", {{"cur_block", "uint8", "", "", {}},
-                                {"cur_stage", "uint8", "", "", {}},
-                                {"pos_x", "float", "m", "", {}},
-                                {"pos_y", "float", "m", "", {}},
-                                {"dist_wp", "float", "m", "", {}},
-                                {"dist_home", "float", "m", "", {}},
-                                {"flight_time", "uint16", "s", "", {}},
-                                {"block_time", "uint16", "s", "", {}},
-                                {"stage_time", "uint16", "s", "", {}},
-                                {"kill_auto_throttle", "uint8", "bool", "", {}},
-                                {"circle_count", "uint8", "", "", {}},
-                                {"oval_count", "uint8", "", "", {}}}),
-         [](const Moment& m) {
-             const auto tenths = [](double value) { return ocaml_float(std::round(value * 10.0) / 10.0); };
-             return std::vector{std::to_string(m.state.block),
-                                std::string("0"),
-                                tenths(m.state.east_m),
-                                tenths(m.state.north_m),
-                                tenths(0.0),
-                                tenths(std::hypot(m.state.east_m, m.state.north_m)),
-                                whole(m.flight_time_s),
-                                std::string("0"),
-                                std::string("0"),
-                                std::string(m.state.power_w > 0.0 ? "0" : "1"),
-                                std::string("0"),
-                                std::string("0")};
-         }},
-        {5.0,
-         message("PPRZ_MODE", {{"ap_mode", "uint8", "", "", {}},
-                               {"ap_gaz", "uint8", "", "", {}},
-                               {"ap_lateral", "uint8", "", "", {}},
-                               {"ap_horizontal", "uint8", "", "", {}},
-                               {"if_calib_mode", "uint8", "", "", {}},
-                               {"mcu1_status", "uint8", "", "", {}}}),
-         [](const Moment& m) {
-             const std::string automatic = m.state.mode == 2 ? "3" : "0";
-             return std::vector{std::to_string(m.state.mode),
-                                automatic,
-                                automatic,
-                                std::string("2"),
-                                std::string("0"),
-                                std::string("17")};
-         }},
-    };
-}
-
-/// Messages that fill a real log too.
-std::vector<Report> other_reports() {
-    return {
-        {0.4,
-         message("ATTITUDE", {{"phi", "float", "rad", "", {}},
-                              {"psi", "float", "rad", "", {}},
-                              {"theta", "float", "rad", "", {}}}),
-         [](const Moment& m) {
-             const double heading = std::remainder(m.state.course_rad, 2.0 * std::numbers::pi);
-             return std::vector{ocaml_float(m.state.airborne ? -0.21 : 0.0), ocaml_float(heading),
-                                ocaml_float(m.state.climb_m_per_s / 20.0)};
-         }},
-        {0.5,
-         message("GPS", {{"mode", "uint8", "byte_mask", "", {}},
-                         {"utm_east", "int32", "cm", "", {}},
-                         {"utm_north", "int32", "cm", "", {}},
-                         {"course", "int16", "decideg", "", {}},
-                         {"alt", "int32", "mm", "", {}},
-                         {"speed", "uint16", "cm/s", "", {}},
-                         {"climb", "int16", "cm/s", "", {}},
-                         {"week", "uint16", "weeks", "", {}},
-                         {"itow", "uint32", "ms", "", {}},
-                         {"utm_zone", "uint8", "", "", {}},
-                         {"gps_nb_err", "uint8", "", "", {}}}),
-         [](const Moment& m) {
-             return std::vector{std::string("3"),
-                                whole((reference_east_m + m.state.east_m) * 100.0),
-                                whole((reference_north_m + m.state.north_m) * 100.0),
-                                whole(m.state.course_rad * 1800.0 / std::numbers::pi),
-                                whole(m.altitude_m * 1000.0),
-                                whole(m.state.ground_speed_m_per_s * 100.0),
-                                whole(m.state.climb_m_per_s * 100.0),
-                                std::string("2112"),
-                                whole(378000000.0 + m.time_s * 1000.0),
-                                std::string("32"),
-                                std::string("0")};
-         }},
-        {2.0,
-         message("FBW_STATUS", {{"rc_status", "uint8", "", "", {}},
-                                {"frame_rate", "uint8", "Hz", "", {}},
-                                {"mode", "uint8", "", "", {}},
-                                {"vsupply", "float", "V", "", {}},
-                                {"current", "float", "A", "", {}}}),
-         [](const Moment& m) {
-             return std::vector{std::string("0"), std::string("61"), std::string("0"),
-                                ocaml_float(m.voltage_v), ocaml_float(m.current_a)};
-         }},
-        {5.1, message("ALIVE", {{"md5sum", "uint8[]", "", "", {}}}),
-         [](const Moment&) {
-             return std::vector{std::string("104,72,204,189,120,93,193,159,136,145,150,137,96,217,124,229")};
-         }},
-        {5.0, message("PONG", {}), [](const Moment&) { return std::vector<std::string>{}; }},
-        {7.1,
-         message("LOGGER_STATUS", {{"status", "uint8", "", "", {}},
-                                   {"errno", "uint8", "", "", {}},
-                                   {"used", "uint32", "", "", {}},
-                                   {"logfile", "char[]", "", "", {}}}),
-         [](const Moment& m) {
-             return std::vector{std::string("1"), std::string("0"), whole(m.time_s * 512.0),
-                                std::string(", FLIGHT_RECORDER\\fr_0001.LOG")};
-         }},
-    };
-}
 
 /// Pack voltage at rest, by the charge taken out of it: a line through a 3-cell pack's usual values.
 double rest_voltage_v(double charge_ah, double capacity_ah) { return 12.5 - 1.4 * charge_ah / capacity_ah; }
@@ -257,8 +100,8 @@ std::string log_document(const SyntheticFlight& flight, const std::vector<Report
                                      {4, "Standby"},  {5, "Survey"},   {6, "Land Right AF-TD"}};
     document.aircraft.current_origin = CurrentOrigin::sensor;
     for (const auto& report : reports) document.telemetry.push_back(report.definition);
-    document.telemetry.push_back(message("TAKEOFF", {{"cpu_time", "uint16", "s", "", {}}}));
-    document.telemetry.push_back(message("INFO_MSG", {{"msg", "char[]", "", "", {}}}));
+    document.telemetry.push_back({"TAKEOFF", {{"cpu_time", "uint16", "s", "", {}}}, ".log"});
+    document.telemetry.push_back({"INFO_MSG", {{"msg", "char[]", "", "", {}}}, ".log"});
     return to_log_xml(document);
 }
 
@@ -267,8 +110,7 @@ std::string log_document(const SyntheticFlight& flight, const std::vector<Report
 SyntheticLog make_synthetic_log(const SyntheticScenario& scenario, const SyntheticSensors& sensors,
                                 const std::string& name, const std::string& made_by, std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    auto reports = flight_reports();
-    for (auto& report : other_reports()) reports.push_back(std::move(report));
+    const auto reports = telemetry_reports();
     Simulation simulation(sensors, random);
     LossyLink link(sensors.lost_fraction, random);
     std::vector<double> due_s;
@@ -292,7 +134,8 @@ SyntheticLog make_synthetic_log(const SyntheticScenario& scenario, const Synthet
         if (!takeoff_sent && moment.state.airborne) {
             const bool logged = time_s >= scenario.begin_s;
             if (logged)
-                log.data += data_line(time_s, aircraft_id, "TAKEOFF", {whole(time_s - scenario.begin_s)});
+                log.data += data_line(time_s, aircraft_id, "TAKEOFF",
+                                      {fmt::format("{:.0f}", time_s - scenario.begin_s)});
             takeoff_sent = true;
         }
         const bool far_off =
