@@ -6,7 +6,10 @@
 #include "cli/stage.h"
 #include "json_text.h"
 #include "mechanical/model_fit.h"
+#include "mechanical/projected_fit.h"
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,10 +18,17 @@
 /// The options of a fit, which fit and batch share.
 namespace flightwatt {
 
-inline void add_fit_options(boost::program_options::options_description& options) {
+/// Whether a stage can choose the order by itself ("--order auto").
+enum class AutoOrder { refused, accepted };
+
+inline void add_fit_options(boost::program_options::options_description& options,
+                            AutoOrder automatic = AutoOrder::refused) {
     namespace po = boost::program_options;
-    options.add_options()("order", po::value<int>()->value_name("N")->default_value(3),
-                          "order of the Fourier series")(
+    options.add_options()("order", po::value<std::string>()->value_name("N")->default_value("3"),
+                          automatic == AutoOrder::accepted
+                              ? "order of the Fourier series, 0 to 8, or auto: chosen for each phase by how "
+                                "well it foretells a flight left out (blocks of time of a single flight)"
+                              : "order of the Fourier series, 0 to 8")(
         "weights", po::value<std::string>()->value_name("HOW")->default_value("agreement"),
         "uniform, inverse-variance or agreement")(
         "weight", po::value<std::vector<std::string>>()->value_name("FLIGHT[:PHASE]=W")->composing(),
@@ -55,9 +65,25 @@ inline HandWeight parse_hand_weight(const std::string& text) {
     return weight;
 }
 
-inline ModelFitOptions read_fit_options(const cli::StageCall& call) {
+/// --order as a number; std::nullopt for "auto" where that is accepted.
+inline std::optional<int> read_order(const cli::StageCall& call, AutoOrder automatic) {
+    const auto text = call.get<std::string>("order");
+    if (text == "auto" && automatic == AutoOrder::accepted) return std::nullopt;
+    const auto number = parse_unsigned(text);
+    if (!number || *number > static_cast<std::uint64_t>(max_order)) {
+        throw UsageError(fmt::format("--order {}: expected 0 to {}{}", text, max_order,
+                                     automatic == AutoOrder::accepted ? " or auto"
+                                     : text == "auto"                 ? "; 'flightwatt fit' can choose it"
+                                                                      : ""));
+    }
+    return static_cast<int>(*number);
+}
+
+/// Where the order is to be chosen it is left at the default.
+inline ModelFitOptions read_fit_options(const cli::StageCall& call,
+                                        AutoOrder automatic = AutoOrder::refused) {
     ModelFitOptions options;
-    options.phases.order = call.get<int>("order");
+    options.phases.order = read_order(call, automatic).value_or(options.phases.order);
     options.phases.low_rad = units::rad_from_turns(call.get<double>("min-periods"));
     options.phases.high_periods = call.get<double>("max-periods");
     admissible_range({}, options.phases);  // refuses bad options before any log is read

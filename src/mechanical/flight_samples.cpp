@@ -24,6 +24,7 @@ PhaseSamples samples_of(const FlightSeries& series, const PhaseSpan& span, const
     PhaseSamples samples;
     samples.flight = flight;
     samples.duration_s = span.duration_s();
+    samples.start_s = span.start.time_s;
     for (std::size_t i = 0; i < series.time_s.size(); ++i) {
         const double time_s = series.time_s[i];
         if (time_s < span.start.time_s || time_s > span.end.time_s) continue;

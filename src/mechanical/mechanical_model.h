@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/flight_phases.h"
+#include "mechanical/phase_uncertainty.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -40,6 +41,8 @@ struct PhaseModel {
     std::optional<FrequencyRange> range;
     std::size_t samples = 0;
     std::size_t flights = 0;
+    std::optional<PhaseErrors> errors;  ///< absent unless they were asked for
+    std::optional<PhaseSpread> spread;  ///< absent too where a single flight counts
 };
 
 /// One flight's part in one phase.
@@ -74,8 +77,8 @@ enum class PhaseClock {
 FourierModel flown_model(const PhaseModel& phase, double flown_s, PhaseClock clock);
 
 /// fits/mechanical/NAME.toml. Reading throws InputError with its place for a missing or unknown key, other
-/// numbers of cosines than sines, a duration or frequency that is not positive, a count that is not whole, or
-/// a weight outside [0, 1].
+/// numbers of cosines than sines, a duration or frequency that is not positive, a count that is not whole, a
+/// weight outside [0, 1], or errors and spreads that cannot be (see phase_uncertainty_toml.h).
 MechanicalModel read_mechanical_model(const std::filesystem::path& path);
 std::string to_toml(const MechanicalModel& model);
 

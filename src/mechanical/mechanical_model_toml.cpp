@@ -1,6 +1,7 @@
 #include "base/toml_reader.h"
 #include "base/toml_text.h"
 #include "mechanical/mechanical_model.h"
+#include "mechanical/phase_uncertainty_toml.h"
 
 #include <cmath>
 
@@ -72,6 +73,9 @@ PhaseModel read_phase(const TomlTable& table) {
     if (table.has("samples")) phase.samples = count(table, "samples");
     if (table.has("flights")) phase.flights = count(table, "flights");
     if (const auto range = table.optional_table("omega_duration")) phase.range = read_range(*range);
+    const auto order = phase.fourier.cos_w.size();
+    if (const auto errors = table.optional_table("errors")) phase.errors = read_errors(*errors, order);
+    if (const auto spread = table.optional_table("spread")) phase.spread = read_spread(*spread);
     table.refuse_unknown_keys();
     return phase;
 }
@@ -108,6 +112,8 @@ std::string phase_toml(Phase name, const PhaseModel& phase) {
     if (phase.rms_w) text += fmt::format("rms_w = {}\n", toml_real(*phase.rms_w));
     if (phase.samples > 0) text += fmt::format("samples = {}\n", phase.samples);
     if (phase.flights > 0) text += fmt::format("flights = {}\n", phase.flights);
+    if (phase.errors) text += fmt::format("\n[{}.errors]\n{}", to_string(name), to_toml(*phase.errors));
+    if (phase.spread) text += fmt::format("\n[{}.spread]\n{}", to_string(name), to_toml(*phase.spread));
     return text;
 }
 

@@ -21,43 +21,67 @@ std::vector<std::string> names_of(std::span<const FlightSamples> flights) {
     return names;
 }
 
+std::string orders_of(const ModelFitOptions& options) {
+    const int takeoff = options.order(Phase::takeoff);
+    const int cruise = options.order(Phase::cruise);
+    const int landing = options.order(Phase::landing);
+    if (takeoff == cruise && cruise == landing) return fmt::format("of order {} a phase", takeoff);
+    return fmt::format("of orders {} (take-off), {} (cruise), {} (landing)", takeoff, cruise, landing);
+}
+
 std::string described(const ModelFitOptions& options, std::size_t flights) {
-    return fmt::format(
-        "fitted to {} flight{}: Fourier series of order {} a phase, weights: {}; flightwatt {}", flights,
-        flights == 1 ? "" : "s", options.phases.order, to_string(options.weights.weighting),
-        FLIGHTWATT_VERSION);
+    const auto loss = options.phases.loss;
+    return fmt::format("fitted to {} flight{}: Fourier series {}, {}weights: {}; flightwatt {}", flights,
+                       flights == 1 ? "" : "s", orders_of(options),
+                       loss == Loss::none ? "" : fmt::format("loss: {}, ", to_string(loss)),
+                       to_string(options.weights.weighting), FLIGHTWATT_VERSION);
 }
 
 }  // namespace
 
+std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, Phase phase) {
+    std::vector<PhaseSamples> samples;
+    for (const auto& flight : flights) {
+        if (!flight.phases[phase]) continue;
+        samples.push_back(*flight.phases[phase]);
+        samples.back().flight = flight.flight;
+    }
+    return samples;
+}
+
 MechanicalModel fit_mechanical_model(std::span<const FlightSamples> flights, const ModelFitOptions& options) {
+    return fit_model(flights, options).model;
+}
+
+ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options) {
     const auto names = names_of(flights);
     check_weights(options.weights, names);
-    MechanicalModel model;
+    ModelFit parts;
+    auto& model = parts.model;
     model.name = options.name;
     model.description = described(options, flights.size());
     model.weighting = to_string(options.weights.weighting);
     for (const auto& name : names) model.flights.push_back({name, {}});
 
     for (const auto phase : all_phases) {
-        std::vector<PhaseSamples> samples;
-        std::vector<std::size_t> owners;
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            if (!flights[i].phases[phase]) continue;
-            samples.push_back(*flights[i].phases[phase]);
-            samples.back().flight = names[i];
-            owners.push_back(i);
-        }
-        const auto fit = fit_phase(phase, samples, options.phases);
-        const auto weights = flight_weights(fit, phase, options.weights);
+        auto& fit = parts.fits[phase];
+        auto& weights = parts.weights[phase];
+        parts.samples[phase] = samples_of_phase(flights, phase);
+        auto phase_options = options.phases;
+        phase_options.order = options.order(phase);
+        fit = fit_phase(phase, parts.samples[phase], phase_options);
+        weights = flight_weights(fit, phase, options.weights);
         model.phases[phase] = average_phase(fit, weights);
-        for (std::size_t i = 0; i < owners.size(); ++i) {
+        std::size_t i = 0;
+        for (std::size_t owner = 0; owner < flights.size(); ++owner) {
+            if (!flights[owner].phases[phase]) continue;
             const auto& curve = fit.flights[i];
-            model.flights[owners[i]].phases[phase] =
+            model.flights[owner].phases[phase] =
                 PhaseContribution{weights[i], curve.duration_s, curve.rms_w, curve.samples};
+            ++i;
         }
     }
-    return model;
+    return parts;
 }
 
 }  // namespace flightwatt

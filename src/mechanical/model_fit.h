@@ -5,8 +5,10 @@
 #include "mechanical/phase_fit.h"
 #include "mechanical/phase_samples.h"
 
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace flightwatt {
 
@@ -14,7 +16,22 @@ struct ModelFitOptions {
     std::string name = "fitted";  ///< of the model
     PhaseFitOptions phases = {};
     WeightOptions weights = {};
+    PerPhase<std::optional<int>> orders = {};  ///< where a phase is to have another order than phases.order
+
+    /// The order of one phase.
+    int order(Phase phase) const { return orders[phase].value_or(phases.order); }
 };
+
+/// A model with what it was made of, flight by flight: what an analysis of its errors needs.
+struct ModelFit {
+    MechanicalModel model;
+    PerPhase<std::vector<PhaseSamples>> samples;
+    PerPhase<PhaseFit> fits;                ///< flights in the order of the samples
+    PerPhase<std::vector<double>> weights;  ///< in that order too
+};
+
+/// The flights that have the phase, in their order, under their flights' names.
+std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, Phase phase);
 
 /// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights
 /// that have it and averaged with their weights. A phase's rms_w is that of the samples about their own
@@ -23,5 +40,6 @@ struct ModelFitOptions {
 /// flight given twice and for weights that do not fit the flights, and what fit_phase throws.
 MechanicalModel fit_mechanical_model(std::span<const FlightSamples> flights,
                                      const ModelFitOptions& options = {});
+ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options = {});
 
 }  // namespace flightwatt

@@ -5,7 +5,9 @@
 #include "mechanical/fourier_basis.h"
 #include "mechanical/frequency_scan.h"
 #include "mechanical/joint_refinement.h"
+#include "mechanical/median_gap.h"
 #include "mechanical/projected_fit.h"
+#include "mechanical/robust_refinement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +25,9 @@ constexpr double bound_tolerance = 1e-6;
 constexpr double constant_level = 1e-12;
 
 void check_options(const PhaseFitOptions& options) {
-    if (options.order < 1 || options.order > max_order) {
+    if (options.order < 0 || options.order > max_order) {
         throw UsageError(
-            fmt::format("the order of the Fourier series is {}, expected 1 to {}", options.order, max_order));
+            fmt::format("the order of the Fourier series is {}, expected 0 to {}", options.order, max_order));
     }
     if (!(options.low_rad > 0.0) || !std::isfinite(options.low_rad)) {
         throw UsageError(
@@ -67,20 +69,6 @@ void check_count(Phase phase, const PhaseSamples& samples, int order) {
                     "its {} out, or lower the order",
                     samples.flight, samples.tau.size(), to_string(phase), order, samples_needed(order),
                     to_string(phase)));
-}
-
-/// The median of the gaps between samples, as a part of the phase; 0 if all samples are at one time.
-double median_gap(const PhaseSamples& samples) {
-    auto tau = samples.tau;
-    std::sort(tau.begin(), tau.end());
-    std::vector<double> gaps;
-    for (std::size_t i = 1; i < tau.size(); ++i) {
-        if (tau[i] > tau[i - 1]) gaps.push_back(tau[i] - tau[i - 1]);
-    }
-    if (gaps.empty()) return 0.0;
-    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-    std::nth_element(gaps.begin(), middle, gaps.end());
-    return *middle;
 }
 
 struct Scaling {
@@ -135,12 +123,30 @@ std::string bound_reached(const FrequencyRange& range, double theta_rad) {
     return "none";
 }
 
+/// Order 0: the values less their means are 0 but for noise, whatever the frequency.
+JointFit means_of(const Scaling& scaling, const FrequencyRange& range) {
+    JointFit joint{std::clamp(units::rad_per_turn, range.low_rad, range.high_rad), {}, {}};
+    for (const auto& flight : scaling.flights) {
+        double square_sum = 0.0;
+        for (const double value : flight.value) square_sum += value * value;
+        joint.coefficients.emplace_back(Eigen::VectorXd::Zero(1));
+        joint.square_sum.push_back(square_sum);
+    }
+    return joint;
+}
+
+JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range) {
+    if (order == 0) return means_of(scaling, range);
+    return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range));
+}
+
 PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling, const JointFit& joint,
                    const FrequencyRange& range) {
     PhaseFit fit;
     fit.theta_rad = joint.theta_rad;
     fit.range = range;
-    fit.range.at_bound = bound_reached(range, joint.theta_rad);
+    const bool has_frequency = joint.coefficients.front().size() > 1;
+    fit.range.at_bound = has_frequency ? bound_reached(range, joint.theta_rad) : "none";
     double square_sum = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         FlightCurve curve;
@@ -166,8 +172,9 @@ FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const Pha
     check_options(options);
     FrequencyRange range{options.low_rad, units::rad_from_turns(options.high_periods), "none"};
     for (const auto& flight : flights) {
-        const double gap = median_gap(flight);
-        const double nyquist = gap > 0.0 ? std::numbers::pi / (options.order * gap) : 0.0;
+        const double gap = median_gap(flight.tau);
+        // A constant needs no frequency: it is content with what a first order needs.
+        const double nyquist = gap > 0.0 ? std::numbers::pi / (std::max(1, options.order) * gap) : 0.0;
         if (nyquist <= range.low_rad) {
             throw NoAnswerError(
                 fmt::format("flight '{}': {} samples, {:.3g} of the phase apart, are too sparse for a "
@@ -189,9 +196,13 @@ PhaseFit fit_phase(Phase phase, std::span<const PhaseSamples> flights, const Pha
     const auto scaling = scaled(flights);
     try {
         const auto range = admissible_range(flights, options);
-        const double start_rad = find_frequency(scaling.flights, options.order, range);
-        return result_of(flights, scaling, refine_jointly(scaling.flights, options.order, range, start_rad),
-                         range);
+        const auto joint = least_squares(scaling, options.order, range);
+        if (options.loss == Loss::none) return result_of(flights, scaling, joint, range);
+        const auto robust = refine_robustly(scaling.flights, range, joint, options.loss);
+        auto fit = result_of(flights, scaling, robust.joint, range);
+        fit.loss = options.loss;
+        fit.loss_scale_w = robust.scale * scaling.unit_w;
+        return fit;
     } catch (const NoAnswerError& error) {
         throw NoAnswerError(fmt::format("{}: {}", to_string(phase), error.what()));
     }

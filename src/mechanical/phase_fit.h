@@ -3,6 +3,7 @@
 #include "flight/flight_phases.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/phase_samples.h"
+#include "mechanical/robust_loss.h"
 
 #include <cstddef>
 #include <numbers>
@@ -13,13 +14,14 @@
 namespace flightwatt {
 
 struct PhaseFitOptions {
-    int order = 3;  ///< of the Fourier series, 1 to 8
+    int order = 3;  ///< of the Fourier series, 0 (a constant) to 8
     /// Lowest omega * duration. The fewer periods a phase has, the more alike its harmonics are: at order 3
     /// the condition number of the basis is 1 at 2 pi, 38 at the paper's landing (3.63), 108 at pi, where a
     /// phase is half a period, but 2500 at 2 rad and 230000 at 1 rad (basis_condition). Noise in the
     /// coefficients grows with it, while the curve hardly changes.
     double low_rad = std::numbers::pi;
     double high_periods = 250.0;  ///< most periods in a phase; the sampling may allow fewer
+    Loss loss = Loss::none;       ///< other than none: outliers count less in the last refinement
 };
 
 /// One flight's own curve in one phase, in that flight's own seconds.
@@ -38,6 +40,8 @@ struct PhaseFit {
     std::vector<FlightCurve> flights;  ///< in the order of the samples
     double rms_w = 0.0;                ///< of all flights' residuals together
     std::size_t samples = 0;
+    Loss loss = Loss::none;
+    double loss_scale_w = 0.0;  ///< of the noise as the loss saw it; 0 without a loss
 };
 
 /// So many samples a flight needs at least: one more than its coefficients.
@@ -49,7 +53,9 @@ std::size_t samples_needed(int order);
 FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
 
 /// Fits Fourier series of the order to all flights: scans the whole range of theta, refines theta and all
-/// coefficients together. Throws InputError for samples that are no samples (unequal lengths, tau outside
+/// coefficients together. A loss other than none starts from that answer, so outliers still take part in the
+/// search for the frequency. Order 0 is each flight's own mean (its theta, one period, has no effect).
+/// Throws InputError for samples that are no samples (unequal lengths, tau outside
 /// [0, 1], not finite, duration not positive), NoAnswerError naming flight and phase for a flight with fewer
 /// than samples_needed(order) samples, for no flights, and for a fit that does not converge.
 PhaseFit fit_phase(Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options = {});

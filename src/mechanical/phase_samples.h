@@ -14,6 +14,7 @@ struct PhaseSamples {
     double duration_s = 0.0;
     std::vector<double> tau;      ///< (time - begin of phase) / duration_s, in [0, 1]; gaps are allowed
     std::vector<double> power_w;  ///< as long as tau
+    double start_s = 0.0;         ///< when the phase began, on the log's own clock
 };
 
 /// One flight; a phase that it lacks, or that was not recorded, is absent.

@@ -1,6 +1,7 @@
 #include "mechanical/table_one.h"
 
 #include "base/units.h"
+#include "mechanical/confidence.h"
 #include "mechanical/phase_curve.h"
 
 #include <algorithm>
@@ -50,6 +51,23 @@ std::vector<std::string> column_of(const PhaseModel& phase, std::size_t order) {
     return cells;
 }
 
+/// Half the widths of the 95 % intervals of column_of's cells.
+std::vector<std::string> half_widths_of(const PhaseModel& phase, std::size_t order) {
+    if (!phase.errors) return std::vector<std::string>(2 * order + 2, "-");
+    const auto& errors = *phase.errors;
+    const double wide = half_width_in_standard_errors(errors.degrees_of_freedom);
+    const auto printed = [&](double error) { return fmt::format("{:.2g}", wide * error); };
+    std::vector<std::string> cells{printed(errors.a0_w)};
+    for (std::size_t n = 0; n < order; ++n) {
+        const bool there = n < errors.cos_w.size();
+        cells.push_back(there ? printed(errors.cos_w[n]) : "-");
+        cells.push_back(there ? printed(errors.sin_w[n]) : "-");
+    }
+    const double theta_rad = errors.omega_rad_per_s * phase.duration_s;
+    cells.push_back(errors.frequency_is_given ? "-" : printed(units::table_one_xi_from_rad(theta_rad)));
+    return cells;
+}
+
 void add_column(TextTable& table, const std::string& name, const std::vector<std::string>& cells) {
     table.header.push_back(name);
     table.rows.resize(cells.size());
@@ -58,17 +76,21 @@ void add_column(TextTable& table, const std::string& name, const std::vector<std
 
 }  // namespace
 
-TextTable table_one(const MechanicalModel& model) {
+TextTable table_one(const MechanicalModel& model, TableIntervals intervals) {
     const auto order = highest_order(model);
     TextTable table;
     add_column(table, "coefficient", row_names(order));
     for (const auto phase : all_phases) {
         add_column(table, std::string(column_names[phase]), column_of(model.phases[phase], order));
+        if (intervals == TableIntervals::absent) continue;
+        add_column(table, fmt::format("{} +-", column_names[phase]),
+                   half_widths_of(model.phases[phase], order));
     }
     return table;
 }
 
-TextTable table_one_beside(const MechanicalModel& published, const MechanicalModel& regenerated) {
+TextTable table_one_beside(const MechanicalModel& published, const MechanicalModel& regenerated,
+                           TableIntervals intervals) {
     const auto order = std::max(highest_order(published), highest_order(regenerated));
     TextTable table;
     auto names = row_names(order);
@@ -84,6 +106,10 @@ TextTable table_one_beside(const MechanicalModel& published, const MechanicalMod
                                    percent_of_change(was.fourier.a0_w, is.fourier.a0_w)});
         add_column(table, fmt::format("{} published", column_names[phase]), left);
         add_column(table, fmt::format("{} regenerated", column_names[phase]), right);
+        if (intervals == TableIntervals::absent) continue;
+        auto half_widths = half_widths_of(is, order);
+        half_widths.insert(half_widths.end(), {"-", "-", "-"});
+        add_column(table, fmt::format("{} +-", column_names[phase]), half_widths);
     }
     return table;
 }

@@ -5,13 +5,18 @@
 
 namespace flightwatt {
 
+/// Whether a table has a column beside each phase for half the width of the coefficients' 95 % intervals, as
+/// two digits ("+-"); '-' where the model has no errors, or none for the frequency.
+enum class TableIntervals { absent, present };
+
 /// The model as the paper's Table I: rows a0, a1, b1, ... and xi, a column a phase, four significant digits,
 /// coefficients in W. xi is the paper's: the angular frequency on a time axis of 28 units a phase,
 /// omega * duration / 28. '-' stands where a phase has a lower order than another.
-TextTable table_one(const MechanicalModel& model);
+TextTable table_one(const MechanicalModel& model, TableIntervals intervals = TableIntervals::absent);
 
 /// Both models' Table I, phase by phase side by side, and below it the durations, the RMS difference of the
 /// curves over the phase [W] and by how many percent of the published a0 the regenerated one differs.
-TextTable table_one_beside(const MechanicalModel& published, const MechanicalModel& regenerated);
+TextTable table_one_beside(const MechanicalModel& published, const MechanicalModel& regenerated,
+                           TableIntervals intervals = TableIntervals::absent);
 
 }  // namespace flightwatt

@@ -255,8 +255,8 @@ TEST(PhaseFit, RefusesWhatAreNoSamples) {
 
 TEST(PhaseFit, RefusesOptionsThatMakeNoSense) {
     const auto flights = test::record_flights(Phase::cruise, 1, 0.5, 11);
-    EXPECT_THAT(message_of<UsageError>(flights, {.order = 0}), HasSubstr("expected 1 to 8"));
-    EXPECT_THAT(message_of<UsageError>(flights, {.order = 9}), HasSubstr("expected 1 to 8"));
+    EXPECT_THAT(message_of<UsageError>(flights, {.order = -1}), HasSubstr("expected 0 to 8"));
+    EXPECT_THAT(message_of<UsageError>(flights, {.order = 9}), HasSubstr("expected 0 to 8"));
     EXPECT_THAT(message_of<UsageError>(flights, {.low_rad = 0.0}), HasSubstr("expected more than 0"));
     EXPECT_THAT(message_of<UsageError>(flights, {.high_periods = 0.4}), HasSubstr("0.4 periods"));
 }

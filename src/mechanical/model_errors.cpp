@@ -1,0 +1,62 @@
+#include "mechanical/model_errors.h"
+
+#include "mechanical/confidence.h"
+#include "mechanical/flight_envelope.h"
+#include "mechanical/phase_curve.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace flightwatt {
+namespace {
+
+std::string phase_curve_csv(const ModelFit& fit, Phase phase, const ErrorAnalysis& analysis) {
+    const auto& model = fit.model.phases[phase];
+    const auto points = points_of_curve(model.fourier, model.duration_s) / 5 + 1;
+    const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points);
+    const double wide = half_width_in_standard_errors(analysis.errors.degrees_of_freedom);
+    const double population_wide =
+        spread ? half_width_in_standard_errors(spread->counted_flights - 1.0) : 0.0;
+    std::string text;
+    for (std::size_t i = 0; i < points; ++i) {
+        const double tau = static_cast<double>(i) / static_cast<double>(points - 1);
+        const double time_s = tau * model.duration_s;
+        const double power = power_w(model.fourier, time_s);
+        const double error = curve_standard_error_w(analysis, tau);
+        text += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", to_string(phase), tau, time_s,
+                            power, error, power - wide * error, power + wide * error);
+        if (!spread) {
+            text += ",,,,,\n";
+            continue;
+        }
+        const double reach = population_wide * population_standard_error_w(*spread, i);
+        text += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", spread->low_w[i], spread->high_w[i],
+                            spread->standard_deviation_w[i], power - reach, power + reach);
+    }
+    return text;
+}
+
+}  // namespace
+
+PerPhase<PhaseErrorReport> add_errors(ModelFit& fit) {
+    PerPhase<PhaseErrorReport> reports;
+    for (const auto phase : all_phases) {
+        auto& report = reports[phase];
+        report.analysis = analyse_errors(fit.samples[phase], fit.fits[phase], fit.weights[phase]);
+        report.profile = frequency_profile(fit.samples[phase], fit.fits[phase], report.analysis);
+        fit.model.phases[phase].errors = report.analysis.errors;
+        fit.model.phases[phase].spread = flight_envelope(fit.fits[phase], fit.weights[phase]);
+    }
+    return reports;
+}
+
+std::string curves_csv(const ModelFit& fit, const PerPhase<PhaseErrorReport>& reports) {
+    std::string text =
+        "phase,tau,time_s,power_w,standard_error_w,low_95_w,high_95_w,flights_low_w,flights_high_w,"
+        "flights_sd_w,population_low_95_w,population_high_95_w\n";
+    for (const auto phase : all_phases) text += phase_curve_csv(fit, phase, reports[phase].analysis);
+    return text;
+}
+
+}  // namespace flightwatt

@@ -1,0 +1,153 @@
+#include "mechanical/order_choice.h"
+
+#include "base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace flightwatt {
+namespace {
+
+constexpr std::size_t time_folds = 5;
+constexpr std::size_t most_blocks = 20;
+constexpr std::size_t least_samples_a_block = 2;
+
+/// What is fitted and what is foretold.
+struct Fold {
+    std::vector<PhaseSamples> seen;
+    PhaseSamples left_out;
+};
+
+std::vector<Fold> leave_one_flight_out(std::span<const PhaseSamples> flights) {
+    std::vector<Fold> folds;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        Fold fold;
+        fold.left_out = flights[i];
+        for (std::size_t k = 0; k < flights.size(); ++k) {
+            if (k != i) fold.seen.push_back(flights[k]);
+        }
+        folds.push_back(std::move(fold));
+    }
+    return folds;
+}
+
+std::vector<Fold> blocks_of_time(const PhaseSamples& flight) {
+    const std::size_t samples = flight.tau.size();
+    const auto blocks = std::clamp(samples / least_samples_a_block, time_folds, most_blocks);
+    std::vector<Fold> folds(time_folds);
+    for (auto& fold : folds) {
+        fold.seen.push_back({flight.flight, flight.duration_s, {}, {}});
+        fold.left_out = {flight.flight, flight.duration_s, {}, {}};
+    }
+    for (std::size_t j = 0; j < samples; ++j) {
+        const std::size_t out = j * blocks / samples % time_folds;
+        for (std::size_t i = 0; i < time_folds; ++i) {
+            auto& part = i == out ? folds[i].left_out : folds[i].seen.front();
+            part.tau.push_back(flight.tau[j]);
+            part.power_w.push_back(flight.power_w[j]);
+        }
+    }
+    std::erase_if(folds, [](const Fold& fold) { return fold.left_out.tau.empty(); });
+    return folds;
+}
+
+double mean_square_error_w2(Phase phase, const Fold& fold, const PhaseFitOptions& options,
+                            const WeightOptions& weights) {
+    const auto fit = fit_phase(phase, fold.seen, options);
+    const auto mean = average_phase(fit, flight_weights(fit, phase, weights));
+    double sum = 0.0;
+    for (std::size_t j = 0; j < fold.left_out.tau.size(); ++j) {
+        const double foretold_w = power_w(mean.fourier, fold.left_out.tau[j] * mean.duration_s);
+        sum += std::pow(fold.left_out.power_w[j] - foretold_w, 2);
+    }
+    return sum / static_cast<double>(fold.left_out.tau.size());
+}
+
+/// One order's errors, fold by fold; empty if one cannot be fitted.
+struct FoldErrors {
+    std::vector<double> mean_square_w2;
+    std::string reason;
+};
+
+FoldErrors errors_of(Phase phase, const std::vector<Fold>& folds, const PhaseFitOptions& options,
+                     const WeightOptions& weights) {
+    FoldErrors errors;
+    try {
+        for (const auto& fold : folds) {
+            errors.mean_square_w2.push_back(mean_square_error_w2(phase, fold, options, weights));
+        }
+    } catch (const NoAnswerError& error) {
+        errors.mean_square_w2.clear();
+        errors.reason = error.what();
+    }
+    return errors;
+}
+
+double mean_of(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value / static_cast<double>(values.size());
+    return sum;
+}
+
+void compare(OrderError& error, const std::vector<double>& own, const std::vector<double>& best) {
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < own.size(); ++i) differences.push_back(own[i] - best[i]);
+    const double mean = mean_of(differences);
+    double square_sum = 0.0;
+    for (const double difference : differences) square_sum += std::pow(difference - mean, 2);
+    const auto folds = static_cast<double>(own.size());
+    error.behind_best_w2 = mean;
+    error.standard_error_w2 = std::sqrt(square_sum / (folds - 1.0) / folds);
+}
+
+}  // namespace
+
+OrderChoice choose_order(Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options,
+                         const WeightOptions& weights) {
+    if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
+    OrderChoice choice;
+    const bool several = flights.size() > 1;
+    choice.how = several ? "leave one flight out" : "blocks of time";
+    const auto folds = several ? leave_one_flight_out(flights) : blocks_of_time(flights.front());
+    choice.folds = folds.size();
+    const bool by_hand = weights.weighting == Weighting::by_hand;
+    const WeightOptions weighting{by_hand ? Weighting::uniform : weights.weighting, {}};
+
+    std::vector<FoldErrors> all;
+    const FoldErrors* best = nullptr;
+    double least_w2 = std::numeric_limits<double>::infinity();
+    all.reserve(highest_tried_order + 1);  // `best` points into it
+    for (int order = 0; order <= highest_tried_order; ++order) {
+        auto tried = options;
+        tried.order = order;
+        all.push_back(errors_of(phase, folds, tried, weighting));
+        OrderError error{order, std::nullopt, all.back().reason, std::nullopt, std::nullopt};
+        if (!all.back().mean_square_w2.empty()) {
+            const double mean_square_w2 = mean_of(all.back().mean_square_w2);
+            error.rms_w = std::sqrt(mean_square_w2);
+            if (mean_square_w2 < least_w2) {
+                least_w2 = mean_square_w2;
+                best = &all.back();
+                choice.best = order;
+            }
+        }
+        choice.errors.push_back(std::move(error));
+    }
+    if (best == nullptr) {
+        throw NoAnswerError(fmt::format("{}: no order can be fitted: {}", to_string(phase), all[0].reason));
+    }
+    choice.order = choice.best;
+    for (int order = highest_tried_order; order >= 0; --order) {
+        const auto place = static_cast<std::size_t>(order);
+        if (all[place].mean_square_w2.empty()) continue;
+        auto& error = choice.errors[place];
+        compare(error, all[place].mean_square_w2, best->mean_square_w2);
+        if (order < choice.order && *error.behind_best_w2 <= *error.standard_error_w2) choice.order = order;
+    }
+    return choice;
+}
+
+}  // namespace flightwatt
