@@ -97,15 +97,86 @@ FlightPart part_of(const PhaseSamples& unsorted, const FlightCurve& curve, const
     return part;
 }
 
-/// How theta and the mean's coefficients follow the noise of one flight: samples x (1 + coefficients).
-Eigen::MatrixXd response(const FlightPart& part, double weight, double information,
-                         const Eigen::VectorXd& mean_turn) {
+/// The flights' parts and what they make together.
+struct Mean {
+    std::vector<FlightPart> parts;
+    Eigen::VectorXd coefficients_w;
+    Eigen::VectorXd turn;      ///< coefficients_turn of the mean
+    double information = 0.0;  ///< of all flights about theta
+    double duration_s = 0.0;
+};
+
+Mean mean_of(std::span<const PhaseSamples> flights, const PhaseFit& fit, std::span<const double> weights) {
+    Mean mean;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const Eigen::VectorXd own = coefficients_of(fit.flights[i].fourier);
+        if (i == 0) mean.coefficients_w = mean.turn = Eigen::VectorXd::Zero(own.size());
+        mean.parts.push_back(part_of(flights[i], fit.flights[i], fit));
+        mean.coefficients_w += weights[i] * own;
+        mean.turn += weights[i] * mean.parts[i].coefficients_turn;
+        mean.information += mean.parts[i].theta_direction.squaredNorm();
+        mean.duration_s += weights[i] * flights[i].duration_s;
+    }
+    return mean;
+}
+
+double explained_part(const std::vector<FlightPart>& parts, const PhaseFit& fit) {
+    double left = 0.0;
+    double about_means = 0.0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        left += std::pow(fit.flights[i].rms_w, 2) * static_cast<double>(fit.flights[i].samples);
+        about_means += parts[i].square_sum_about_mean;
+    }
+    return about_means > 0.0 ? 1.0 - left / about_means : 1.0;
+}
+
+/// The flights' residuals with the directions that coefficients and, unless it is given, theta have used up.
+std::vector<FlightResiduals> residuals_of(const Mean& mean, bool frequency_is_given) {
+    std::vector<FlightResiduals> all;
+    for (const auto& part : mean.parts) {
+        auto residuals = part.residuals;
+        residuals.used_up = part.orthonormal;
+        if (!frequency_is_given && part.theta_direction.norm() > 0.0) {
+            residuals.used_up.conservativeResize(Eigen::NoChange, part.orthonormal.cols() + 1);
+            residuals.used_up.rightCols(1) = part.theta_direction / std::sqrt(mean.information);
+        }
+        all.push_back(std::move(residuals));
+    }
+    return all;
+}
+
+/// How theta, were it free, follows the noise of flight i.
+Eigen::VectorXd theta_response(const Mean& mean, std::size_t i) {
+    const auto& direction = mean.parts[i].theta_direction;
+    if (mean.information <= 0.0) return Eigen::VectorXd::Zero(direction.size());
+    return direction / mean.information;
+}
+
+/// How theta and the mean's coefficients follow the noise of flight i: samples x (1 + coefficients).
+Eigen::MatrixXd response(const Mean& mean, std::size_t i, double weight, bool frequency_is_given) {
+    const auto& part = mean.parts[i];
     Eigen::MatrixXd rows(part.orthonormal.rows(), 1 + part.orthonormal.cols());
     rows.col(0).setZero();
-    if (information > 0.0) rows.col(0) = part.theta_direction / information;
+    if (!frequency_is_given) rows.col(0) = theta_response(mean, i);
     rows.rightCols(part.orthonormal.cols()) =
-        weight * part.orthonormal * part.from_orthonormal.transpose() - rows.col(0) * mean_turn.transpose();
+        weight * part.orthonormal * part.from_orthonormal.transpose() - rows.col(0) * mean.turn.transpose();
     return rows;
+}
+
+/// What one flight's noise adds to the variances.
+struct Spread {
+    Eigen::MatrixXd covariance;
+    double theta_variance = 0.0;
+    double degrees_of_freedom = 0.0;
+};
+
+Spread spread_of(const FlightResiduals& residuals, const Eigen::MatrixXd& rows,
+                 const Eigen::VectorXd& theta_rows, double autocorrelation) {
+    const auto noise = noise_level(residuals, autocorrelation);
+    const auto correlation = sample_correlation(residuals.tau, residuals.step, autocorrelation);
+    return {noise.variance_w2 * rows.transpose() * correlated(correlation, rows),
+            noise.variance_w2 * theta_rows.dot(correlated(correlation, theta_rows).col(0)),
+            noise.degrees_of_freedom};
 }
 
 /// The row of derivatives of the mean curve by theta and the coefficients.
@@ -144,75 +215,41 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
                              std::span<const double> weights) {
     ErrorAnalysis analysis;
     auto& errors = analysis.errors;
+    const auto mean = mean_of(flights, fit, weights);
     analysis.theta_rad = fit.theta_rad;
-    std::vector<FlightPart> parts;
-    double information = 0.0;
-    double residual_square_sum = 0.0;
-    double square_sum_about_means = 0.0;
-    double duration_s = 0.0;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        parts.push_back(part_of(flights[i], fit.flights[i], fit));
-        information += parts[i].theta_direction.squaredNorm();
-        residual_square_sum +=
-            std::pow(fit.flights[i].rms_w, 2) * static_cast<double>(fit.flights[i].samples);
-        square_sum_about_means += parts[i].square_sum_about_mean;
-        errors.condition = std::max(errors.condition, parts[i].condition);
-        duration_s += weights[i] * flights[i].duration_s;
-        const Eigen::VectorXd own = weights[i] * coefficients_of(fit.flights[i].fourier);
-        const Eigen::VectorXd turn = weights[i] * parts[i].coefficients_turn;
-        if (i == 0) analysis.coefficients_w = Eigen::VectorXd::Zero(own.size());
-        analysis.coefficients_w += own;
-    }
-    errors.r2 = square_sum_about_means > 0.0 ? 1.0 - residual_square_sum / square_sum_about_means : 1.0;
-    errors.frequency_is_given = fit.range.at_bound != "none" || information <= 0.0;
+    analysis.coefficients_w = mean.coefficients_w;
+    analysis.theta_information = mean.information;
+    errors.r2 = explained_part(mean.parts, fit);
+    for (const auto& part : mean.parts) errors.condition = std::max(errors.condition, part.condition);
+    errors.frequency_is_given = fit.range.at_bound != "none" || mean.information <= 0.0;
 
-    std::vector<FlightResiduals> residuals;
-    Eigen::VectorXd mean_turn = Eigen::VectorXd::Zero(analysis.coefficients_w.size());
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        auto& part = parts[i];
-        mean_turn += weights[i] * part.coefficients_turn;
-        part.residuals.used_up = part.orthonormal;
-        if (!errors.frequency_is_given) {
-            part.residuals.used_up.conservativeResize(Eigen::NoChange, part.orthonormal.cols() + 1);
-            part.residuals.used_up.rightCols(1) = part.theta_direction / std::sqrt(information);
-        }
-        residuals.push_back(part.residuals);
-    }
+    const auto residuals = residuals_of(mean, errors.frequency_is_given);
     errors.autocorrelation = estimate_autocorrelation(residuals);
-
-    const auto size = 1 + analysis.coefficients_w.size();
-    analysis.covariance = Eigen::MatrixXd::Zero(size, size);
-    const Eigen::MatrixXd curve = curve_weights(analysis);
-    double curve_variance = 0.0;
-    double variance_of_variance = 0.0;
-    double theta_variance = 0.0;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        const auto& part = parts[i];
-        const auto correlation =
-            sample_correlation(part.residuals.tau, part.residuals.step, errors.autocorrelation);
-        const auto noise = noise_level(part.residuals, errors.autocorrelation);
-        const Eigen::MatrixXd rows =
-            response(part, weights[i], errors.frequency_is_given ? 0.0 : information, mean_turn);
-        const Eigen::MatrixXd covariance =
-            noise.variance_w2 * rows.transpose() * correlated(correlation, rows);
-        const double share = curve.cwiseProduct(covariance).sum();
-        analysis.covariance += covariance;
-        curve_variance += share;
-        variance_of_variance += share * share / noise.degrees_of_freedom;
-        errors.effective_samples += effective_samples(correlation);
-        if (information > 0.0) {
-            const Eigen::VectorXd direction = part.theta_direction / information;
-            theta_variance += noise.variance_w2 * direction.dot(correlated(correlation, direction).col(0));
-        }
+    for (const auto& flight : residuals) {
+        errors.effective_samples +=
+            effective_samples(sample_correlation(flight.tau, flight.step, errors.autocorrelation));
     }
-    errors.curve_w = std::sqrt(std::max(0.0, curve_variance));
-    // Satterthwaite's again, for variances that add up over the flights.
+
+    const auto curve = curve_weights(analysis);
+    analysis.covariance = Eigen::MatrixXd::Zero(curve.rows(), curve.cols());
+    double theta_variance = 0.0;
+    double variance_of_variance = 0.0;
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+        const Eigen::MatrixXd rows = response(mean, i, weights[i], errors.frequency_is_given);
+        const auto spread = spread_of(residuals[i], rows, theta_response(mean, i), errors.autocorrelation);
+        analysis.covariance += spread.covariance;
+        theta_variance += spread.theta_variance;
+        const double share = curve.cwiseProduct(spread.covariance).sum();
+        variance_of_variance += share * share / spread.degrees_of_freedom;
+    }
+    const double curve_variance = std::max(0.0, curve.cwiseProduct(analysis.covariance).sum());
+    errors.curve_w = std::sqrt(curve_variance);
+    // Satterthwaite's, for variances that add up over the flights.
     errors.degrees_of_freedom = variance_of_variance > 0.0
-                                    ? curve_variance * curve_variance / variance_of_variance
-                                    : errors.effective_samples;
-    analysis.theta_information = information;
+                                    ? std::max(1.0, curve_variance * curve_variance / variance_of_variance)
+                                    : std::max(1.0, errors.effective_samples);
     analysis.free_theta_rad = std::sqrt(std::max(0.0, theta_variance));
-    fill_standard_errors(analysis, duration_s);
+    fill_standard_errors(analysis, mean.duration_s);
     return analysis;
 }
 

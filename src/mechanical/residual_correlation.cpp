@@ -87,16 +87,16 @@ double effective_samples(const SampleCorrelation& correlation) {
 
 double estimate_autocorrelation(std::span<const FlightResiduals> flights) {
     double found = 0.0;
-    double square_free = 0.0;
+    double telling_pairs = 0.0;
     std::vector<double> pairs;
     for (const auto& flight : flights) {
         pairs.push_back(pairs_of(flight));
         const double square_sum = flight.residual_w.squaredNorm();
         if (square_sum <= 0.0) continue;
         found += pairs.back() * products_of_neighbours(flight) / square_sum;
-        square_free += pairs.back();
+        telling_pairs += pairs.back();
     }
-    if (square_free <= 0.0) return 0.0;
+    if (telling_pairs <= 0.0) return 0.0;
     const auto lacking = [&](double autocorrelation) {
         double expected = 0.0;
         for (std::size_t i = 0; i < flights.size(); ++i) {

@@ -37,7 +37,9 @@ struct FlightResiduals {
 /// are less correlated than the noise was, and look anticorrelated if samples are few; therefore r is
 /// sought at which the correlation of the residuals is what is expected of them: the moments of M R M, M the
 /// residual projector and R the correlation of the noise. Neighbours further apart than 1.5 steps do not
-/// count. Negative correlation counts as none, so no flight is worth more than its samples.
+/// count. Negative correlation counts as none, so no flight is worth more than its samples. A short phase
+/// hardly tells: in 25 samples less 8 that the fit used up, r is within about 0.25, and if the noise really
+/// is correlated its estimate is usually too low (see IntervalCoverage for what that costs).
 double estimate_autocorrelation(std::span<const FlightResiduals> flights);
 
 /// The variance of the noise and how well it is known.

@@ -1,0 +1,164 @@
+#include "mechanical/model_errors.h"
+
+#include "base/atomic_file.h"
+#include "base/csv.h"
+#include "base/error.h"
+#include "mechanical/made_up_flights.h"
+#include "mechanical/table_one.h"
+#include "mechanical/table_one_latex.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<FlightSamples> made_up_flights(std::size_t count, double noise_w) {
+    std::vector<FlightSamples> flights(count);
+    for (const auto phase : all_phases) {
+        const auto samples = test::record_flights(phase, count, noise_w, 1);
+        for (std::size_t i = 0; i < count; ++i) {
+            flights[i].flight = samples[i].flight;
+            flights[i].phases[phase] = samples[i];
+        }
+    }
+    return flights;
+}
+
+std::filesystem::path written(const std::string& text) {
+    auto path = test::scratch_dir() / "file";
+    write_file_atomically(path, text);
+    return path;
+}
+
+TEST(ModelErrors, ChangeNothingElseOfTheModel) {
+    auto fit = fit_model(made_up_flights(3, 0.1));
+    const auto plain = to_toml(fit.model);
+    add_errors(fit);
+    auto model = fit.model;
+    EXPECT_NE(to_toml(model), plain);
+    for (const auto phase : all_phases) {
+        EXPECT_TRUE(model.phases[phase].errors && model.phases[phase].spread);
+        model.phases[phase].errors.reset();
+        model.phases[phase].spread.reset();
+    }
+    EXPECT_EQ(to_toml(model), plain);
+}
+
+TEST(ModelErrors, AreReadBackFromTheModelFile) {
+    auto fit = fit_model(made_up_flights(3, 0.1));
+    add_errors(fit);
+    const auto text = to_toml(fit.model);
+    const auto again = read_mechanical_model(written(text));
+    EXPECT_EQ(to_toml(again), text);
+    EXPECT_EQ(again.phases[Phase::cruise].errors->cos_w, fit.model.phases[Phase::cruise].errors->cos_w);
+    EXPECT_EQ(again.phases[Phase::landing].spread->high_w, fit.model.phases[Phase::landing].spread->high_w);
+}
+
+TEST(ModelErrors, AFileWithImpossibleErrorsIsRefused) {
+    auto fit = fit_model(made_up_flights(2, 0.1));
+    add_errors(fit);
+    const auto refusal = [&](auto change) -> std::string {
+        auto model = fit.model;
+        change(model.phases[Phase::cruise]);
+        try {
+            read_mechanical_model(written(to_toml(model)));
+        } catch (const InputError& error) {
+            return fmt::format("{}{}", error.where().line > 0 ? "" : "no line: ", error.what());
+        }
+        return "read without complaint";
+    };
+    EXPECT_THAT(refusal([](auto& phase) { phase.errors->a0_w = -1.0; }), HasSubstr("a0_w = -1 is below 0"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.errors->cos_w.pop_back(); }),
+                HasSubstr("cos_w has 2 numbers, expected 3"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.errors->sin_w[1] = -0.5; }), HasSubstr("negative"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.errors->r2 = 1.5; }), HasSubstr("r2 = 1.5 is outside"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.spread->high_w.pop_back(); }), HasSubstr("as many of each"));
+    EXPECT_THAT(refusal([](auto& phase) { std::swap(phase.spread->low_w, phase.spread->high_w); }),
+                HasSubstr("is below low_w's"));
+    const auto typo = [&] {
+        auto text = to_toml(fit.model);
+        text.replace(text.find("condition ="), 9, "conditoin");
+        return written(text);
+    };
+    EXPECT_THROW(read_mechanical_model(typo()), InputError);
+}
+
+TEST(ModelErrors, CurvesAreATableOfBothBands) {
+    auto fit = fit_model(made_up_flights(3, 0.1));
+    const auto reports = add_errors(fit);
+    const auto table = parse_csv(curves_csv(fit, reports), "curves.csv");
+    ASSERT_EQ(table.columns.size(), 12U);
+    ASSERT_GE(table.rows.size(), 603U);
+    for (const auto& row : table.rows) {
+        const auto number = [&](std::string_view name) {
+            return cell_number(table, row, column_index(table, name));
+        };
+        EXPECT_LE(number("low_95_w"), number("power_w"));
+        EXPECT_GE(number("high_95_w"), number("power_w"));
+        EXPECT_LE(number("flights_low_w"), number("power_w") + 1e-4);
+        EXPECT_GE(number("flights_high_w"), number("power_w") - 1e-4);
+    }
+    auto alone = fit_model(made_up_flights(1, 0.1));
+    EXPECT_THAT(curves_csv(alone, add_errors(alone)), HasSubstr(",,,,,\n"));
+}
+
+TEST(TableOne, CanHaveIntervals) {
+    auto model = test::published_model();
+    model.phases[Phase::cruise].errors = PhaseErrors{
+        1e-5, 0.05, {0.01, 0.02, 0.03}, {0.04, 0.05, 0.06}, 0.02, 1e9, false, 0.9, 2.0, 0.1, 400.0};
+    const auto table = table_one(model, TableIntervals::present);
+    ASSERT_EQ(table.header.size(), 7U);
+    EXPECT_EQ(table.header[4], "cruise +-");
+    EXPECT_EQ(table.rows[0][4], "0.098");  // 1.96 standard errors
+    EXPECT_EQ(table.rows[6][4], "0.12");
+    EXPECT_EQ(table.rows[7][4], "0.00042");  // of xi = omega * 600 / 28
+    EXPECT_EQ(table.rows[0][2], "-");        // no errors known
+    model.phases[Phase::cruise].errors->frequency_is_given = true;
+    EXPECT_EQ(table_one(model, TableIntervals::present).rows[7][4], "-");
+    const auto beside = table_one_beside(test::published_model(), model, TableIntervals::present);
+    EXPECT_EQ(beside.header.size(), 10U);
+    for (const auto& row : beside.rows) EXPECT_EQ(row.size(), 10U);
+}
+
+TEST(TableOneLatex, IsThePapersTable) {
+    EXPECT_EQ(to_latex(table_one(test::published_model())),
+              R"(\begin{table}
+\centering
+\caption{Constants for the mechanical energy model}
+\label{tab:mechanical-energy-model}
+\begin{tabular}{lrrr}
+\hline
+ & take-off & cruise & landing \\
+\hline
+$a_{0}$ & $29.97$ & $27.22$ & $27.21$ \\
+$a_{1}$ & $1.57$ & $0.3737$ & $-0.9512$ \\
+$b_{1}$ & $-1.963$ & $1.194$ & $1.276$ \\
+$a_{2}$ & $0.3876$ & $0.6513$ & $0.9357$ \\
+$b_{2}$ & $-1.552$ & $0.2954$ & $0.965$ \\
+$a_{3}$ & $-0.2869$ & $0.5039$ & $0.4913$ \\
+$b_{3}$ & $-0.547$ & $-0.2864$ & $-0.1192$ \\
+$\xi$ & $0.1525$ & $0.1799$ & $0.1296$ \\
+\hline
+\end{tabular}
+\end{table}
+)");
+}
+
+TEST(TableOneLatex, LeavesNothingThatTexReadsOtherwise) {
+    const auto text =
+        to_latex({{"coefficient", "take-off", "take-off +-"},
+                  {{"a0", "1.5e-05", "0.012"}, {"a0 difference [%]", "-", "-"}, {"x_y", "&", "#"}}});
+    EXPECT_THAT(text, HasSubstr(R"($a_{0}$ & $1.5 \times 10^{-5}$ & $\pm 0.012$ \\)"));
+    EXPECT_THAT(text, HasSubstr(R"(a0 difference [\%] & -- & -- \\)"));
+    EXPECT_THAT(text, HasSubstr(R"(x\_y & \& & \# \\)"));
+    EXPECT_EQ(std::count(text.begin(), text.end(), '$') % 2, 0);
+}
+
+}  // namespace
+}  // namespace flightwatt
