@@ -129,6 +129,18 @@ inline void note_order(const cli::StageCall& call, Phase phase, const OrderChoic
     }
 }
 
+/// Says where intervals hold less than they seem to.
+inline void warn_of_given_frequencies(const cli::StageCall& call, const MechanicalModel& model) {
+    for (const auto phase : all_phases) {
+        const auto& fitted = model.phases[phase];
+        const bool constant = fitted.fourier.cos_w.empty();
+        if (constant || !fitted.errors || !fitted.errors->frequency_is_given) continue;
+        cli::warn(call, fmt::format("{}: the errors are those at the frequency as given; the coefficients "
+                                    "alone may be further off, the curve is not",
+                                    to_string(phase)));
+    }
+}
+
 /// How many samples the loss hardly listened to, and the three it listened to least.
 inline void note_down_weighted(const cli::StageCall& call, const ModelFit& fit) {
     constexpr std::size_t shown = 3;

@@ -114,6 +114,7 @@ int fit(const cli::StageCall& call) {
     if (wishes.curves_file) write_file_atomically(*wishes.curves_file, curves_csv(fitted, *reports));
     cli::write_result(call, to_toml(fitted.model));
     warn_of_bounds(call, fitted.model);
+    warn_of_given_frequencies(call, fitted.model);
     if (call.json) {
         auto json = to_json(fitted.model);
         if (reports) add_errors_json(json, fitted.model, *reports);

@@ -47,7 +47,8 @@ std::vector<std::string> column_of(const PhaseModel& phase, std::size_t order) {
         cells.push_back(there ? as_printed(fourier.sin_w[n]) : "-");
     }
     const double theta_rad = fourier.omega_rad_per_s * phase.duration_s;
-    cells.push_back(as_printed(units::table_one_xi_from_rad(theta_rad)));
+    const bool constant = fourier.cos_w.empty();  // it has no frequency that matters
+    cells.push_back(constant ? "-" : as_printed(units::table_one_xi_from_rad(theta_rad)));
     return cells;
 }
 

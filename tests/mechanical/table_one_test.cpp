@@ -46,6 +46,9 @@ TEST(TableOne, LeavesRoomForPhasesOfOtherOrders) {
     EXPECT_THAT(table.rows[2], ElementsAre("b1", "-1.963", "1.194", "1.276"));
     EXPECT_THAT(table.rows[3], ElementsAre("a2", "0.3876", "-", "0.9357"));
     EXPECT_EQ(table.rows[7][2], "0.1799");
+    model.phases[Phase::landing].fourier.cos_w.clear();
+    model.phases[Phase::landing].fourier.sin_w.clear();
+    EXPECT_EQ(table_one(model).rows[7][3], "-");  // a constant has no frequency
 }
 
 TEST(TableOne, StandsBesideTheRegenerated) {
