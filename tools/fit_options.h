@@ -39,12 +39,18 @@ inline void add_fit_options(boost::program_options::options_description& options
         "most periods in a phase; the sampling may allow fewer");
 }
 
-/// What becomes of doubtful power records.
-inline void add_power_options(boost::program_options::options_description& options) {
+/// Overrules that flights with an absurd power record are left out.
+inline void add_keep_option(boost::program_options::options_description& options) {
     namespace po = boost::program_options;
     options.add_options()("keep", po::value<std::vector<std::string>>()->value_name("FLIGHT")->composing(),
-                          "fit this flight though its power record is absurd")(
-        "correct-idle-offset", "take out of the power what the current sensor reads on the ground");
+                          "use this flight though its power record is absurd");
+}
+
+/// What becomes of doubtful power records.
+inline void add_power_options(boost::program_options::options_description& options) {
+    add_keep_option(options);
+    options.add_options()("correct-idle-offset",
+                          "take out of the power what the current sensor reads on the ground");
 }
 
 /// "FLIGHT=0.4" or "FLIGHT:cruise=0.4".

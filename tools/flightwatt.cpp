@@ -25,6 +25,8 @@ constexpr StageLine stages[] = {
     {"parse", "a Paparazzi log to a table of its power samples (CSV)"},
     {"segment", "take-off, cruise and landing of every sortie in a log"},
     {"fit", "several flights to a mechanical power model and Table I"},
+    {"validate", "leaves each flight out and predicts its energy, beside simple baselines"},
+    {"predict", "the energy to the end of a flight that is in the air"},
     {"batch", "parse, segment and fit every log of a folder, incrementally"},
     {"simulate", "a mission file to its state of charge over time"},
     {"compare", "several missions, ranked by final state of charge"},

@@ -159,14 +159,14 @@ std::vector<Report> other_reports() {
                                 std::string("36"),           std::to_string(7 * channel),
                                 std::to_string(29 * channel)};
          }},
-        {1.1,
-         message("AIRSPEED", {{"airspeed", "float", "m/s", "", {}},
-                              {"airspeed_sp", "float", "m/s", "", {}},
-                              {"airspeed_cnt", "float", "m/s", "", {}},
-                              {"groundspeed_sp", "float", "m/s", "", {}}}),
+        // No AIRSPEED: the made-up power does not follow it, and a sensor would suggest that it did.
+        {0.9,
+         message("IMU_GYRO", {{"gp", "float", "rad/s", "", {}},
+                              {"gq", "float", "rad/s", "", {}},
+                              {"gr", "float", "rad/s", "", {}}}),
          [](const Moment& m) {
-             const auto airspeed = ocaml_float(m.state.airborne ? m.state.airspeed_m_per_s : 0.0);
-             return std::vector{airspeed, airspeed, ocaml_float(0.0), ocaml_float(0.0)};
+             const auto turn = ocaml_float(m.state.airborne ? -0.16 : 0.0);
+             return std::vector{ocaml_float(0.0), ocaml_float(0.0), turn};
          }},
         {1.2,
          message("WP_MOVED", {{"wp_id", "uint8", "", "", {}},

@@ -144,6 +144,12 @@ void add_channels(FlightSeries& series, const SenderLog& sender) {
     const auto speed = ground_speed_of(sender);
     series.ground_speed_track = speed.track;
     add_channel(series, &FlightSeries::ground_speed_m_per_s, "ground_speed_m_per_s", speed);
+    auto airspeed = choose_track(sender,
+                                 {{"AIRSPEED", "airspeed", Quantity::metre_per_second},
+                                  {"AIR_DATA", "airspeed", Quantity::metre_per_second}},
+                                 Merge::mean);
+    // An aircraft without a sensor says the same throughout: 0 or -1.
+    if (!is_constant(airspeed.track)) series.airspeed_track = std::move(airspeed.track);
 }
 
 /// Modes and blocks have no unit.
@@ -231,7 +237,8 @@ std::vector<MessageRequest> flight_messages() {
         {"ESTIMATOR", {"z"}},
         {"GPS", {"utm_east", "utm_north", "alt", "speed"}},
         {"GPS_INT", {"hmsl", "ecef_xd", "ecef_yd", "ecef_zd"}},
-        {"AIR_DATA", {"amsl_baro"}},
+        {"AIR_DATA", {"amsl_baro", "airspeed"}},
+        {"AIRSPEED", {"airspeed"}},
         {"ROTORCRAFT_FP", {"east", "north", "up", "thrust"}},
         {"NAVIGATION", {"cur_block", "pos_x", "pos_y"}},
         {"NAVIGATION_REF", {"ground_alt"}},

@@ -1,5 +1,7 @@
 #include "mechanical/flight_samples.h"
 
+#include "flight/airspeed.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -31,6 +33,8 @@ PhaseSamples samples_of(const FlightSeries& series, const PhaseSpan& span, const
         samples.tau.push_back((time_s - span.start.time_s) / samples.duration_s);
         samples.power_w.push_back(series.power_w[i]);
     }
+    samples.airspeed_cubed_m3_per_s3 =
+        mean_cubed_airspeed_m3_per_s3(series.airspeed_track, span.start.time_s, span.end.time_s);
     return samples;
 }
 

@@ -33,6 +33,23 @@ struct FrequencyRange {
     std::string at_bound = "none";  ///< "none", "low" or "high"
 };
 
+/// How the flights of one phase differ from the model and change meanwhile: what a prediction's interval
+/// needs.
+struct LevelSpread {
+    std::size_t flights = 0;     ///< 2 or more: what the standard deviation between them rests on
+    double level_sd_w = 0.0;     ///< of the flights' mean powers
+    double drift_sd_w = 0.0;     ///< of the power about the curve at the flight's own level
+    double correlation_s = 0.0;  ///< for how long that deviation lasts (exponential correlation)
+};
+
+/// Mean power of a phase after the airspeed flown: coefficient * mean of airspeed^3, drag's power in level
+/// flight at constant propulsive efficiency.
+struct AirspeedLaw {
+    std::size_t flights = 0;
+    double coefficient_w_s3_per_m3 = 0.0;
+    double relative_sd = 0.0;  ///< of the flights' own coefficients, as a part of the mean
+};
+
 /// One phase of the model: the flights' weighted average (Eqs. 5-7) and what it rests on.
 struct PhaseModel {
     FourierModel fourier;
@@ -41,8 +58,11 @@ struct PhaseModel {
     std::optional<FrequencyRange> range;
     std::size_t samples = 0;
     std::size_t flights = 0;
-    std::optional<PhaseErrors> errors;  ///< absent unless they were asked for
-    std::optional<PhaseSpread> spread;  ///< absent too where a single flight counts
+    std::optional<PhaseErrors> errors = {};  ///< absent unless they were asked for
+    std::optional<PhaseSpread> spread = {};  ///< absent too where a single flight counts
+    std::optional<LevelSpread> level_spread =
+        {};                                    ///< absent with fewer than 2 flights, or if published without
+    std::optional<AirspeedLaw> airspeed = {};  ///< absent unless 2 flights or more measured their airspeed
 };
 
 /// One flight's part in one phase.

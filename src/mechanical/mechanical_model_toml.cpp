@@ -57,6 +57,29 @@ FrequencyRange read_range(const TomlTable& table) {
     return range;
 }
 
+std::size_t flights_of_spread(const TomlTable& table) {
+    const auto flights = count(table, "flights");
+    if (flights < 2) {
+        throw InputError(table.where("flights"),
+                         fmt::format("flights = {}: a spread needs 2 or more", flights));
+    }
+    return flights;
+}
+
+LevelSpread read_level_spread(const TomlTable& table) {
+    const LevelSpread spread{flights_of_spread(table), number_from_zero(table, "level_sd_w"),
+                             number_from_zero(table, "drift_sd_w"), positive_number(table, "correlation_s")};
+    table.refuse_unknown_keys();
+    return spread;
+}
+
+AirspeedLaw read_airspeed(const TomlTable& table) {
+    const AirspeedLaw law{flights_of_spread(table), positive_number(table, "coefficient_w_s3_per_m3"),
+                          number_from_zero(table, "relative_sd")};
+    table.refuse_unknown_keys();
+    return law;
+}
+
 PhaseModel read_phase(const TomlTable& table) {
     PhaseModel phase;
     phase.duration_s = positive_number(table, "duration_s");
@@ -76,6 +99,9 @@ PhaseModel read_phase(const TomlTable& table) {
     const auto order = phase.fourier.cos_w.size();
     if (const auto errors = table.optional_table("errors")) phase.errors = read_errors(*errors, order);
     if (const auto spread = table.optional_table("spread")) phase.spread = read_spread(*spread);
+    if (const auto spread = table.optional_table("level_spread"))
+        phase.level_spread = read_level_spread(*spread);
+    if (const auto airspeed = table.optional_table("airspeed")) phase.airspeed = read_airspeed(*airspeed);
     table.refuse_unknown_keys();
     return phase;
 }
@@ -112,6 +138,17 @@ std::string phase_toml(Phase name, const PhaseModel& phase) {
     if (phase.rms_w) text += fmt::format("rms_w = {}\n", toml_real(*phase.rms_w));
     if (phase.samples > 0) text += fmt::format("samples = {}\n", phase.samples);
     if (phase.flights > 0) text += fmt::format("flights = {}\n", phase.flights);
+    if (const auto& spread = phase.level_spread) {
+        text += fmt::format(
+            "level_spread = {{ flights = {}, level_sd_w = {}, drift_sd_w = {}, correlation_s = {} }}\n",
+            spread->flights, toml_real(spread->level_sd_w), toml_real(spread->drift_sd_w),
+            toml_real(spread->correlation_s));
+    }
+    if (const auto& law = phase.airspeed) {
+        text +=
+            fmt::format("airspeed = {{ flights = {}, coefficient_w_s3_per_m3 = {}, relative_sd = {} }}\n",
+                        law->flights, toml_real(law->coefficient_w_s3_per_m3), toml_real(law->relative_sd));
+    }
     if (phase.errors) text += fmt::format("\n[{}.errors]\n{}", to_string(name), to_toml(*phase.errors));
     if (phase.spread) text += fmt::format("\n[{}.spread]\n{}", to_string(name), to_toml(*phase.spread));
     return text;

@@ -1,8 +1,11 @@
 #include "mechanical/model_fit.h"
 
 #include "base/error.h"
+#include "mechanical/level_spread.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -37,6 +40,18 @@ std::string described(const ModelFitOptions& options, std::size_t flights) {
                        to_string(options.weights.weighting), FLIGHTWATT_VERSION);
 }
 
+/// Power beyond any aircraft's overflows on the way; a model of that is none.
+void refuse_what_is_no_number(Phase phase, const FourierModel& model) {
+    double sum = model.a0_w;
+    for (const double value : model.cos_w) sum += value;
+    for (const double value : model.sin_w) sum += value;
+    if (!std::isfinite(sum)) {
+        throw NoAnswerError(
+            fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
+                        to_string(phase)));
+    }
+}
+
 }  // namespace
 
 std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, Phase phase) {
@@ -47,6 +62,20 @@ std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flight
         samples.back().flight = flight.flight;
     }
     return samples;
+}
+
+FittedPhase fit_phase_model(Phase phase, std::span<const PhaseSamples> flights,
+                            const ModelFitOptions& options) {
+    auto phase_options = options.phases;
+    phase_options.order = options.order(phase);
+    FittedPhase fitted;
+    fitted.fit = fit_phase(phase, flights, phase_options);
+    fitted.weights = flight_weights(fitted.fit, phase, options.weights);
+    fitted.model = average_phase(fitted.fit, fitted.weights);
+    refuse_what_is_no_number(phase, fitted.model.fourier);
+    fitted.model.level_spread = level_spread(fitted.model, flights);
+    if (phase == Phase::cruise) fitted.model.airspeed = airspeed_law(flights);
+    return fitted;
 }
 
 MechanicalModel fit_mechanical_model(std::span<const FlightSamples> flights, const ModelFitOptions& options) {
@@ -64,22 +93,19 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
     for (const auto& name : names) model.flights.push_back({name, {}});
 
     for (const auto phase : all_phases) {
-        auto& fit = parts.fits[phase];
-        auto& weights = parts.weights[phase];
         parts.samples[phase] = samples_of_phase(flights, phase);
-        auto phase_options = options.phases;
-        phase_options.order = options.order(phase);
-        fit = fit_phase(phase, parts.samples[phase], phase_options);
-        weights = flight_weights(fit, phase, options.weights);
-        model.phases[phase] = average_phase(fit, weights);
+        auto fitted = fit_phase_model(phase, parts.samples[phase], options);
+        model.phases[phase] = fitted.model;
         std::size_t i = 0;
         for (std::size_t owner = 0; owner < flights.size(); ++owner) {
             if (!flights[owner].phases[phase]) continue;
-            const auto& curve = fit.flights[i];
+            const auto& curve = fitted.fit.flights[i];
             model.flights[owner].phases[phase] =
-                PhaseContribution{weights[i], curve.duration_s, curve.rms_w, curve.samples};
+                PhaseContribution{fitted.weights[i], curve.duration_s, curve.rms_w, curve.samples};
             ++i;
         }
+        parts.fits[phase] = std::move(fitted.fit);
+        parts.weights[phase] = std::move(fitted.weights);
     }
     return parts;
 }

@@ -22,6 +22,18 @@ struct ModelFitOptions {
     int order(Phase phase) const { return orders[phase].value_or(phases.order); }
 };
 
+/// One phase as it was fitted and averaged.
+struct FittedPhase {
+    PhaseModel model;
+    PhaseFit fit;
+    std::vector<double> weights;  ///< of fit.flights
+};
+
+/// Fits and averages one phase (Eqs. 1, 5-7), with its spread and, for the cruise, its airspeed law. Throws
+/// what fit_phase and flight_weights throw.
+FittedPhase fit_phase_model(Phase phase, std::span<const PhaseSamples> flights,
+                            const ModelFitOptions& options = {});
+
 /// A model with what it was made of, flight by flight: what an analysis of its errors needs.
 struct ModelFit {
     MechanicalModel model;

@@ -15,6 +15,8 @@ struct PhaseSamples {
     std::vector<double> tau;      ///< (time - begin of phase) / duration_s, in [0, 1]; gaps are allowed
     std::vector<double> power_w;  ///< as long as tau
     double start_s = 0.0;         ///< when the phase began, on the log's own clock
+    /// Mean of the cube of the airspeed measured in the phase; absent without a sensor.
+    std::optional<double> airspeed_cubed_m3_per_s3 = {};
 };
 
 /// One flight; a phase that it lacks, or that was not recorded, is absent.

@@ -1,0 +1,138 @@
+#include "mechanical/prediction.h"
+
+#include "base/error.h"
+#include "base/units.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flightwatt {
+namespace {
+
+/// What was expected of a cruise, in flight.
+struct Expectation {
+    double flown_w = 0.0;
+    double remaining_w = 0.0;
+    double level_sd_w = 0.0;
+    double weight_square_sum = 1.0;
+    double freedom = 1.0;  ///< of level_sd_w
+};
+
+Expectation expect_by_curve(const PhaseForecast& cruise, double flown_s, double remaining_s) {
+    const double duration_s = flown_s + remaining_s;
+    const auto curve = flown_model(cruise.model, duration_s, PhaseClock::stretched);
+    const double flown_j = energy_j(curve, flown_s);
+    const auto& spread = *cruise.model.level_spread;
+    return {flown_j / flown_s, (energy_j(curve, duration_s) - flown_j) / remaining_s, spread.level_sd_w,
+            cruise.weight_square_sum, static_cast<double>(spread.flights - 1)};
+}
+
+Expectation expect_constant(const PhaseForecast& cruise, double flown_s, double remaining_s) {
+    auto expected = expect_by_curve(cruise, flown_s, remaining_s);
+    const double mean_w =
+        (expected.flown_w * flown_s + expected.remaining_w * remaining_s) / (flown_s + remaining_s);
+    expected.flown_w = expected.remaining_w = mean_w;
+    return expected;
+}
+
+Expectation expect_by_airspeed(const PhaseForecast& cruise, const FlownSoFar& flown) {
+    if (!cruise.model.airspeed) {
+        throw NoAnswerError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
+    }
+    if (!flown.airspeed_cubed_m3_per_s3) throw NoAnswerError("the flight has not measured its airspeed");
+    const auto& law = *cruise.model.airspeed;
+    const double level_w = law.coefficient_w_s3_per_m3 * *flown.airspeed_cubed_m3_per_s3;
+    const auto flights = static_cast<double>(law.flights);
+    return {level_w, level_w, law.relative_sd * level_w, 1.0 / flights, flights - 1.0};
+}
+
+Expectation expect(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s,
+                   LevelSource source) {
+    switch (source) {
+        case LevelSource::curve:
+            return expect_by_curve(cruise, flown.cruise_s(), remaining_s);
+        case LevelSource::constant:
+            return expect_constant(cruise, flown.cruise_s(), remaining_s);
+        case LevelSource::airspeed:
+            return expect_by_airspeed(cruise, flown);
+    }
+    throw NoAnswerError("no such source of the cruise level");
+}
+
+EnergyEstimate estimate_of(const PhaseForecast& phase, double energy_wh, double duration_s) {
+    EnergyEstimate estimate{energy_wh, phase.model.level_spread.has_value(), 0.0, 0.0};
+    if (!phase.model.level_spread) return estimate;
+    const auto& spread = *phase.model.level_spread;
+    const double sd_wh = units::wh_from_joule(spread.level_sd_w * duration_s);
+    add_share(estimate,
+              {sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1)});
+    return estimate;
+}
+
+}  // namespace
+
+PhaseForecast forecast_of(const MechanicalModel& model, Phase phase) {
+    PhaseForecast forecast{model.phases[phase], 0.0};
+    for (const auto& flight : model.flights) {
+        if (const auto& part = flight.phases[phase])
+            forecast.weight_square_sum += part->weight * part->weight;
+    }
+    if (forecast.weight_square_sum == 0.0) {
+        forecast.weight_square_sum =
+            1.0 / static_cast<double>(std::max<std::size_t>(forecast.model.flights, 1));
+    }
+    return forecast;
+}
+
+EnergyEstimate predict_before_flight(const PhaseForecast& phase, double duration_s) {
+    return predict_rest_before_flight(phase, 0.0, duration_s);
+}
+
+EnergyEstimate predict_rest_before_flight(const PhaseForecast& phase, double flown_s, double remaining_s) {
+    const double duration_s = flown_s + remaining_s;
+    const auto curve = flown_model(phase.model, duration_s, PhaseClock::stretched);
+    const double rest_j = energy_j(curve, duration_s) - energy_j(curve, flown_s);
+    return estimate_of(phase, units::wh_from_joule(rest_j), remaining_s);
+}
+
+RestPrediction predict_rest(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s,
+                            LevelSource source) {
+    if (!cruise.model.level_spread) {
+        throw NoAnswerError("the model does not say how flights differ: fit two flights or more");
+    }
+    RestPrediction rest;
+    if (remaining_s == 0.0) return rest;
+    const double flown_s = flown.cruise_s();
+    const auto expected = expect(cruise, flown, remaining_s, source);
+    const auto& spread = *cruise.model.level_spread;
+    const Drift drift{spread.drift_sd_w, spread.correlation_s};
+    const double level_w2 = expected.level_sd_w * expected.level_sd_w;
+    const double covariance_w2 = level_w2 + covariance_of_means_w2(drift, flown_s, remaining_s);
+    const double flown_w2 = level_w2 + variance_of_mean_w2(drift, flown_s);
+    // Flights that are all alike, without any drift: the model is right, whatever is measured.
+    rest.gain = flown_w2 > 0.0 ? std::min(covariance_w2 / flown_w2, 1.0) : 0.0;
+    rest.expected_w = expected.flown_w;
+    rest.flown_w = units::joule_from_wh(flown.cruise_energy_wh) / flown_s;
+    rest.remaining_mean_w = expected.remaining_w + rest.gain * (rest.flown_w - rest.expected_w);
+    rest.energy.energy_wh = units::wh_from_joule(rest.remaining_mean_w * remaining_s);
+
+    // Both shares of var y - gain cov: what rests on the flights' levels, and what on their drift.
+    const double kept = 1.0 - rest.gain;
+    const double wh_per_w = units::wh_from_joule(remaining_s);
+    const double level_share_w2 = kept * level_w2 + kept * kept * level_w2 * expected.weight_square_sum;
+    // The curve is an average of flights that drifted as well.
+    const double drift_share_w2 =
+        (1.0 + expected.weight_square_sum) *
+        std::max(0.0, variance_of_mean_w2(drift, remaining_s) -
+                          rest.gain * covariance_of_means_w2(drift, flown_s, remaining_s));
+    // How much a flight drifts differs from flight to flight, so many samples are no more than their flights.
+    const double independent_stretches =
+        static_cast<double>(spread.flights) * cruise.model.duration_s / (2.0 * drift.correlation_s);
+    const double drift_freedom =
+        std::clamp(independent_stretches - 1.0, 1.0, static_cast<double>(spread.flights));
+    add_share(rest.energy, {level_share_w2 * wh_per_w * wh_per_w, expected.freedom});
+    add_share(rest.energy, {drift_share_w2 * wh_per_w * wh_per_w, drift_freedom});
+    return rest;
+}
+
+}  // namespace flightwatt

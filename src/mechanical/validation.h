@@ -1,0 +1,51 @@
+#pragma once
+
+#include "mechanical/energy_estimate.h"
+#include "mechanical/flown_so_far.h"
+#include "mechanical/model_fit.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flightwatt {
+
+/// One flight as the validation needs it: what may be fitted, and the measured truth of the same phases.
+struct MeasuredFlight {
+    FlightSamples samples;
+    PerPhase<std::optional<double>> energy_wh;          ///< integral of the measured power
+    PerPhase<std::optional<double>> counter_energy_wh;  ///< what the on-board counter said
+    std::optional<FlownSoFar> flown;                    ///< only for a validation in flight
+};
+
+/// What one model says of a flight that it has not seen.
+struct FlightPrediction {
+    std::string model;
+    PerPhase<std::optional<EnergyEstimate>> phases;
+};
+
+struct ValidatedFlight {
+    std::string flight;
+    PerPhase<std::optional<double>> measured_wh;  ///< phases that were predicted
+    PerPhase<std::optional<double>> counter_wh;
+    std::vector<FlightPrediction> predictions;
+};
+
+/// Leaves each flight out in turn, fits the others and predicts the energy of its phases from their durations
+/// alone. A phase that no other flight has is not predicted. Models:
+///   fourier          the model of this project (fit_phase_model)
+///   constant_mean    the mean power of the other flights
+///   nearest_flight   the mean power of the flight with the nearest durations
+///   airspeed_cubed   cruise: AirspeedLaw at the airspeed that was flown, as if it had been known; other
+///                    phases as constant_mean; only if the flight and two others measured airspeed
+/// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without
+/// airspeed_cubed) say of the rest of the cruise is added to what was measured until then, and beside them
+///   in_flight            predict_rest by the curve
+///   in_flight_constant   predict_rest by the curve's mean
+///   in_flight_airspeed   predict_rest by the airspeed so far
+/// Throws NoAnswerError for fewer than 2 flights, and what fit_phase_model throws.
+std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights,
+                                           const ModelFitOptions& options = {});
+
+}  // namespace flightwatt

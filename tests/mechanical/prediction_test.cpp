@@ -1,0 +1,118 @@
+#include "mechanical/prediction.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "made_up_flights.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+PhaseForecast forecast(const LevelSpread& spread) {
+    PhaseForecast cruise{test::published_model().phases[Phase::cruise], 0.25};
+    cruise.model.level_spread = spread;
+    return cruise;
+}
+
+FlownSoFar flown(double seconds, double mean_w) {
+    FlownSoFar flight;
+    flight.cruise_start_s = 100.0;
+    flight.until_s = 100.0 + seconds;
+    flight.cruise_energy_wh = units::wh_from_joule(mean_w * seconds);
+    return flight;
+}
+
+TEST(Prediction, BeforeTheFlightIsTheStretchedCurvesEnergyWithStudentsInterval) {
+    const auto cruise = forecast({4, 2.0, 1.0, 50.0});
+    const auto estimate = predict_before_flight(cruise, 1200.0);
+    EXPECT_NEAR(estimate.energy_wh, 2.0 * units::wh_from_joule(energy_j(cruise.model.fourier, 600.0)), 1e-9);
+    const double half_wh = student_t_95(3.0) * 2.0 * std::sqrt(1.25) * 1200.0 / 3600.0;
+    EXPECT_NEAR(interval_95(estimate).value().high_wh, estimate.energy_wh + half_wh, 1e-9);
+}
+
+TEST(Prediction, BeforeFlightOfTheRestMissesOnlyTheFlownPart) {
+    const auto cruise = forecast({4, 2.0, 1.0, 50.0});
+    const auto whole = predict_before_flight(cruise, 600.0);
+    const auto rest = predict_rest_before_flight(cruise, 200.0, 400.0);
+    EXPECT_NEAR(whole.energy_wh - rest.energy_wh, units::wh_from_joule(energy_j(cruise.model.fourier, 200.0)),
+                1e-9);
+}
+
+TEST(Prediction, KeepsTheModelWhereFlightsAreAllAlike) {
+    const auto cruise = forecast({4, 0.0, 5.0, 1.0});
+    const auto rest = predict_rest(cruise, flown(300.0, 40.0), 3000.0, LevelSource::curve);
+    EXPECT_LT(rest.gain, 0.01);
+    EXPECT_NEAR(rest.energy.energy_wh, predict_rest_before_flight(cruise, 300.0, 3000.0).energy_wh, 0.1);
+}
+
+TEST(Prediction, TakesTheFlightsOwnLevelWhereFlightsDifferAndDoNotDrift) {
+    const auto cruise = forecast({4, 5.0, 1e-3, 1.0});
+    const auto rest = predict_rest(cruise, flown(300.0, 40.0), 300.0, LevelSource::curve);
+    EXPECT_NEAR(rest.gain, 1.0, 1e-6);
+    EXPECT_NEAR(
+        rest.remaining_mean_w - 40.0,
+        2.0 * units::joule_from_wh(predict_rest_before_flight(cruise, 300.0, 300.0).energy_wh) / 600.0 -
+            rest.expected_w,
+        1e-3);
+}
+
+TEST(Prediction, ShrinksByTheVariances) {
+    // B^2 = 4; the mean of 300 s drifts by V = 4 too, and without correlation worth naming.
+    const double correlation_s = 0.01;
+    const double sd_w = 2.0 / std::sqrt(2.0 * correlation_s / 300.0);
+    const auto cruise = forecast({4, 2.0, sd_w, correlation_s});
+    const auto rest = predict_rest(cruise, flown(300.0, 40.0), 900.0, LevelSource::curve);
+    EXPECT_NEAR(rest.gain, 0.5, 1e-4);
+    // var y - gain cov = B^2 / 2 + V / 3, the latter 1 + 1/4 times; (1 - gain)^2 B^2 / 4 for the average of
+    // few flights.
+    const double hours = 900.0 / 3600.0;
+    EXPECT_NEAR(rest.energy.variance_wh2 / hours / hours, 2.0 + 1.25 * 4.0 / 3.0 + 0.25, 1e-3);
+}
+
+TEST(Prediction, IntervalNarrowsAsTheFlightGoesOn) {
+    const auto cruise = forecast({4, 5.0, 8.0, 60.0});
+    double last_wh = 1e9;
+    for (const double seconds : {10.0, 100.0, 300.0, 600.0, 890.0}) {
+        const auto rest = predict_rest(cruise, flown(seconds, 30.0), 900.0 - seconds, LevelSource::curve);
+        const auto interval = interval_95(rest.energy).value();
+        EXPECT_LT(interval.high_wh - interval.low_wh, last_wh) << seconds;
+        last_wh = interval.high_wh - interval.low_wh;
+    }
+}
+
+TEST(Prediction, HoldsOneLevelWhereAsked) {
+    const auto cruise = forecast({4, 5.0, 1e-3, 1.0});
+    const auto rest = predict_rest(cruise, flown(300.0, 40.0), 300.0, LevelSource::constant);
+    EXPECT_NEAR(rest.remaining_mean_w, 40.0, 1e-3);
+    EXPECT_NEAR(rest.expected_w, energy_j(cruise.model.fourier, 600.0) / 600.0, 1e-9);
+}
+
+TEST(Prediction, FollowsTheAirspeedWhereAsked) {
+    auto cruise = forecast({4, 5.0, 1e-3, 1.0});
+    auto flight = flown(300.0, 20.0);
+    EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::airspeed), NoAnswerError);
+    cruise.model.airspeed = AirspeedLaw{3, 0.01, 0.0};
+    EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::airspeed), NoAnswerError);
+    flight.airspeed_cubed_m3_per_s3 = 2500.0;
+    const auto rest = predict_rest(cruise, flight, 900.0, LevelSource::airspeed);
+    EXPECT_NEAR(rest.expected_w, 25.0, 1e-12);
+    // All flights have obeyed the law exactly: it is trusted more than 300 s of power.
+    EXPECT_NEAR(rest.remaining_mean_w, 25.0, 0.05);
+}
+
+TEST(Prediction, SaysWhenTheModelHasNoSpread) {
+    const PhaseForecast cruise{test::published_model().phases[Phase::cruise], 1.0};
+    EXPECT_THROW(predict_rest(cruise, flown(300.0, 20.0), 900.0, LevelSource::curve), NoAnswerError);
+    EXPECT_FALSE(interval_95(predict_before_flight(cruise, 600.0)).has_value());
+}
+
+TEST(Prediction, OfNothingLeftIsNothing) {
+    const auto rest =
+        predict_rest(forecast({4, 2.0, 1.0, 50.0}), flown(300.0, 40.0), 0.0, LevelSource::curve);
+    EXPECT_DOUBLE_EQ(rest.energy.energy_wh, 0.0);
+    EXPECT_DOUBLE_EQ(rest.energy.variance_wh2, 0.0);
+}
+
+}  // namespace
+}  // namespace flightwatt

@@ -1,0 +1,161 @@
+#include "mechanical/validation.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "made_up_flights.h"
+#include "mechanical/flight_spread.h"
+#include "mechanical/validation_score.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using test::published_model;
+using testing::ElementsAre;
+
+/// A flight recorded off its true curves; with `until_s`, seen in flight so long after its cruise began.
+MeasuredFlight measured(const std::string& name, const PerPhase<PhaseModel>& truth, std::mt19937& random,
+                        std::optional<double> until_s = std::nullopt) {
+    MeasuredFlight flight;
+    flight.samples.flight = name;
+    for (const auto phase : all_phases) {
+        const auto& curve = truth[phase];
+        flight.samples.phases[phase] = test::record(curve, {curve.duration_s, 1.1, 0.2, 0.1}, random, name);
+        flight.energy_wh[phase] = units::wh_from_joule(energy_j(curve.fourier, curve.duration_s));
+    }
+    if (until_s) {
+        flight.flown = FlownSoFar{};
+        flight.flown->until_s = *until_s;
+        flight.flown->cruise_energy_wh =
+            units::wh_from_joule(energy_j(truth[Phase::cruise].fourier, *until_s));
+    }
+    return flight;
+}
+
+/// Flights about the published model. The library draws them in opposite pairs; one of each pair is taken, so
+/// that they are independent.
+std::vector<MeasuredFlight> generated(std::size_t count, unsigned seed,
+                                      std::optional<double> until_s = std::nullopt) {
+    const auto drawn = draw_flights(published_model(), 2 * count, seed);
+    std::mt19937 random(seed);
+    std::vector<MeasuredFlight> flights;
+    for (std::size_t i = 0; i < drawn.size() && flights.size() < count; i += 2) {
+        flights.push_back(measured("flight" + std::to_string(i), drawn[i], random, until_s));
+    }
+    return flights;
+}
+
+TEST(Validation, PredictsFlightsThatAreAllAlikeExactly) {
+    std::mt19937 random(1);
+    std::vector<MeasuredFlight> flights;
+    for (const auto* name : {"a", "b", "c"}) {
+        flights.push_back(measured(name, published_model().phases, random));
+    }
+    const auto validated = leave_one_out(flights);
+    ASSERT_EQ(validated.size(), 3u);
+    EXPECT_THAT(model_names(validated), ElementsAre("fourier", "constant_mean", "nearest_flight"));
+    for (const auto& model : model_names(validated)) {
+        const auto score = score_of(validated, model, std::nullopt).value();
+        EXPECT_EQ(score.flights, 3u);
+        EXPECT_LT(score.mean_absolute_error_percent.value(), 0.5) << model;
+    }
+    EXPECT_FALSE(score_of(validated, "fourier", Phase::landing)->mean_absolute_error_percent.has_value());
+}
+
+/// A truth that the flight's own data must not leak into: the others' mean is what is predicted.
+TEST(Validation, LeavesTheFlightOut) {
+    std::mt19937 random(1);
+    auto stray = published_model().phases;
+    for (const auto phase : all_phases) stray[phase].fourier.a0_w += 10.0;
+    const std::vector flights{measured("a", published_model().phases, random),
+                              measured("b", published_model().phases, random), measured("c", stray, random)};
+    const auto validated = leave_one_out(flights);
+    for (const auto* model : {"fourier", "constant_mean", "nearest_flight"}) {
+        const auto energy = predicted_energy(validated[2], model, Phase::cruise).value();
+        EXPECT_NEAR(energy.estimate.energy_wh - energy.measured_wh, -10.0 * 600.0 / 3600.0, 0.05) << model;
+    }
+}
+
+TEST(Validation, NeedsTwoFlightsAndGivesIntervalsFromThree) {
+    std::mt19937 random(1);
+    std::vector flights{measured("a", published_model().phases, random)};
+    EXPECT_THROW(leave_one_out(flights), NoAnswerError);
+    flights.push_back(measured("b", published_model().phases, random));
+    EXPECT_FALSE(score_of(leave_one_out(flights), "fourier", std::nullopt)->coverage_95.has_value());
+    flights.push_back(measured("c", published_model().phases, random));
+    EXPECT_TRUE(score_of(leave_one_out(flights), "fourier", std::nullopt)->coverage_95.has_value());
+}
+
+TEST(Validation, PredictsOnlyWhatIsThere) {
+    std::mt19937 random(1);
+    std::vector<MeasuredFlight> flights;
+    for (const auto* name : {"a", "b", "c"}) {
+        flights.push_back(measured(name, published_model().phases, random));
+    }
+    flights[0].samples.phases[Phase::takeoff].reset();
+    flights[0].energy_wh[Phase::takeoff].reset();
+    for (auto& flight : flights) flight.samples.phases[Phase::landing].reset();
+    const auto validated = leave_one_out(flights);
+    EXPECT_EQ(score_of(validated, "fourier", Phase::takeoff)->flights, 2u);
+    EXPECT_EQ(score_of(validated, "fourier", Phase::cruise)->flights, 3u);
+    EXPECT_FALSE(score_of(validated, "fourier", Phase::landing).has_value());
+    EXPECT_EQ(score_of(validated, "fourier", std::nullopt)->flights, 3u);
+}
+
+TEST(Validation, UsesTheAirspeedWhereItWasMeasured) {
+    std::mt19937 random(1);
+    std::vector<MeasuredFlight> flights;
+    double level_w = -3.0;
+    for (const auto* name : {"a", "b", "c", "d"}) {
+        auto truth = published_model().phases;
+        truth[Phase::cruise].fourier.a0_w += level_w += 2.0;
+        flights.push_back(measured(name, truth, random));
+        auto& cruise = *flights.back().samples.phases[Phase::cruise];
+        const double mean_w =
+            units::joule_from_wh(*flights.back().energy_wh[Phase::cruise]) / cruise.duration_s;
+        cruise.airspeed_cubed_m3_per_s3 = 100.0 * mean_w;
+    }
+    const auto validated = leave_one_out(flights);
+    EXPECT_LT(score_of(validated, "airspeed_cubed", Phase::cruise)->mean_absolute_error_percent.value(), 0.5);
+    EXPECT_GT(score_of(validated, "constant_mean", Phase::cruise)->mean_absolute_error_percent.value(), 5.0);
+}
+
+/// How often a model's 95 % interval covers the truth of independent generated flights, over many fits.
+double coverage(const std::string& model, std::optional<Phase> phase, std::optional<double> until_s) {
+    double sum = 0.0;
+    constexpr int repeats = 25;
+    for (int seed = 1; seed <= repeats; ++seed) {
+        const auto validated = leave_one_out(generated(5, static_cast<unsigned>(seed), until_s));
+        sum += score_of(validated, model, phase)->coverage_95.value();
+    }
+    return sum / repeats;
+}
+
+TEST(Validation, IntervalsCoverGeneratedFlights) {
+    // 125 flights: 95 % +- 4 points is two standard deviations, more as the folds share flights.
+    const double before = coverage("fourier", Phase::cruise, std::nullopt);
+    EXPECT_GE(before, 0.89);
+    EXPECT_LE(before, 0.99);
+}
+
+TEST(Validation, IntervalsInFlightCoverGeneratedFlights) {
+    const double during = coverage("in_flight", Phase::cruise, 300.0);
+    EXPECT_GE(during, 0.88);
+}
+
+TEST(Validation, InFlightBeatsBeforeFlightOnGeneratedFlights) {
+    double before_wh = 0.0;
+    double during_wh = 0.0;
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+        const auto validated = leave_one_out(generated(5, seed, 300.0));
+        before_wh += score_of(validated, "fourier", Phase::cruise)->mean_absolute_error_wh;
+        during_wh += score_of(validated, "in_flight", Phase::cruise)->mean_absolute_error_wh;
+        EXPECT_FALSE(score_of(validated, "fourier", Phase::takeoff).has_value());
+    }
+    EXPECT_LT(during_wh, 0.75 * before_wh);
+}
+
+}  // namespace
+}  // namespace flightwatt

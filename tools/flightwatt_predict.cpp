@@ -1,0 +1,157 @@
+// flightwatt predict: the energy to the end of a flight that is in the air.
+
+#include "base/error.h"
+#include "base/units.h"
+#include "cli/stage.h"
+#include "flight/flight_reader.h"
+#include "mechanical/prediction.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using namespace flightwatt;
+
+double positive(const cli::StageCall& call, const std::string& option, bool zero_allowed) {
+    const auto value = call.get<double>(option);
+    if (std::isfinite(value) && (value > 0.0 || (zero_allowed && value == 0.0))) return value;
+    throw UsageError(
+        fmt::format("--{} is {}, expected {} s", option, value, zero_allowed ? "0 or more" : "more than 0"));
+}
+
+Moment moment_of(const cli::StageCall& call) {
+    if (call.has("until") == call.has("until-log-time")) {
+        throw UsageError("expected either --until (seconds since lift-off) or --until-log-time");
+    }
+    if (call.has("until")) return {positive(call, "until", false), 0.0};
+    return {std::nullopt, positive(call, "until-log-time", false)};
+}
+
+/// The model that --model names. Its spread is what the interval rests on.
+MechanicalModel read_spread_model(const cli::StageCall& call) {
+    if (!call.has("model")) throw UsageError("no model given: expected --model MODEL.toml");
+    const auto file = call.get<std::string>("model");
+    auto model = read_mechanical_model(file);
+    for (const auto phase : {Phase::cruise, Phase::landing}) {
+        if (model.phases[phase].level_spread) continue;
+        throw InputError({file}, fmt::format("[{}] has no spread: how much flights differ", to_string(phase)),
+                         "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
+    }
+    return model;
+}
+
+LevelSource level_source(const cli::StageCall& call) {
+    const auto name = call.get<std::string>("level");
+    if (name == "curve") return LevelSource::curve;
+    if (name == "constant") return LevelSource::constant;
+    if (name == "airspeed") return LevelSource::airspeed;
+    throw UsageError(fmt::format("--level {}: expected curve, constant or airspeed", name));
+}
+
+struct Prediction {
+    FlownSoFar flown;
+    double remaining_s = 0.0;
+    RestPrediction cruise;
+    EnergyEstimate landing;
+    double landing_s = 0.0;
+    EnergyEstimate rest;
+    Interval interval;
+};
+
+Prediction predict_flight(const cli::StageCall& call) {
+    Prediction prediction;
+    const auto moment = moment_of(call);
+    if (!call.has("remaining")) throw UsageError("no time left given: expected --remaining SECONDS");
+    prediction.remaining_s = positive(call, "remaining", true);
+    const auto sortie = call.get<unsigned>("sortie");
+    if (sortie == 0) throw UsageError("--sortie is 0, expected 1 or more");
+    const auto model = read_spread_model(call);
+    const auto& file = call.inputs.front();
+    const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
+    for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
+    prediction.flown = flown_so_far(series, moment, sortie - 1);
+    prediction.cruise = predict_rest(forecast_of(model, Phase::cruise), prediction.flown,
+                                     prediction.remaining_s, level_source(call));
+    prediction.landing_s = model.phases[Phase::landing].duration_s;
+    prediction.landing = predict_before_flight(forecast_of(model, Phase::landing), prediction.landing_s);
+    prediction.rest = sum_of(prediction.cruise.energy, prediction.landing);
+    prediction.interval = interval_95(prediction.rest).value();
+    return prediction;
+}
+
+std::string text_of(const Prediction& prediction) {
+    const auto& [flown, remaining_s, cruise, landing, landing_s, rest, interval] = prediction;
+    return fmt::format(
+        "flown      {:.3f} Wh from lift-off at {:.1f} s to {:.1f} s of the log ({:.1f} s)\n"
+        "cruise     {:.3f} Wh in {:.0f} s more: {:.2f} W; so far {:.2f} W, expected {:.2f} W, of the "
+        "difference {:.0f} % goes on\n"
+        "landing    {:.3f} Wh in {:.0f} s, as in the model\n"
+        "remaining  {:.3f} Wh, 95 % interval {:.3f} to {:.3f} Wh\n"
+        "total      {:.3f} Wh\n",
+        flown.energy_wh, flown.lift_off_s, flown.until_s, flown.until_s - flown.lift_off_s,
+        cruise.energy.energy_wh, remaining_s, cruise.remaining_mean_w, cruise.flown_w, cruise.expected_w,
+        units::percent_of(cruise.gain, 1.0), landing.energy_wh, landing_s, rest.energy_wh, interval.low_wh,
+        interval.high_wh, flown.energy_wh + rest.energy_wh);
+}
+
+nlohmann::ordered_json json_of(const Prediction& prediction) {
+    const auto& [flown, remaining_s, cruise, landing, landing_s, rest, interval] = prediction;
+    return {{"flown_energy_wh", flown.energy_wh},
+            {"remaining_energy_wh", rest.energy_wh},
+            {"interval_95_wh", {interval.low_wh, interval.high_wh}},
+            {"total_energy_wh", flown.energy_wh + rest.energy_wh},
+            {"lift_off_s", flown.lift_off_s},
+            {"until_s", flown.until_s},
+            {"cruise",
+             {{"remaining_s", remaining_s},
+              {"energy_wh", cruise.energy.energy_wh},
+              {"flown_mean_w", cruise.flown_w},
+              {"expected_mean_w", cruise.expected_w},
+              {"remaining_mean_w", cruise.remaining_mean_w},
+              {"gain", cruise.gain}}},
+            {"landing", {{"duration_s", landing_s}, {"energy_wh", landing.energy_wh}}}};
+}
+
+int predict(const cli::StageCall& call) {
+    const auto prediction = predict_flight(call);
+    cli::write_result(call, text_of(prediction));
+    if (call.json) cli::print(json_of(prediction).dump(2) + "\n");
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    namespace po = boost::program_options;
+    cli::StageDefinition stage;
+    stage.name = "predict";
+    stage.arguments = "FLIGHT.data|SERIES.csv --model MODEL.toml --until S --remaining S";
+    stage.description =
+        "Predicts the energy from a moment in cruise to the end of the flight. What was measured until then\n"
+        "moves the cruise level of the model towards this flight's own, weighted by the variances between\n"
+        "flights and within one. Nothing after the moment is looked at: a log that ends there gives the "
+        "same.\n"
+        "The remaining energy is that of --remaining more seconds of cruise and of a landing as in the "
+        "model\n"
+        "(its duration, too). The 95 % interval is that of the remaining energy; it holds the spread "
+        "between\n"
+        "flights, the drift within one, and that the model rests on few flights.";
+    stage.max_inputs = 1;
+    stage.options.add_options()("model", po::value<std::string>()->value_name("MODEL.toml"),
+                                "from flightwatt fit, of two flights or more")(
+        "until", po::value<double>()->value_name("S"),
+        "the moment, in seconds since lift-off as flightwatt segment finds it in what was flown")(
+        "until-log-time", po::value<double>()->value_name("S"),
+        "the moment in the log's own seconds, instead of --until")(
+        "remaining", po::value<double>()->value_name("S"), "seconds from the moment until landing begins")(
+        "level", po::value<std::string>()->value_name("HOW")->default_value("curve"),
+        "what is expected of the cruise before its own power is looked at: the model's curve, the curve's "
+        "mean "
+        "(constant), or the power that the airspeed measured so far stands for (airspeed)")(
+        "sortie", po::value<unsigned>()->value_name("N")->default_value(1), "which sortie of the log")(
+        "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
+    return cli::run_stage(argc, argv, stage, predict);
+}

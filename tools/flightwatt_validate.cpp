@@ -1,0 +1,113 @@
+// flightwatt validate: leaves each flight out, fits the others and predicts its energy.
+
+#include "cli/stage.h"
+#include "fit_options.h"
+#include "flight/flight_reader.h"
+#include "flight/power_report.h"
+#include "mechanical/measured_flight.h"
+#include "validation_output.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace {
+
+using namespace flightwatt;
+
+/// The flights of one log. In flight, those that are not in cruise at the moment are left out.
+std::vector<MeasuredFlight> read_flights(const cli::StageCall& call, const std::string& file,
+                                         std::size_t needed_samples) {
+    const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
+    const auto phases = segment(series);
+    require_sortie(series, phases, file);
+    for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
+    const auto power = examine_power(series, phases);
+    const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
+    if (!power.absurdities.empty() && std::find(keep.begin(), keep.end(), series.flight) == keep.end()) {
+        cli::warn(call,
+                  to_string(LeftOut{series.flight, std::nullopt, describe_absurdities(power.absurdities)}));
+        return {};
+    }
+    auto measured = measure_flights(series, phases, needed_samples);
+    for (const auto& left_out : measured.left_out) {
+        cli::warn(call, to_string(left_out));
+    }
+    const auto until_s = call.maybe<double>("until");
+    if (!until_s) return std::move(measured.flights);
+    std::vector<MeasuredFlight> in_cruise;
+    for (std::size_t i = 0; i < measured.flights.size(); ++i) {
+        auto& flight = measured.flights[i];
+        try {
+            flight.flown = flown_so_far(series, {until_s, 0.0}, measured.sorties[i]);
+            in_cruise.push_back(std::move(flight));
+        } catch (const NoAnswerError& error) {
+            cli::warn(call, fmt::format("{} is left out: {}", flight.samples.flight, error.what()));
+        }
+    }
+    return in_cruise;
+}
+
+std::string report(const std::vector<ValidatedFlight>& flights, bool in_flight) {
+    auto text = to_text(flights_table(flights)) + "\n" + to_text(scores_table(flights)) + "\n" +
+                verdict(flights, "fourier", "constant_mean");
+    if (in_flight) text += verdict(flights, "in_flight", "fourier");
+    constexpr std::size_t few = 20;
+    if (flights.size() < few) {
+        text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n",
+                            flights.size(), units::percent_of(1.0, static_cast<double>(flights.size())));
+    }
+    return text;
+}
+
+int validate_flights(const cli::StageCall& call) {
+    const auto options = read_fit_options(call);
+    const auto until_s = call.maybe<double>("until");
+    if (until_s && !(*until_s > 0.0 && std::isfinite(*until_s))) {
+        throw UsageError(fmt::format("--until is {}, expected more than 0 s since lift-off", *until_s));
+    }
+    std::vector<MeasuredFlight> flights;
+    for (const auto& file : call.inputs) {
+        auto read = read_flights(call, file, samples_needed(options.phases.order));
+        std::move(read.begin(), read.end(), std::back_inserter(flights));
+    }
+    const auto validated = leave_one_out(flights, options);
+    cli::write_result(call, report(validated, until_s.has_value()));
+    if (call.json) cli::print(scores_json(validated).dump(2) + "\n");
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    namespace po = boost::program_options;
+    cli::StageDefinition stage;
+    stage.name = "validate";
+    stage.arguments = "FLIGHT.data|SERIES.csv...";
+    stage.description =
+        "Leaves one flight out, fits the others, and predicts the energy of each of its phases and of the "
+        "whole\n"
+        "from their durations alone; then compares with the integral of the power that was measured. "
+        "Models:\n"
+        "  fourier         the Fourier series of this project\n"
+        "  constant_mean   the other flights' mean power in the phase\n"
+        "  nearest_flight  the mean power of the one flight whose durations are nearest\n"
+        "  airspeed_cubed  cruise power proportional to the mean cube of the airspeed that was flown, as if "
+        "it\n"
+        "                  had been known before; where flights measured it\n"
+        "With --until S: S seconds after its lift-off a flight has measured its energy up to then; the rest "
+        "of\n"
+        "the cruise and the landing are predicted, by the models above as before the flight, and by\n"
+        "  in_flight           the cruise level shrunk between model and flight (see flightwatt predict)\n"
+        "  in_flight_constant  the same about the model's mean power\n"
+        "  in_flight_airspeed  the same about the power that the airspeed so far lets expect\n"
+        "Errors in percent are parts of the phase's measured energy, the flown part included; none for "
+        "landing,\n"
+        "whose power is near zero. Bias is predicted less measured.";
+    add_fit_options(stage.options);
+    add_keep_option(stage.options);
+    stage.options.add_options()("until", po::value<double>()->value_name("S"),
+                                "validate the prediction in flight, S seconds after lift-off")(
+        "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
+    return cli::run_stage(argc, argv, stage, validate_flights);
+}
