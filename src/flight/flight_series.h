@@ -50,7 +50,7 @@ struct FlightSeries {
     /// Altitude and speed on their own, faster clocks; empty in a series read from CSV.
     Track altitude_track;
     Track ground_speed_track;
-    Track airspeed_track;  ///< [m/s] as measured; empty without a sensor
+    Track airspeed_track;                     ///< [m/s] as measured; empty without a sensor
     std::optional<double> ground_altitude_m;  ///< from the flight plan or NAVIGATION_REF
     FlightWitnesses witnesses;
 
