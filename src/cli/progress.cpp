@@ -1,0 +1,96 @@
+#include "cli/progress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+
+namespace flightwatt::cli {
+namespace {
+
+constexpr auto least_interval = std::chrono::milliseconds(100);
+constexpr auto rate_window = std::chrono::seconds(10);
+
+/// "0:07", "12:34", "3:05:09".
+std::string clock_text(double time_s) {
+    constexpr double most_s = 359999.0;  // 99:59:59
+    const std::chrono::seconds whole(static_cast<long>(std::ceil(std::min(time_s, most_s))));
+    const std::chrono::hh_mm_ss clock(whole);
+    const auto [hours, minutes, s] =
+        std::tuple(clock.hours().count(), clock.minutes().count(), clock.seconds().count());
+    return hours == 0 ? fmt::format("{}:{:02}", minutes, s)
+                      : fmt::format("{}:{:02}:{:02}", hours, minutes, s);
+}
+
+std::string rate_text(const ProgressState& state, const std::string& unit) {
+    if (!(state.per_s > 0.0)) return "";
+    const auto left_s = static_cast<double>(state.all - std::min(state.done, state.all)) / state.per_s;
+    return fmt::format(", {:.{}f} {}/s, {} left", state.per_s, state.per_s < 100.0 ? 1 : 0, unit,
+                       clock_text(left_s));
+}
+
+/// "[###...] ", as wide as `width` if that is enough for a bar that tells anything.
+std::string bar_text(const ProgressState& state, std::size_t width) {
+    constexpr std::size_t frame = 3;  // brackets and a blank
+    constexpr std::size_t least = 5;
+    constexpr std::size_t most = 40;
+    if (width < frame + least || state.all == 0) return "";
+    const auto cells = std::min(width - frame, most);
+    const auto full = cells * std::min(state.done, state.all) / state.all;
+    return "[" + std::string(full, '#') + std::string(cells - full, '.') + "] ";
+}
+
+std::size_t terminal_width(std::FILE* terminal) {
+    constexpr std::size_t usual = 80;
+    winsize size{};
+    return ::ioctl(::fileno(terminal), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+}
+
+}  // namespace
+
+std::string progress_text(const ProgressState& state, const std::string& unit, std::size_t width) {
+    auto text = fmt::format("{}/{}", state.done, state.all);
+    const auto rate = rate_text(state, unit);
+    if (text.size() + rate.size() <= width) text += rate;
+    if (text.size() > width) return "";
+    return bar_text(state, width - text.size()) + text;
+}
+
+ProgressBar::ProgressBar(std::FILE* terminal, std::string unit)
+    : terminal_(terminal), unit_(std::move(unit)), recent_{{Clock::now(), 0}} {}
+
+ProgressBar::~ProgressBar() { clear(); }
+
+void ProgressBar::show(std::size_t done, std::size_t all) {
+    const std::lock_guard lock(mutex_);
+    const auto now = Clock::now();
+    if (cleared_ || now - recent_.back().time < least_interval) return;
+    recent_.push_back({now, done});
+    while (recent_.size() > 2 && now - recent_.front().time > rate_window) recent_.pop_front();
+    const std::chrono::duration<double> window = now - recent_.front().time;
+    const auto per_s = static_cast<double>(done - recent_.front().done) / window.count();
+    // One column less: a full last one makes some terminals wrap.
+    const auto text = progress_text({done, all, per_s}, unit_, terminal_width(terminal_) - 1);
+    erase();
+    fmt::print(terminal_, "{}", text);
+    std::fflush(terminal_);
+    drawn_width_ = text.size();
+}
+
+void ProgressBar::clear() {
+    const std::lock_guard lock(mutex_);
+    erase();
+    std::fflush(terminal_);
+    cleared_ = true;
+}
+
+/// With blanks: every terminal knows them.
+void ProgressBar::erase() {
+    if (drawn_width_ > 0) fmt::print(terminal_, "\r{}\r", std::string(drawn_width_, ' '));
+    drawn_width_ = 0;
+}
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,116 @@
+#include "cli/progress.h"
+
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr auto beyond_interval = std::chrono::milliseconds(120);
+
+TEST(ProgressText, TellsBarCountRateAndRemainingTime) {
+    EXPECT_EQ(progress_text({512, 1000, 42.14}, "logs", 60),
+              "[############.............] 512/1000, 42.1 logs/s, 0:12 left");
+    EXPECT_EQ(progress_text({0, 8, 0.0}, "logs", 20), "[..............] 0/8");
+    EXPECT_EQ(progress_text({8, 8, 250.6}, "logs", 42), "[#############] 8/8, 251 logs/s, 0:00 left");
+}
+
+TEST(ProgressText, CountsMinutesAndHours) {
+    EXPECT_THAT(progress_text({1, 602, 1.0}, "logs", 60), EndsWith("1.0 logs/s, 10:01 left"));
+    EXPECT_THAT(progress_text({0, 11109, 1.0}, "logs", 60), EndsWith("3:05:09 left"));
+    EXPECT_THAT(progress_text({0, 1000000, 0.001}, "logs", 60), EndsWith("99:59:59 left"));
+}
+
+TEST(ProgressText, KeepsToTheWidth) {
+    for (std::size_t width = 0; width <= 200; ++width) {
+        for (const std::size_t done : {0U, 1U, 999U, 1000U}) {
+            const auto text = progress_text({done, 1000, 3.5}, "logs", width);
+            EXPECT_LE(text.size(), width);
+            if (width < 9) continue;
+            EXPECT_THAT(text, HasSubstr(std::to_string(done) + "/1000"));
+        }
+    }
+    EXPECT_EQ(progress_text({7, 1000, 3.5}, "logs", 12), "7/1000");  // no room for a bar
+    EXPECT_EQ(progress_text({7, 1000, 3.5}, "logs", 5), "");
+}
+
+/// A terminal of our own, and what was printed on it.
+class Terminal {
+  public:
+    explicit Terminal(unsigned short columns) : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+        if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0) {
+            throw std::runtime_error("no terminal");
+        }
+        stream_ = std::fopen(::ptsname(master_), "w");
+        if (stream_ == nullptr) throw std::runtime_error("no terminal");
+        winsize size{};
+        size.ws_col = columns;
+        ::ioctl(::fileno(stream_), TIOCSWINSZ, &size);
+    }
+    ~Terminal() {
+        std::fclose(stream_);
+        ::close(master_);
+    }
+    Terminal(const Terminal&) = delete;
+    Terminal& operator=(const Terminal&) = delete;
+
+    std::FILE* stream() { return stream_; }
+    std::string printed() {
+        std::string text;
+        std::array<char, 4096> part{};
+        for (auto n = ::read(master_, part.data(), part.size()); n > 0;
+             n = ::read(master_, part.data(), part.size())) {
+            text.append(part.data(), static_cast<std::size_t>(n));
+        }
+        return text;
+    }
+
+  private:
+    int master_;
+    std::FILE* stream_ = nullptr;
+};
+
+TEST(ProgressBar, DrawsAtMostTenTimesASecond) {
+    Terminal terminal(60);
+    ProgressBar bar(terminal.stream(), "logs");
+    for (std::size_t i = 1; i <= 50; ++i) bar.show(i, 1000);
+    std::this_thread::sleep_for(beyond_interval);
+    for (std::size_t i = 51; i <= 100; ++i) bar.show(i, 1000);
+    const auto printed = terminal.printed();
+    EXPECT_THAT(printed, HasSubstr(" 51/1000, "));
+    EXPECT_THAT(printed, HasSubstr(" logs/s, "));
+    EXPECT_THAT(printed, Not(HasSubstr(" 52/")));
+}
+
+TEST(ProgressBar, StaysOnOneLineAndIsGoneInTheEnd) {
+    Terminal terminal(30);
+    ProgressBar bar(terminal.stream(), "logs");
+    std::this_thread::sleep_for(beyond_interval);
+    bar.show(3, 8);
+    const auto drawn = terminal.printed();
+    EXPECT_THAT(drawn, HasSubstr("3/8"));
+    EXPECT_LT(drawn.size(), 30U);
+    bar.clear();
+    EXPECT_EQ(terminal.printed(), "\r" + std::string(drawn.size(), ' ') + "\r");
+    std::this_thread::sleep_for(beyond_interval);
+    bar.show(4, 8);
+    bar.clear();
+    EXPECT_EQ(terminal.printed(), "");
+}
+
+}  // namespace
+}  // namespace flightwatt::cli
