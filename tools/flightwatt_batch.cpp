@@ -4,12 +4,19 @@
 #include "base/toml_reader.h"
 #include "batch/batch_run.h"
 #include "batch/folder_lock.h"
+#include "batch/interruption.h"
+#include "batch/left_overs.h"
+#include "cli/progress.h"
 #include "cli/stage.h"
 #include "fit_options.h"
 #include "table_one_output.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cstring>
 #include <filesystem>
+#include <functional>
+#include <optional>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -18,18 +25,35 @@ namespace {
 
 using namespace flightwatt;
 
-BatchProgress progress_line(const cli::StageCall& call) {
-    return [&call](std::size_t done, std::size_t all, const BatchFlight& flight) {
+/// What is known of the run at any moment, by all threads.
+struct Watch {
+    std::optional<cli::ProgressBar> bar;  ///< on a terminal
+    std::atomic<std::size_t> done = 0;
+    std::size_t all = 0;
+};
+
+/// Moves the bar on, or says what became of the log.
+BatchProgress progress_of(const cli::StageCall& call, Watch& watch) {
+    return [&](std::size_t done, std::size_t all, const BatchFlight& flight) {
+        watch.done = done;
+        if (watch.bar) {
+            watch.bar->show(done, all);
+            return;
+        }
         const auto* what = !flight.record.accepted ? "rejected"
                            : flight.was_up_to_date ? "up to date"
                                                    : "done";
-        if (::isatty(STDERR_FILENO) != 0) {
-            fmt::print(stderr, "\r\033[K[{}/{}] {} {}{}", done, all, cli::one_line(flight.record.flight),
-                       what, done == all ? "\r\033[K" : "");
-            std::fflush(stderr);
-        } else {
-            cli::note(call, fmt::format("[{}/{}] {}: {}", done, all, flight.record.flight, what));
-        }
+        cli::note(call, fmt::format("[{}/{}] {}: {}", done, all, flight.record.flight, what));
+    };
+}
+
+std::function<void(int)> farewell_of(const cli::StageCall& call, Watch& watch) {
+    return [&](int signal) {
+        if (watch.bar) watch.bar->clear();
+        const auto* name = ::sigabbrev_np(signal);
+        cli::note(call,
+                  fmt::format("stopped by SIG{} after {} of {} logs; the same command goes on from there",
+                              name == nullptr ? "?" : name, watch.done.load(), watch.all));
     };
 }
 
@@ -47,10 +71,12 @@ void report_notes(const cli::StageCall& call, const std::vector<BatchFlight>& fl
     }
 }
 
-const std::vector<std::string> model_files{"model.toml", "table1.txt", "table1.csv", "table1.md"};
+/// On failure no model of an earlier run stays behind to be taken for this one's.
+void remove_model(const std::filesystem::path& out) {
+    for (const auto* name : model_names) std::filesystem::remove(out / name);
+}
 
-/// Fits what the batch accepted. On failure no model of an earlier run stays behind to be taken for this
-/// one's.
+/// Fits what the batch accepted.
 MechanicalModel fit_batch(const cli::StageCall& call, const std::vector<BatchFlight>& flights,
                           const std::filesystem::path& out) {
     auto options = read_fit_options(call);
@@ -62,7 +88,7 @@ MechanicalModel fit_batch(const cli::StageCall& call, const std::vector<BatchFli
     try {
         return fit_mechanical_model(samples, options);
     } catch (...) {
-        for (const auto& file : model_files) std::filesystem::remove(out / file);
+        remove_model(out);
         throw;
     }
 }
@@ -100,40 +126,47 @@ void refuse_unknown_flights(const std::set<std::string>& keep, const std::vector
     }
 }
 
-int batch(const cli::StageCall& call) {
+BatchOptions read_batch_options(const cli::StageCall& call, const ModelFitOptions& fit_options) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
-    const auto fit_options = read_fit_options(call);  // refuses bad options before the work
-    std::optional<MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published")) published = read_mechanical_model(*file);
     BatchOptions options;
     options.out = *call.output;
     options.aircraft_id = call.maybe<std::string>("aircraft");
     options.jobs = read_jobs(call);
     options.correct_idle_offset = call.has("correct-idle-offset");
-    const auto logs = find_logs(call.inputs);
+    options.needed_samples = samples_needed(fit_options.phases.order);
     if (const auto keep = call.maybe<std::vector<std::string>>("keep")) {
         options.keep.insert(keep->begin(), keep->end());
-        refuse_unknown_flights(options.keep, logs);
     }
-    options.needed_samples = samples_needed(fit_options.phases.order);
-    make_directories(options.out);
-    const FolderLock lock(options.out);
-    const auto flights = run_batch(logs, options, progress_line(call));
+    return options;
+}
+
+/// Writes the model and its Table I as files.
+void write_model(const MechanicalModel& model, const TextTable& table, const BatchOptions& options) {
+    const WriteGate::Pass pass(*options.gate);
+    write_file_atomically(options.out / model_names.front(), to_toml(model));
+    for (auto name = model_names.begin() + 1; name != model_names.end(); ++name) {
+        write_file_atomically(options.out / *name, table_text(table, *name));
+    }
+}
+
+/// What follows the logs: the catalogue and the fit. Returns the exit code.
+int conclude(const cli::StageCall& call, const std::vector<BatchFlight>& flights, const BatchOptions& options,
+             const std::optional<MechanicalModel>& published) {
     report_notes(call, flights);
-    write_file_atomically(options.out / "flights.csv", catalogue_csv(flights));
+    {
+        const WriteGate::Pass pass(*options.gate);
+        write_file_atomically(options.out / catalogue_name, catalogue_csv(flights));
+    }
     if (!call.json) cli::print(to_text(flights_table(flights)));
     const auto rejected = std::count_if(flights.begin(), flights.end(),
                                         [](const auto& flight) { return !flight.record.accepted; });
     if (static_cast<std::size_t>(rejected) == flights.size()) {
-        for (const auto& file : model_files) std::filesystem::remove(options.out / file);
+        remove_model(options.out);
         throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", rejected));
     }
     const auto model = fit_batch(call, flights, options.out);
     const auto table = table_of(model, published);
-    write_file_atomically(options.out / "model.toml", to_toml(model));
-    for (const auto* name : {"table1.txt", "table1.csv", "table1.md"}) {
-        write_file_atomically(options.out / name, table_text(table, name));
-    }
+    write_model(model, table, options);
     warn_of_bounds(call, model);
     if (call.json)
         cli::print(json_text(summary_json(flights, model)));
@@ -144,6 +177,29 @@ int batch(const cli::StageCall& call) {
         return cli::input_rejected;
     }
     return cli::ok;
+}
+
+int batch(const cli::StageCall& call) {
+    const auto fit_options = read_fit_options(call);  // refuses bad options before the work
+    auto options = read_batch_options(call, fit_options);
+    std::optional<MechanicalModel> published;
+    if (const auto file = call.maybe<std::string>("published")) published = read_mechanical_model(*file);
+    const auto logs = find_logs(call.inputs);
+    refuse_unknown_flights(options.keep, logs);
+    make_directories(options.out);
+    const FolderLock lock(options.out);
+    for (const auto& dropped : find_dropped(logs, options.out)) {
+        cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
+    }
+    WriteGate gate;
+    options.gate = &gate;
+    Watch watch;
+    watch.all = logs.size();
+    if (::isatty(STDERR_FILENO) != 0) watch.bar.emplace(stderr, "logs");
+    const Interruption interruption(gate, farewell_of(call, watch));
+    const auto flights = run_batch(logs, options, progress_of(call, watch));
+    if (watch.bar) watch.bar->clear();
+    return conclude(call, flights, options, published);
 }
 
 }  // namespace
@@ -160,7 +216,10 @@ int main(int argc, char** argv) {
         "and\n"
         "phase. Logs whose results are up to date are not done again. A log that cannot be used is reported "
         "and the\n"
-        "others go on; the exit code is then 3.";
+        "others go on; the exit code is then 3. Flights whose log is gone are dropped.\n\n"
+        "SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. "
+        "However it\n"
+        "ended, the same command goes on where it stopped and comes to the same results.";
     stage.output_help = "the folder of the results";
     add_fit_options(stage.options);
     add_power_options(stage.options);

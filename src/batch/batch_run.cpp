@@ -3,6 +3,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/fingerprint.h"
+#include "batch/interruption.h"
+#include "batch/left_overs.h"
 #include "flight/flight_reader.h"
 #include "flight/power_report.h"
 #include "flight/series_csv.h"
@@ -13,7 +15,6 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <set>
 #include <thread>
 
 #include <fmt/format.h>
@@ -21,15 +22,18 @@
 namespace flightwatt {
 namespace {
 
-constexpr auto series_ending = ".series.csv";
-constexpr auto phases_ending = ".phases.csv";
-constexpr auto record_ending = ".record.json";
-
 std::filesystem::path flights_folder(const BatchOptions& options) { return options.out / "flights"; }
 
 std::filesystem::path result_path(const BatchOptions& options, const std::string& flight,
                                   const char* ending) {
     return flights_folder(options) / (flight + ending);
+}
+
+void write_result(const BatchOptions& options, const std::string& flight, const char* ending,
+                  const std::string& content) {
+    std::optional<WriteGate::Pass> pass;
+    if (options.gate != nullptr) pass.emplace(*options.gate);
+    write_file_atomically(result_path(options, flight, ending), content);
 }
 
 /// Of everything that the result depends on.
@@ -111,8 +115,8 @@ BatchFlight do_accepted(const LogFile& log, const BatchOptions& options) {
     done.record = record_of(series, phases);
     done.record.absurdities = power.absurdities;
     done.selection = select_for_fit(series, phases, done.record, options);
-    write_file_atomically(result_path(options, log.flight, series_ending), to_csv(series));
-    write_file_atomically(result_path(options, log.flight, phases_ending), phases_csv(series, phases));
+    write_result(options, log.flight, series_ending, to_csv(series));
+    write_result(options, log.flight, phases_ending, phases_csv(series, phases));
     return done;
 }
 
@@ -142,37 +146,10 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     done.record.fingerprint = fingerprint;
     if (done.record.accepted) done.record.results = results_fingerprint(options, log.flight);
     const auto text = to_json_text(done.record);
-    write_file_atomically(result_path(options, log.flight, record_ending), text);
+    write_result(options, log.flight, record_ending, text);
     done.record = record_from_json(text).value();  // what later runs remember: both must report the same
     done.record.flight = log.flight;
     return done;
-}
-
-/// Whether a file of the flights folder is one that a batch wrote, for a flight that is not in `names`, or
-/// did not get to rename (see write_file_atomically) when it was killed.
-bool is_left_over(const std::string& file, const std::set<std::string>& names) {
-    constexpr std::string_view unfinished = ".XXXXXX";
-    for (const std::string_view ending : {record_ending, series_ending, phases_ending}) {
-        if (file.ends_with(ending)) return !names.contains(file.substr(0, file.size() - ending.size()));
-        const auto at = file.rfind(ending);
-        if (at != std::string::npos && at + ending.size() + unfinished.size() == file.size() &&
-            file[at + ending.size()] == '.') {
-            return true;
-        }
-    }
-    return false;
-}
-
-/// What earlier runs left of logs that are gone now, and what a killed one left unfinished.
-void remove_left_overs(const std::vector<LogFile>& logs, const BatchOptions& options) {
-    std::set<std::string> names;
-    for (const auto& log : logs) names.insert(log.flight);
-    std::vector<std::filesystem::path> left_over;
-    for (const auto& entry : std::filesystem::directory_iterator(flights_folder(options))) {
-        if (is_left_over(entry.path().filename().string(), names)) left_over.push_back(entry.path());
-    }
-    std::error_code ignored;
-    for (const auto& path : left_over) std::filesystem::remove(path, ignored);
 }
 
 }  // namespace
@@ -180,7 +157,7 @@ void remove_left_overs(const std::vector<LogFile>& logs, const BatchOptions& opt
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
                                    const BatchProgress& progress) {
     make_directories(flights_folder(options));
-    remove_left_overs(logs, options);
+    remove_left_overs(logs, options.out);
     std::vector<BatchFlight> flights(logs.size());
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;  // guards what follows

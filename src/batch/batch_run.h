@@ -15,6 +15,8 @@
 
 namespace flightwatt {
 
+class WriteGate;
+
 struct BatchOptions {
     std::filesystem::path out;
     std::optional<std::string> aircraft_id;
@@ -22,6 +24,7 @@ struct BatchOptions {
     std::size_t needed_samples = 8;
     bool correct_idle_offset = false;  ///< see correct_idle_offset()
     std::set<std::string> keep = {};   ///< flights that are fitted though their power record is absurd
+    WriteGate* gate = nullptr;         ///< passed to write a file, if there is one
 };
 
 /// One log of a batch, done or found up to date.

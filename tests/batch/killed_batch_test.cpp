@@ -1,0 +1,135 @@
+// The program itself, killed and interrupted in the middle of a batch: what it ends with must not tell.
+
+#include "sample_logs.h"
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace flightwatt {
+namespace {
+
+using test::contents;
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+
+constexpr int logs = 12;
+
+class KilledBatch : public testing::Test {
+  protected:
+    std::filesystem::path folder = test::scratch_dir();
+    std::mt19937 random{std::random_device{}()};
+
+    /// Twelve logs, no two of the same content.
+    void SetUp() override {
+        for (int i = 0; i < logs; ++i) {
+            const auto copy = test::copy_sample(1 + i % 6, folder / "in", "flight_" + std::to_string(10 + i));
+            std::ofstream(copy, std::ios::app) << "9999." << i << " 7 PING\n";
+        }
+    }
+
+    /// Starts `flightwatt-batch in -o OUT --jobs JOBS`; what it says goes to stderr.OUT.
+    ::pid_t start(const std::string& out, unsigned jobs) {
+        const auto program = std::filesystem::path(FLIGHTWATT_BINARY_DIR) / "bin" / "flightwatt-batch";
+        std::vector<std::string> words{
+            program.string(), (folder / "in").string(), "-o", (folder / out).string(),
+            "--jobs",         std::to_string(jobs)};
+        std::vector<char*> arguments;
+        for (auto& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        posix_spawn_file_actions_t files;
+        ::posix_spawn_file_actions_init(&files);
+        ::posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
+        const auto said = folder / ("stderr." + out);
+        ::posix_spawn_file_actions_addopen(&files, 2, said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        ::pid_t child = -1;
+        EXPECT_EQ(::posix_spawn(&child, program.c_str(), &files, nullptr, arguments.data(), environ), 0);
+        ::posix_spawn_file_actions_destroy(&files);
+        return child;
+    }
+
+    int wait_for(::pid_t child) {
+        int status = -1;
+        ::waitpid(child, &status, 0);
+        return status;
+    }
+
+    std::map<std::string, std::string> left_alone(unsigned jobs) {
+        const auto out = "alone" + std::to_string(jobs);
+        EXPECT_EQ(wait_for(start(out, jobs)), 0);
+        return contents(folder / out);
+    }
+
+    int records(const std::string& out) {
+        int count = 0;
+        std::error_code none;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / out / "flights", none)) {
+            count += entry.path().string().ends_with(".record.json") ? 1 : 0;
+        }
+        return count;
+    }
+
+    /// Starts a batch and sends it a signal a little after it has `done` records. Returns its status.
+    int stop_after(const std::string& out, int done, int signal) {
+        const auto child = start(out, 1);
+        const auto patience = std::chrono::steady_clock::now() + 20s;
+        while (records(out) < done && std::chrono::steady_clock::now() < patience) {
+            std::this_thread::sleep_for(100us);
+        }
+        std::this_thread::sleep_for(std::chrono::microseconds(random() % 2000));
+        ::kill(child, signal);
+        return wait_for(child);
+    }
+};
+
+TEST_F(KilledBatch, WritesTheSameBytesWithAnyNumberOfJobs) {
+    const auto whole = left_alone(1);
+    EXPECT_EQ(whole.size(), 3U * logs + 5U);
+    EXPECT_EQ(left_alone(2), whole);
+    EXPECT_EQ(left_alone(5), whole);
+}
+
+TEST_F(KilledBatch, EndsWithTheSameBytesAfterKills) {
+    const auto whole = left_alone(2);
+    int killed = 0;
+    for (const int done : {2, 5, 8}) {
+        killed += WIFSIGNALED(stop_after("out", done, SIGKILL)) ? 1 : 0;
+    }
+    EXPECT_GE(killed, 1);  // a machine that looks away for long enough may let one finish
+    EXPECT_EQ(wait_for(start("out", 2)), 0);
+    EXPECT_EQ(contents(folder / "out"), whole);
+}
+
+TEST_F(KilledBatch, GoesOnAfterCtrlC) {
+    const auto whole = left_alone(2);
+    const int status = stop_after("out", 3, SIGINT);
+    ASSERT_TRUE(WIFEXITED(status));
+    ASSERT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_THAT(read_file(folder / "stderr.out"),
+                testing::ContainsRegex(
+                    "flightwatt-batch: stopped by SIGINT after [0-9]+ of 12 logs; the same command "
+                    "goes on from there\n$"));
+    for (const auto& [name, content] : contents(folder / "out")) {
+        ASSERT_TRUE(whole.contains(name)) << name;  // nothing half-written
+        EXPECT_EQ(content, whole.at(name)) << name;
+    }
+    EXPECT_EQ(wait_for(start("out", 2)), 0);
+    EXPECT_THAT(read_file(folder / "stderr.out"), HasSubstr("flight_10: up to date"));
+    EXPECT_EQ(contents(folder / "out"), whole);
+}
+
+}  // namespace
+}  // namespace flightwatt
