@@ -16,6 +16,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -76,14 +77,16 @@ void remove_model(const std::filesystem::path& out) {
     for (const auto* name : model_names) std::filesystem::remove(out / name);
 }
 
-/// Fits what the batch accepted.
-MechanicalModel fit_batch(const cli::StageCall& call, const std::vector<BatchFlight>& flights,
+/// Fits what the batch accepted. Takes the samples out of `flights`: of thousands, two copies are too many.
+MechanicalModel fit_batch(const cli::StageCall& call, std::vector<BatchFlight>& flights,
                           const std::filesystem::path& out) {
     auto options = read_fit_options(call);
     options.name = call.get<std::string>("name");
     std::vector<FlightSamples> samples;
-    for (const auto& flight : flights) {
-        samples.insert(samples.end(), flight.selection.flights.begin(), flight.selection.flights.end());
+    for (auto& flight : flights) {
+        auto& taken = flight.selection.flights;
+        std::move(taken.begin(), taken.end(), std::back_inserter(samples));
+        taken.clear();
     }
     try {
         return fit_mechanical_model(samples, options);
@@ -150,7 +153,7 @@ void write_model(const MechanicalModel& model, const TextTable& table, const Bat
 }
 
 /// What follows the logs: the catalogue and the fit. Returns the exit code.
-int conclude(const cli::StageCall& call, const std::vector<BatchFlight>& flights, const BatchOptions& options,
+int conclude(const cli::StageCall& call, std::vector<BatchFlight> flights, const BatchOptions& options,
              const std::optional<MechanicalModel>& published) {
     report_notes(call, flights);
     {
@@ -197,9 +200,9 @@ int batch(const cli::StageCall& call) {
     watch.all = logs.size();
     if (::isatty(STDERR_FILENO) != 0) watch.bar.emplace(stderr, "logs");
     const Interruption interruption(gate, farewell_of(call, watch));
-    const auto flights = run_batch(logs, options, progress_of(call, watch));
+    auto flights = run_batch(logs, options, progress_of(call, watch));
     if (watch.bar) watch.bar->clear();
-    return conclude(call, flights, options, published);
+    return conclude(call, std::move(flights), options, published);
 }
 
 }  // namespace

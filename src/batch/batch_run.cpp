@@ -100,6 +100,13 @@ FlightSelection select_for_fit(const FlightSeries& series, const FlightPhases& p
     if (!record.absurdities.empty() && !options.keep.contains(series.flight)) {
         leave_out_all(selection, series.flight, describe_absurdities(record.absurdities));
     }
+    for (auto& flight : selection.flights) {  // kept until the fit, of thousands of flights
+        for (auto& phase : flight.phases.values) {
+            if (!phase) continue;
+            phase->tau.shrink_to_fit();
+            phase->power_w.shrink_to_fit();
+        }
+    }
     return selection;
 }
 
