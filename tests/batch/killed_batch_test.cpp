@@ -48,6 +48,7 @@ class KilledBatch : public testing::Test {
             program.string(), (folder / "in").string(), "-o", (folder / out).string(),
             "--jobs",         std::to_string(jobs)};
         std::vector<char*> arguments;
+        arguments.reserve(words.size() + 1);
         for (auto& word : words) arguments.push_back(word.data());
         arguments.push_back(nullptr);
         posix_spawn_file_actions_t files;

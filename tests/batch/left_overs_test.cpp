@@ -28,6 +28,7 @@ void write_record(const std::filesystem::path& out, const std::string& flight,
 
 std::vector<std::string> words(const std::vector<DroppedFlight>& dropped) {
     std::vector<std::string> lines;
+    lines.reserve(dropped.size());
     for (const auto& flight : dropped) lines.push_back(flight.flight + ", " + flight.reason);
     return lines;
 }
