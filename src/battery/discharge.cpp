@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 #include <boost/numeric/odeint/algebra/vector_space_algebra.hpp>
@@ -86,11 +87,13 @@ Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double
     if (soc_percent <= 0.0) return {0.0, from_s, std::nullopt};
     const double length_s = to_s - from_s;
     // A quotient a rounding error above a whole number is that number.
-    const double steps = std::max(1.0, std::ceil(length_s / max_step_s * (1.0 - 1e-12)));
+    const auto steps =
+        static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_step_s * (1.0 - 1e-12))));
     Discharge state{soc_percent, std::nullopt, std::nullopt};
     double time_s = from_s;
-    for (double k = 1.0; k <= steps; k += 1.0) {
-        const double next_s = k == steps ? to_s : from_s + length_s * (k / steps);
+    for (std::uint64_t k = 1; k <= steps; ++k) {
+        const double part = static_cast<double>(k) / static_cast<double>(steps);
+        const double next_s = k == steps ? to_s : from_s + length_s * part;
         state = guarded_step(battery, power_w, time_s, next_s - time_s, state.soc_percent);
         if (state.empty_at_s || state.undeliverable) return state;
         time_s = next_s;

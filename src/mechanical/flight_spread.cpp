@@ -33,7 +33,7 @@ FourierModel deviation_series(Phase phase, const PhaseModel& model, const Deviat
     const auto fit = solve_least_squares(fourier_basis(tau, order, theta_rad), watts);
     if (!fit) throw NoAnswerError("the model's frequency is too low to spread flights about it");
     FourierModel series{model.fourier.omega_rad_per_s, fit->coefficients[0], {}, {}};
-    for (int n = 1; n <= order; ++n) {
+    for (Eigen::Index n = 1; n <= order; ++n) {
         series.cos_w.push_back(fit->coefficients[2 * n - 1]);
         series.sin_w.push_back(fit->coefficients[2 * n]);
     }

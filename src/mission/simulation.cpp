@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <stdexcept>
 
@@ -31,9 +32,10 @@ void require_output_step(double output_s, double duration_s) {
 std::vector<double> output_times(const Demand& demand, double output_s) {
     const double tolerance_s = output_s * 1e-9;
     std::vector<double> times{demand.from_s};
-    for (double k = std::floor(demand.from_s / output_s) + 1.0; k * output_s < demand.to_s - tolerance_s;
-         k += 1.0) {
-        if (k * output_s > demand.from_s + tolerance_s) times.push_back(k * output_s);
+    auto k = static_cast<std::uint64_t>(std::floor(demand.from_s / output_s)) + 1;
+    for (; static_cast<double>(k) * output_s < demand.to_s - tolerance_s; ++k) {
+        const double time_s = static_cast<double>(k) * output_s;
+        if (time_s > demand.from_s + tolerance_s) times.push_back(time_s);
     }
     times.push_back(demand.to_s);
     return times;
