@@ -22,7 +22,7 @@ inline std::filesystem::path scratch_dir() {
     for (auto& c : name) {
         if (c == '/') c = '_';
     }
-    const auto folder = std::filesystem::path(FLIGHTWATT_BINARY_DIR) / "scratch" / name;
+    auto folder = std::filesystem::path(FLIGHTWATT_BINARY_DIR) / "scratch" / name;
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     return folder;

@@ -132,6 +132,7 @@ class LogReader {
 
     static std::vector<std::string> names_of(const std::vector<MessageRequest>& wanted) {
         std::vector<std::string> names;
+        names.reserve(wanted.size());
         for (const auto& request : wanted) names.push_back(request.message);
         return names;
     }

@@ -1,7 +1,7 @@
 #include "telemetry/row_storage.h"
 
 #include <algorithm>
-#include <cstdint>
+#include <memory>
 #include <vector>
 
 #if defined(__linux__)
@@ -12,15 +12,14 @@ namespace flightwatt {
 namespace {
 
 /// Asks for large pages behind a long column: faulting it in page by page would take longer than to fill it.
-void use_large_pages([[maybe_unused]] const std::vector<double>& column) {
+void use_large_pages([[maybe_unused]] std::vector<double>& column) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-    constexpr std::uintptr_t large_page = 2u << 20;
-    const auto begin = reinterpret_cast<std::uintptr_t>(column.data());
-    const auto end = begin + column.capacity() * sizeof(double);
-    const auto first = (begin + large_page - 1) / large_page * large_page;
-    const auto last = end / large_page * large_page;
+    constexpr std::size_t large_page = 2u << 20;
+    void* first = column.data();
+    std::size_t bytes = column.capacity() * sizeof(double);
+    if (std::align(large_page, large_page, first, bytes) == nullptr) return;
     // Only advice: without it everything works, more slowly.
-    if (first < last) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+    ::madvise(first, bytes / large_page * large_page, MADV_HUGEPAGE);
 #endif
 }
 
