@@ -39,7 +39,7 @@ void write_result(const BatchOptions& options, const std::string& flight, const 
 /// Of everything that the result depends on.
 std::string fingerprint_of(const LogFile& log, const BatchOptions& options) {
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 3");
+    fingerprint.add(FLIGHTWATT_VERSION " record 4");
     fingerprint.add(log.flight);
     fingerprint.add(log.path.string());
     fingerprint.add(options.aircraft_id.value_or(""));
@@ -93,10 +93,22 @@ std::string describe(const InputError& error) {
                        error.hint());
 }
 
+/// A series that was read back from its CSV has no airspeed any more; the record has what a fit takes of it.
+void restore_airspeed(const FlightRecord& record, FlightSelection& selection) {
+    for (const auto& phase : record.phases) {
+        const auto name = flight_name_of_sortie(record.flight, phase.sortie);
+        for (auto& flight : selection.flights) {
+            if (flight.flight != name || !flight.phases[phase.phase]) continue;
+            flight.phases[phase.phase]->airspeed_cubed_m3_per_s3 = phase.airspeed_cubed_m3_per_s3;
+        }
+    }
+}
+
 /// What is fitted of a flight: nothing if its power record is absurd, unless the user keeps it.
 FlightSelection select_for_fit(const FlightSeries& series, const FlightPhases& phases,
                                const FlightRecord& record, const BatchOptions& options) {
     auto selection = select_samples(series, phases, options.needed_samples);
+    restore_airspeed(record, selection);
     if (!record.absurdities.empty() && !options.keep.contains(series.flight)) {
         leave_out_all(selection, series.flight, describe_absurdities(record.absurdities));
     }

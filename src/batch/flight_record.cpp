@@ -1,5 +1,7 @@
 #include "batch/flight_record.h"
 
+#include "flight/airspeed.h"
+
 #include <nlohmann/json.hpp>
 
 namespace flightwatt {
@@ -17,6 +19,8 @@ Json phase_json(const RecordedPhase& phase) {
         {"start_gap_s", phase.start_gap_s},
         {"end_gap_s", phase.end_gap_s},
         {"complete", phase.complete},
+        {"airspeed_cubed_m3_per_s3",
+         phase.airspeed_cubed_m3_per_s3 ? Json(*phase.airspeed_cubed_m3_per_s3) : Json()},
         {"samples", statistics.samples},
         {"mean_power_w", statistics.mean_power_w},
         {"energy_wh", statistics.energy_wh},
@@ -34,6 +38,9 @@ RecordedPhase recorded_phase(const Json& json) {
     phase.start_gap_s = json.at("start_gap_s");
     phase.end_gap_s = json.at("end_gap_s");
     phase.complete = json.at("complete");
+    if (const auto& airspeed = json.at("airspeed_cubed_m3_per_s3"); !airspeed.is_null()) {
+        phase.airspeed_cubed_m3_per_s3 = airspeed.get<double>();
+    }
     phase.statistics.samples = json.at("samples");
     phase.statistics.mean_power_w = json.at("mean_power_w");
     phase.statistics.energy_wh = json.at("energy_wh");
@@ -57,9 +64,10 @@ FlightRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
     record.warnings.insert(record.warnings.end(), phases.warnings.begin(), phases.warnings.end());
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
         for (const auto& span : phases.sorties[s].phases) {
-            record.phases.push_back({s + 1, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s,
-                                     span.end.gap_s, span.complete,
-                                     phase_statistics(series, span.start.time_s, span.end.time_s)});
+            record.phases.push_back(
+                {s + 1, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s, span.end.gap_s,
+                 span.complete, phase_statistics(series, span.start.time_s, span.end.time_s),
+                 mean_cubed_airspeed_m3_per_s3(series.airspeed_track, span.start.time_s, span.end.time_s)});
         }
     }
     return record;

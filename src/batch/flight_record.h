@@ -22,6 +22,8 @@ struct RecordedPhase {
     double end_gap_s = 0.0;
     bool complete = true;
     PhaseStatistics statistics;
+    /// Of the airspeed, which the series CSV does not hold; see PhaseSamples.
+    std::optional<double> airspeed_cubed_m3_per_s3 = {};
 };
 
 /// What became of one log: enough to go on without reading it again.

@@ -10,8 +10,7 @@ namespace flightwatt {
 namespace {
 
 bool is_used(const BatchFlight& flight, const RecordedPhase& phase) {
-    const auto name =
-        phase.sortie == 1 ? flight.record.flight : fmt::format("{}#{}", flight.record.flight, phase.sortie);
+    const auto name = flight_name_of_sortie(flight.record.flight, phase.sortie);
     return std::any_of(flight.selection.flights.begin(), flight.selection.flights.end(),
                        [&](const FlightSamples& samples) {
                            return samples.flight == name && samples.phases[phase.phase].has_value();

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt {
 namespace {
@@ -49,7 +50,9 @@ FlightGrid make_grid(const FlightSeries& series) {
     if (altitude.empty()) {
         throw InputError(
             {series.flight}, "has no altitude, so its phases cannot be told apart",
-            "expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m");
+            fmt::format(
+                "expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",
+                series.warnings.empty() ? "" : "; ", fmt::join(series.warnings, "; ")));
     }
     FlightGrid grid;
     grid.begin_s = series.time_s.front();

@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "flight/flight_grid.h"
 #include "flight/phase_statistics.h"
+#include "flight/track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,14 @@ constexpr double absurd_idle_current_a = 5.0;
 constexpr double absurd_power_difference = 0.10;
 constexpr double compared_power_w = 1.0;  // below, rounding and offsets rule
 constexpr double absurd_counter_return = 0.05;
+constexpr double absurd_rest_part = 0.10;  // of the samples at rest
+constexpr double absurd_closure_percent = 10.0;
+
+bool is_in_flight(const FlightPhases& phases, double time_s) {
+    return std::any_of(phases.sorties.begin(), phases.sorties.end(), [&](const Sortie& sortie) {
+        return time_s >= sortie.phases.front().start.time_s && time_s <= sortie.phases.back().end.time_s;
+    });
+}
 
 double median_of(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -67,15 +76,18 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a,
     return idle;
 }
 
-/// How far a rising counter ran back, over what it counted in all.
-double counter_return(const std::vector<double>& counter) {
+/// How far a rising counter ran back in flight, over what it counted there. On the ground a pack may be
+/// changed.
+double counter_return(const std::vector<double>& time_s, const std::vector<double>& counter,
+                      const FlightPhases& phases) {
     double returned = 0.0;
     double counted = 0.0;
     for (std::size_t i = 1; i < counter.size(); ++i) {
+        if (!is_in_flight(phases, time_s[i - 1]) || !is_in_flight(phases, time_s[i])) continue;
         const double step = counter[i] - counter[i - 1];
         (step < 0.0 ? returned : counted) += std::abs(step);
     }
-    return counted > 0.0 ? returned / counted : 0.0;
+    return counted > 0.0 ? returned / counted : returned > 0.0 ? 1.0 : 0.0;
 }
 
 /// Median of |power - voltage * current| over the product, where that is large enough; 0 if it cannot be
@@ -106,34 +118,72 @@ bool is_constant_in_flight(const FlightSeries& series, const FlightPhases& phase
     return false;
 }
 
-void find_absurdities(const FlightSeries& series, const FlightPhases& phases, PowerReport& report) {
-    if (report.idle && std::abs(report.idle->mean_a) > absurd_idle_current_a) {
-        report.absurdities.push_back(
-            fmt::format("{:.1f} A on the ground with the motor off", report.idle->mean_a));
+/// What part of the samples at rest has a current that only a running motor draws.
+double loaded_rest_part(const FlightSeries& series, const std::vector<std::size_t>& resting) {
+    if (series.current_a.empty() || resting.empty()) return 0.0;
+    const auto loaded = std::count_if(resting.begin(), resting.end(), [&](std::size_t i) {
+        return std::abs(series.current_a[i]) > absurd_idle_current_a;
+    });
+    constexpr std::ptrdiff_t enough = 10;
+    return loaded < enough ? 0.0 : static_cast<double>(loaded) / static_cast<double>(resting.size());
+}
+
+double mean_power_in_flight_w(const FlightSeries& series, const FlightPhases& phases) {
+    double sum_w = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        if (!is_in_flight(phases, series.time_s[i])) continue;
+        sum_w += series.power_w[i];
+        ++count;
+    }
+    return count > 0 ? sum_w / static_cast<double>(count) : 0.0;
+}
+
+void find_absurdities(const FlightSeries& series, const FlightPhases& phases,
+                      const std::vector<std::size_t>& resting, PowerReport& report) {
+    const auto add = [&](std::string text) { report.absurdities.push_back(std::move(text)); };
+    if (const double part = loaded_rest_part(series, resting); part > absurd_rest_part) {
+        add(fmt::format("more than {:.0f} A in {:.0f} % of the samples on the ground with the motor off",
+                        absurd_idle_current_a, part * units::percent_per_whole));
     }
     if (const double apart = power_difference(series); apart > absurd_power_difference) {
-        report.absurdities.push_back(fmt::format("power is {:.0f} % away from voltage times current",
-                                                 apart * units::percent_per_whole));
+        add(fmt::format("power is {:.0f} % away from voltage times current",
+                        apart * units::percent_per_whole));
     }
     for (const auto& [name, counter] :
          {std::pair{"energy", &series.energy_wh}, std::pair{"charge", &series.charge_ah}}) {
-        if (const double part = counter_return(*counter); part > absurd_counter_return) {
-            report.absurdities.push_back(fmt::format("the {} counter ran back by {:.0f} % of what it counted",
-                                                     name, part * units::percent_per_whole));
+        if (const double part = counter_return(series.time_s, *counter, phases);
+            part > absurd_counter_return) {
+            add(fmt::format("the {} counter ran back by {:.0f} % of what it counted in flight", name,
+                            part * units::percent_per_whole));
         }
     }
-    if (is_constant_in_flight(series, phases))
-        report.absurdities.emplace_back("power does not change in flight");
+    for (const auto& [name, closure] : {std::pair{"energy", report.energy_closure_percent},
+                                        std::pair{"charge", report.charge_closure_percent}}) {
+        if (closure && std::abs(*closure) > absurd_closure_percent) {
+            add(fmt::format("what was measured is {:+.0f} % away from the on-board {} counter", *closure,
+                            name));
+        }
+    }
+    if (mean_power_in_flight_w(series, phases) < 0.0) add("power is negative on average in flight");
+    if (is_constant_in_flight(series, phases)) add("power does not change in flight");
 }
 
-/// Integral over counter, less 100 %, over the whole record; absent without a counter that counted.
+/// Integral over counter, less 100 %, over all sorties; absent without a counter that counted.
 std::optional<double> closure_percent(const std::vector<double>& time_s, const std::vector<double>& rate,
-                                      const std::vector<double>& counter) {
+                                      const std::vector<double>& counter, const FlightPhases& phases) {
     if (rate.empty() || counter.empty()) return std::nullopt;
-    const double counted = counter.back() - counter.front();
-    if (!(counted > 0.0)) return std::nullopt;
-    const double integral = integrated(time_s, rate, time_s.front(), time_s.back()) / units::seconds_per_hour;
-    return (integral / counted - 1.0) * units::percent_per_whole;
+    const Track counted{time_s, counter};
+    double integral = 0.0;
+    double difference = 0.0;
+    for (const auto& sortie : phases.sorties) {
+        const double start_s = sortie.phases.front().start.time_s;
+        const double end_s = sortie.phases.back().end.time_s;
+        integral += integrated(time_s, rate, start_s, end_s) / units::seconds_per_hour;
+        difference += value_at(counted, end_s) - value_at(counted, start_s);
+    }
+    if (!(difference > 0.0)) return std::nullopt;
+    return (integral / difference - 1.0) * units::percent_per_whole;
 }
 
 }  // namespace
@@ -141,9 +191,11 @@ std::optional<double> closure_percent(const std::vector<double>& time_s, const s
 PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases) {
     PowerReport report;
     report.origin = series.current_origin;
-    report.idle = idle_current(series.current_a, resting_samples(series, {}));
-    report.energy_closure_percent = closure_percent(series.time_s, series.power_w, series.energy_wh);
-    report.charge_closure_percent = closure_percent(series.time_s, series.current_a, series.charge_ah);
+    const auto resting = resting_samples(series, {});
+    report.idle = idle_current(series.current_a, resting);
+    report.energy_closure_percent = closure_percent(series.time_s, series.power_w, series.energy_wh, phases);
+    report.charge_closure_percent =
+        closure_percent(series.time_s, series.current_a, series.charge_ah, phases);
     const double gap_s = gap_threshold_s(series);
     for (const auto& sortie : phases.sorties) {
         for (std::size_t i = 1; i < series.time_s.size(); ++i) {
@@ -153,7 +205,7 @@ PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases
             if (inside && interval_s > gap_s) report.gaps.push_back({series.time_s[i - 1], interval_s});
         }
     }
-    find_absurdities(series, phases, report);
+    find_absurdities(series, phases, resting, report);
     return report;
 }
 

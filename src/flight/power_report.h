@@ -27,16 +27,18 @@ struct PowerGap {
 struct PowerReport {
     std::string origin;  ///< "measured by a sensor", "computed from throttle" or "unknown"
     std::optional<IdleCurrent> idle;
-    std::optional<double> energy_closure_percent;  ///< integral of power over the energy counter, less 100 %
+    std::optional<double> energy_closure_percent;  ///< in flight: integral of power over counter, less 100 %
     std::optional<double> charge_closure_percent;  ///< the same of current and the charge counter
     std::vector<PowerGap> gaps;                    ///< within the sorties
     std::vector<std::string> absurdities;          ///< what cannot be: such a record is not fitted
 };
 
-/// Examines a power record: the closure is over the whole of it (that of a phase stands in its statistics);
-/// the idle current over the rests with the motor off. Absurd are: a current above 5 A at rest (median) with
-/// the motor off; power that is not voltage times current (more than 10 % apart, median, above 1 W); a
-/// counter that runs back by more than 5 % of what it counted; power that does not change at all in flight.
+/// Examines a power record. The closure is over the sorties, lift-off to touchdown (that of a phase stands in
+/// its statistics); the idle current over the rests with the motor off. Absurd are: more than 5 A in a tenth
+/// of the samples at rest with the motor off; power that is not voltage times current (more than 10 % apart,
+/// median, above 1 W); a counter that runs back in flight by more than 5 % of what it counted; an integral
+/// more than 10 % away from the counter; power that is negative on average, or does not change at all, in
+/// flight.
 PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases);
 
 /// The absurdities as the reason why a flight is not fitted, and how to overrule that.

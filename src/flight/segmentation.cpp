@@ -200,7 +200,10 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     while (takeoff_end < touchdown && height[takeoff_end] < reached) ++takeoff_end;
     std::size_t landing_start = touchdown;
     while (landing_start > takeoff_end && height[landing_start] < left) --landing_start;
-    // A log that begins (or ends) at the height held begins (or ends) in cruise.
+    // A log that begins (or ends) in the air, and not low, begins (or ends) in cruise: that it climbs (or
+    // dives) there is no take-off (or landing).
+    if (!edges.lift_off_s && height[lift_off] >= airborne_level) takeoff_end = lift_off;
+    if (!edges.touchdown_s && height[touchdown] >= airborne_level) landing_start = touchdown;
     if (takeoff_end > lift_off)
         edges.takeoff_end_s = crossing_s(grid, begin, height, takeoff_end - 1, reached);
     if (landing_start < touchdown) {

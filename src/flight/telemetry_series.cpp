@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "flight/power_source.h"
+#include "flight/segmentation.h"
 #include "flight/track.h"
 #include "telemetry/data_file.h"
 
@@ -197,14 +198,23 @@ void add_configuration(FlightSeries& series, const TelemetryLog& log) {
     }
 }
 
+/// "ENERGY: another number of fields than the .log defines: 3 lines, first at line 17".
+std::string describe(const SkippedLines& skip) {
+    return fmt::format("{}: {} line{}, first at line {}", skip.reason, skip.count, skip.count == 1 ? "" : "s",
+                       skip.first_line);
+}
+
 [[noreturn]] void refuse_without_power(const TelemetryLog& log, const std::string& aircraft_id,
                                        const std::vector<std::string>& passed_over) {
     std::vector<std::string> names;
     for (const auto& [name, count] : census_of_messages(DataFile(log.data_file).text())) {
         names.push_back(fmt::format("{} {}", name, count));
     }
+    std::vector<std::string> reasons = passed_over;
+    for (const auto& skip : log.skipped) reasons.push_back(describe(skip));
+    for (const auto& assumed : log.assumed_definitions) reasons.push_back("assumed " + assumed);
     std::string reason;
-    if (!passed_over.empty()) reason = fmt::format(" ({})", fmt::join(passed_over, "; "));
+    if (!reasons.empty()) reason = fmt::format(" ({})", fmt::join(reasons, "; "));
     constexpr std::size_t shown = 12;
     const bool more = names.size() > shown;
     names.resize(std::min(names.size(), shown));
@@ -216,14 +226,71 @@ void add_configuration(FlightSeries& series, const TelemetryLog& log) {
                     fmt::join(names, ", "), more ? ", ..." : ""));
 }
 
+/// Altitude and throttle alone, on the altitude's clock: enough to see whether an aircraft flew.
 bool flew(const SenderLog& sender) {
-    const auto altitude = altitude_of(sender);
-    if (altitude.track.empty()) return false;
-    const auto [low, high] = std::minmax_element(altitude.track.value.begin(), altitude.track.value.end());
-    const auto throttle = throttle_of(sender).track;
-    const bool motor_on =
-        throttle.empty() || *std::max_element(throttle.value.begin(), throttle.value.end()) > 20.0;
-    return *high - *low > 10.0 && motor_on;
+    FlightSeries series;
+    auto altitude = altitude_of(sender).track;
+    if (altitude.time_s.size() < 2) return false;
+    series.time_s = altitude.time_s;
+    series.altitude_m = std::move(altitude.value);
+    series.power_w.assign(series.time_s.size(), 0.0);
+    if (const auto throttle = throttle_of(sender).track; !throttle.empty()) {
+        series.throttle_percent = resample(throttle, series.time_s);
+    }
+    series.ground_speed_track = ground_speed_of(sender).track;
+    return !segment(series).sorties.empty();
+}
+
+/// Times may come a little late; a jump back of a minute is another log, or another boot, behind the first
+/// one.
+void refuse_restarted_clock(const TelemetryLog& log, const SenderLog& sender) {
+    constexpr double late_s = 60.0;
+    for (const auto& table : sender.tables) {
+        for (std::size_t i = 1; i < table.time_s.size(); ++i) {
+            if (table.time_s[i - 1] - table.time_s[i] <= late_s) continue;
+            throw InputError({log.data_file.string()},
+                             fmt::format("its clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})",
+                                         table.time_s[i - 1], table.time_s[i], sender.id, table.message),
+                             "it holds several recordings: split it where the time begins anew");
+        }
+    }
+}
+
+/// The 4-field ENERGY stood without a .log, so the order of its last two fields was assumed. Where they fit
+/// the other way round (power is voltage times current), they are exchanged. True if they were.
+bool exchange_energy_and_power(SenderLog& sender) {
+    for (auto& table : sender.tables) {
+        if (table.message != "ENERGY" || table.columns.size() != 4) continue;
+        const auto column = [&](std::string_view name) -> Column* {
+            const auto found = std::find_if(table.columns.begin(), table.columns.end(),
+                                            [&](const Column& c) { return c.field == name; });
+            return found == table.columns.end() ? nullptr : &*found;
+        };
+        auto* energy = column("energy");
+        auto* power = column("power");
+        const auto* voltage = column("bat");
+        const auto* current = column("amp");
+        if (energy == nullptr || power == nullptr || voltage == nullptr || current == nullptr) return false;
+        constexpr double raw_per_ah = 1000.0;  // the column was read as mAh
+        std::size_t as_read = 0;
+        std::size_t exchanged = 0;
+        for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+            const double product = voltage->values[i] * current->values[i];
+            if (!(std::abs(product) > 1.0)) continue;
+            // Power may be a whole number.
+            const double tolerance = 0.05 * std::abs(product) + 1.0;
+            if (std::abs(power->values[i] - product) <= tolerance) ++as_read;
+            if (std::abs(energy->values[i] * raw_per_ah - product) <= tolerance) ++exchanged;
+        }
+        if (exchanged <= 2 * as_read || exchanged < 10) return false;
+        for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+            const double watts = energy->values[i] * raw_per_ah;
+            energy->values[i] = power->values[i] / raw_per_ah;
+            power->values[i] = watts;
+        }
+        return true;
+    }
+    return false;
 }
 
 }  // namespace
@@ -271,22 +338,29 @@ FlightSeries flight_series(const TelemetryLog& log, const std::string& aircraft_
                                      [&](const SenderLog& s) { return s.id == aircraft_id; });
     std::vector<std::string> passed_over;
     if (sender == log.senders.end()) refuse_without_power(log, aircraft_id, passed_over);
-    auto power = choose_power(*sender, passed_over);
+    refuse_restarted_clock(log, *sender);
+    SenderLog exchanged;
+    const SenderLog* own = &*sender;
+    if (!log.configuration) {
+        exchanged = *sender;
+        if (exchange_energy_and_power(exchanged)) {
+            own = &exchanged;
+            series.warnings.emplace_back("ENERGY holds its power before its energy: the two were exchanged");
+        }
+    }
+    auto power = choose_power(*own, passed_over);
     if (power.power_w.empty()) refuse_without_power(log, aircraft_id, passed_over);
     series.time_s = std::move(power.power_w.time_s);
     series.power_w = std::move(power.power_w.value);
     series.power_source = power.source;
     series.sources["power_w"] = power.source;
-    add_channels(series, *sender);
-    add_witnesses(series, *sender);
+    add_channels(series, *own);
+    add_witnesses(series, *own);
     add_configuration(series, log);
     for (const auto& reason : passed_over) {
         series.warnings.push_back(fmt::format("{}: power is taken from {}", reason, power.source));
     }
-    for (const auto& skip : log.skipped) {
-        series.warnings.push_back(fmt::format("{}: {} line{}, first at line {}", skip.reason, skip.count,
-                                              skip.count == 1 ? "" : "s", skip.first_line));
-    }
+    for (const auto& skip : log.skipped) series.warnings.push_back(describe(skip));
     return series;
 }
 

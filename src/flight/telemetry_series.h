@@ -11,8 +11,8 @@ namespace flightwatt {
 /// The messages and fields that a FlightSeries is made of.
 std::vector<MessageRequest> flight_messages();
 
-/// The ids of the aircraft that flew in the log: they sent altitude or power, and their altitude changed by
-/// more than 10 m with the motor on (where throttle is known). If none flew, those that sent such messages.
+/// The ids of the aircraft that flew in the log: the segmentation finds a sortie in their altitude and
+/// throttle. If none flew, those that sent such messages.
 std::vector<std::string> flown_aircraft(const TelemetryLog& log);
 
 /// The channels of one aircraft on the clock of its power samples. Throws InputError where it measured no

@@ -46,12 +46,16 @@ std::string to_string(const LeftOut& left_out) {
     return fmt::format("{}: {} left out of the fit: {}", left_out.flight, what, left_out.reason);
 }
 
+std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie) {
+    return sortie == 1 ? flight : fmt::format("{}#{}", flight, sortie);
+}
+
 FlightSelection select_samples(const FlightSeries& series, const FlightPhases& phases,
                                std::size_t needed_samples) {
     FlightSelection selection;
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
         FlightSamples flight;
-        flight.flight = s == 0 ? series.flight : fmt::format("{}#{}", series.flight, s + 1);
+        flight.flight = flight_name_of_sortie(series.flight, s + 1);
         bool any = false;
         for (const auto& span : phases.sorties[s].phases) {
             if (auto why = why_left_out(span); !why.empty()) {

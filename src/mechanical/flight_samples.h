@@ -29,6 +29,9 @@ struct FlightSelection {
     std::vector<LeftOut> left_out;
 };
 
+/// What a sortie is called in a fit: NAME, and NAME#2 from the second on.
+std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie);
+
 FlightSelection select_samples(const FlightSeries& series, const FlightPhases& phases,
                                std::size_t needed_samples);
 

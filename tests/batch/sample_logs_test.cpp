@@ -70,6 +70,15 @@ TEST(SampleLogs, GiveTableOneBack) {
     expect_weights_that_sum_to_one(model);
 }
 
+TEST(RealLogs, GiveTheSameModelRememberedAsAnew) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto folder = test::scratch_dir();
+    const auto flights = test::shared_dir() / "flights";
+    const auto anew = to_toml(fit_of(test::batch(flights, folder)));
+    EXPECT_THAT(anew, testing::HasSubstr("airspeed = {")) << "which the series CSV does not hold";
+    EXPECT_EQ(to_toml(fit_of(test::batch(flights, folder))), anew);
+}
+
 TEST(SampleLogs, GiveTheSameModelWithAnyNumberOfJobs) {
     const auto folder = test::scratch_dir();
     const auto logs = test::source_dir() / "logs";

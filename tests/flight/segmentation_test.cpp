@@ -188,6 +188,17 @@ TEST(Segmentation, TakesALowCircleBeforeTheFinalApproachForLanding) {
     expect_sortie(phases.sorties[0], {101, 127, 437, 558});
 }
 
+TEST(Segmentation, TakesNoDiveAtTheEndOfTheLogForALanding) {
+    auto points = sortie(100);
+    points.resize(6);
+    points.insert(points.end(), {{300, 100, 60}, {308, 40, 0}});
+    const auto phases = segment(series_of(points));
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    ASSERT_EQ(phases.sorties[0].phases.size(), 2u);
+    EXPECT_EQ(phases.sorties[0].phases[1].phase, Phase::cruise);
+    EXPECT_FALSE(phases.sorties[0].phases[1].complete);
+}
+
 TEST(Segmentation, NeedsLittleGroundAtTheEndsOfTheLog) {
     auto points = sortie(100);
     points.front() = {94, 0, 0};

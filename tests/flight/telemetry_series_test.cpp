@@ -52,10 +52,32 @@ TEST(TelemetrySeries, FallsBackToVoltageTimesCurrent) {
 
 TEST(TelemetrySeries, DoesNotTrustAnAssumedPowerThatContradictsVoltageTimesCurrent) {
     std::string text;
-    for (int i = 0; i < 20; ++i) text += fmt::format("{} 20 ENERGY 11. 2. 22 {}.\n", i, 500 + i);
+    for (int i = 0; i < 20; ++i) text += fmt::format("{} 20 ENERGY 11. 2. 7 {}.\n", i, 500 + i);
     const auto series = series_of(text);
     EXPECT_EQ(series.power_w[0], 22.0);
     EXPECT_THAT(series.warnings, Contains(HasSubstr("ENERGY.power is not voltage times current")));
+}
+
+TEST(TelemetrySeries, FindsOutWhereTheFourFieldEnergyHasItsPower) {
+    std::string text;
+    for (int i = 0; i < 20; ++i)
+        text += fmt::format("{} 20 ENERGY 11. {}. {} {}.\n", i, 2 + i, 11 * (2 + i), 500 + i);
+    const auto series = series_of(text);
+    EXPECT_EQ(series.power_w[1], 33.0);
+    EXPECT_EQ(series.power_source, "ENERGY.power");
+    EXPECT_DOUBLE_EQ(series.charge_ah[1], 0.501);
+    EXPECT_THAT(series.warnings, Contains(HasSubstr("exchanged")));
+}
+
+TEST(TelemetrySeries, RefusesAClockThatBeginsAnew) {
+    try {
+        series_of(
+            "1 20 ENERGY 0 12. 1. 12. 0. 0.\n900 20 ENERGY 0 12. 1. 12. 0. 0.\n5 20 ENERGY 0 12. 1. 12. 0. "
+            "0.\n");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("its clock runs back from 900.000 to 5.000 s"));
+    }
 }
 
 TEST(TelemetrySeries, SumsMotorsAndDevices) {
@@ -124,7 +146,7 @@ TEST_F(ReadFlight, AsksWhichAircraftWhereSeveralFlew) {
 TEST_F(ReadFlight, SaysWhatALogWithoutPowerHolds) {
     EXPECT_THAT(
         refusal(write("a.data", "1 20 ESTIMATOR 1. 0.\n2 20 ATTITUDE 0. 0. 0.\n")),
-        HasSubstr("holds no measured power of aircraft 20; expected ENERGY with power, BAT or ENERGY with "
+        HasSubstr("holds no measured power of aircraft 20 (assumed ESTIMATOR: 2 fields); expected ENERGY with power, BAT or ENERGY with "
                   "current, ESC or POWER_DEVICE; it holds ATTITUDE 1, ESTIMATOR 1"));
     EXPECT_THAT(
         refusal(write("b.data", "1 20 ENERGY 1 12. nan nan 0. 0.\n2 20 ENERGY 1 12. nan nan 0. 0.\n")),
