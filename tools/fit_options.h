@@ -35,7 +35,7 @@ inline void add_fit_options(boost::program_options::options_description& options
         "a weight by hand; then every flight needs one")(
         "min-periods", po::value<double>()->value_name("X")->default_value(0.5, "0.5"),
         "least periods of the series in a phase; fewer make its basis collinear")(
-        "max-periods", po::value<double>()->value_name("X")->default_value(250.0, "250"),
+        "max-periods", po::value<double>()->value_name("X")->default_value(120.0, "120"),
         "most periods in a phase; the sampling may allow fewer");
 }
 

@@ -4,8 +4,9 @@
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
-#include <regex>
+#include <array>
 #include <set>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -15,8 +16,11 @@ namespace flightwatt {
 namespace {
 
 bool is_log_name(const std::filesystem::path& path) {
-    static const std::regex ending("\\.data(\\.(gz|bz2|xz|zst))?$");
-    return std::regex_search(path.filename().string(), ending);
+    const auto name = path.filename().string();
+    constexpr std::array<std::string_view, 5> endings{".data", ".data.gz", ".data.bz2", ".data.xz",
+                                                      ".data.zst"};
+    return std::any_of(endings.begin(), endings.end(),
+                       [&](std::string_view ending) { return name.ends_with(ending); });
 }
 
 void add_folder(const std::filesystem::path& folder, std::vector<std::filesystem::path>& paths) {

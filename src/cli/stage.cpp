@@ -37,6 +37,7 @@ StageCall parse(int argc, char** argv, const StageDefinition& definition, po::op
     po::notify(call.options);
     call.json = call.has("json");
     call.output = call.maybe<std::string>("output");
+    if (call.output == "-") call.output.reset();  // as everywhere: the standard output
     if (call.has(inputs_option)) call.inputs = call.get<std::vector<std::string>>(inputs_option);
     return call;
 }

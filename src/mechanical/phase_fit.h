@@ -20,8 +20,10 @@ struct PhaseFitOptions {
     /// phase is half a period, but 2500 at 2 rad and 230000 at 1 rad (basis_condition). Noise in the
     /// coefficients grows with it, while the curve hardly changes.
     double low_rad = std::numbers::pi;
-    double high_periods = 250.0;  ///< most periods in a phase; the sampling may allow fewer
-    Loss loss = Loss::none;       ///< other than none: outliers count less in the last refinement
+    /// Most periods in a phase; the sampling may allow fewer. 120 in ten minutes are 5 s each: nothing that
+    /// an aircraft does over and over in cruise is faster.
+    double high_periods = 120.0;
+    Loss loss = Loss::none;  ///< other than none: outliers count less in the last refinement
 };
 
 /// One flight's own curve in one phase, in that flight's own seconds.

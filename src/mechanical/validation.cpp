@@ -151,6 +151,13 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
         throw NoAnswerError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
     }
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (flights[i].samples.flight != flights[j].samples.flight) continue;
+            throw UsageError(fmt::format("flight '{}' is given twice: it would foretell itself",
+                                         flights[i].samples.flight));
+        }
+    }
     std::vector<ValidatedFlight> validated;
     for (std::size_t left_out = 0; left_out < flights.size(); ++left_out) {
         std::vector<FlightSamples> others;

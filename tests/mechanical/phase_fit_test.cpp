@@ -186,7 +186,7 @@ TEST(PhaseFit, TheRangeEndsWhereTheHighestHarmonicOutrunsTheSamples) {
                 1e-6);
     EXPECT_NEAR(admissible_range(std::vector{fine, coarse}, {.order = 5}).high_rad, std::numbers::pi * 60.0,
                 1e-6);
-    EXPECT_NEAR(admissible_range(std::vector{fine}, {}).high_rad, 500.0 * std::numbers::pi, 1e-9);  // the cap
+    EXPECT_NEAR(admissible_range(std::vector{fine}, {}).high_rad, 240.0 * std::numbers::pi, 1e-9);  // the cap
     EXPECT_EQ(admissible_range(std::vector{fine}, {}).low_rad, std::numbers::pi);
 }
 
