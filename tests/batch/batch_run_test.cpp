@@ -188,6 +188,7 @@ TEST(Batch, DoesNotDependOnTheNumberOfJobs) {
         const auto flights = batch(folder / "in", out, jobs);
         EXPECT_EQ(contents(out), contents(folder / "one")) << jobs;
         std::vector<std::string> names;
+        names.reserve(flights.size());
         for (const auto& flight : flights) names.push_back(flight.record.flight);
         EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
     }

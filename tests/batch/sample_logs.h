@@ -43,7 +43,7 @@ inline std::vector<BatchFlight> batch(const std::filesystem::path& input, const 
     BatchOptions options;
     options.out = out;
     options.jobs = jobs;
-    const auto flights =
+    auto flights =
         run_batch(find_logs({input.string()}), options, [](std::size_t, std::size_t, const BatchFlight&) {});
     write_file_atomically(out / "flights.csv", catalogue_csv(flights));
     return flights;
