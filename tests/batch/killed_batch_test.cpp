@@ -43,7 +43,7 @@ class KilledBatch : public testing::Test {
 
     /// Starts `flightwatt-batch in -o OUT --jobs JOBS`; what it says goes to stderr.OUT.
     ::pid_t start(const std::string& out, unsigned jobs) {
-        const auto program = std::filesystem::path(FLIGHTWATT_BINARY_DIR) / "bin" / "flightwatt-batch";
+        const auto program = test::binary_dir() / "bin" / "flightwatt-batch";
         std::vector<std::string> words{
             program.string(), (folder / "in").string(), "-o", (folder / out).string(),
             "--jobs",         std::to_string(jobs)};

@@ -57,7 +57,7 @@ Outcome run_case(const std::string& name) {
     const auto scratch = test::scratch_dir();
     const auto work = scratch / "work";
     make_directories(work);
-    const auto bin = std::filesystem::path(FLIGHTWATT_BINARY_DIR) / "bin";
+    const auto bin = test::binary_dir() / "bin";
     const auto command = "cd " + quoted(work) +
                          " && LC_ALL=C COLUMNS=80 SOURCE=" + quoted(test::source_dir()) +
                          " PATH=" + quoted(bin) + ":\"$PATH\" sh " + quoted(golden_dir() / (name + ".cmd")) +

@@ -25,8 +25,8 @@ struct Outcome {
 };
 
 Outcome run(const std::filesystem::path& folder, const std::string& arguments) {
-    const auto command = "cd '" + folder.string() + "' && '" FLIGHTWATT_BINARY_DIR "/bin/flightwatt' " +
-                         arguments + " > stdout.txt 2> stderr.txt";
+    const auto command = "cd '" + folder.string() + "' && '" + test::binary_dir().string() +
+                         "/bin/flightwatt' " + arguments + " > stdout.txt 2> stderr.txt";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder / "stdout.txt"),
             read_file(folder / "stderr.txt")};
