@@ -144,10 +144,10 @@ TEST_F(ReadFlight, AsksWhichAircraftWhereSeveralFlew) {
 }
 
 TEST_F(ReadFlight, SaysWhatALogWithoutPowerHolds) {
-    EXPECT_THAT(
-        refusal(write("a.data", "1 20 ESTIMATOR 1. 0.\n2 20 ATTITUDE 0. 0. 0.\n")),
-        HasSubstr("holds no measured power of aircraft 20 (assumed ESTIMATOR: 2 fields); expected ENERGY with power, BAT or ENERGY with "
-                  "current, ESC or POWER_DEVICE; it holds ATTITUDE 1, ESTIMATOR 1"));
+    EXPECT_THAT(refusal(write("a.data", "1 20 ESTIMATOR 1. 0.\n2 20 ATTITUDE 0. 0. 0.\n")),
+                HasSubstr("holds no measured power of aircraft 20 (assumed ESTIMATOR: 2 fields); expected "
+                          "ENERGY with power, BAT or ENERGY with "
+                          "current, ESC or POWER_DEVICE; it holds ATTITUDE 1, ESTIMATOR 1"));
     EXPECT_THAT(
         refusal(write("b.data", "1 20 ENERGY 1 12. nan nan 0. 0.\n2 20 ENERGY 1 12. nan nan 0. 0.\n")),
         HasSubstr("ENERGY.power has no two finite values"));
