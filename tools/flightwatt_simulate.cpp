@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
     stage.arguments = "MISSION.toml";
     stage.description =
         "Computes the power that a mission demands and the battery's state of charge over time, as CSV:\n"
-        "time_s, phase, mechanical_w, compute_w, power_w, current_a, soc_percent.";
+        "time_s, phase, mechanical_w, compute_w, power_w, current_a, soc_percent, terminal_voltage_v.";
     stage.max_inputs = 1;
     stage.options.add_options()(
         "step", boost::program_options::value<double>()->default_value(1.0, "1")->value_name("S"),

@@ -21,7 +21,10 @@ inline nlohmann::ordered_json to_json(const MissionSummary& summary) {
     json["delivered_energy_wh"] = summary.delivered_energy_wh;
     json["duration_s"] = summary.duration_s;
     json["depleted_at_s"] = or_null(summary.depleted_at_s);
+    json["cut_off_at_s"] = or_null(summary.cut_off_at_s);
     json["feasible"] = summary.feasible;
+    json["reserve_soc_percent"] = summary.reserve_soc_percent;
+    json["keeps_reserve"] = summary.keeps_reserve;
     return json;
 }
 

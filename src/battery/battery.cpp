@@ -7,48 +7,52 @@
 #include <fmt/format.h>
 
 namespace flightwatt {
+namespace {
 
-double power_limit_w(const Battery& battery) {
-    if (battery.resistance_ohm == 0.0) return std::numeric_limits<double>::infinity();
-    return battery.voltage_v * battery.voltage_v / (4.0 * battery.resistance_ohm);
+/// Straight lines between the knots, the ends' values beyond them.
+double interpolated(const OpenCircuitVoltage& curve, double soc_percent) {
+    const auto& knots = curve.soc_percent;
+    const auto above = std::upper_bound(knots.begin(), knots.end(), soc_percent);
+    if (above == knots.begin()) return curve.voltage_v.front();
+    if (above == knots.end()) return curve.voltage_v.back();
+    const auto i = static_cast<std::size_t>(above - knots.begin());
+    const double part = (soc_percent - knots[i - 1]) / (knots[i] - knots[i - 1]);
+    return std::lerp(curve.voltage_v[i - 1], curve.voltage_v[i], part);
 }
 
-double internal_current_a(const Battery& battery, double power_w) {
-    const double limit_w = power_limit_w(battery);
+}  // namespace
+
+double open_circuit_voltage_v(const Battery& battery, double soc_percent) {
+    return battery.thevenin ? interpolated(battery.thevenin->open_circuit, soc_percent) : battery.voltage_v;
+}
+
+double source_voltage_v(const Battery& battery, const BatteryState& state) {
+    return open_circuit_voltage_v(battery, state.soc_percent) - state.rc_voltage_v;
+}
+
+double terminal_voltage_v(const Battery& battery, const BatteryState& state, double current_a) {
+    return source_voltage_v(battery, state) - battery.resistance_ohm * current_a;
+}
+
+double power_limit_w(const Battery& battery, const BatteryState& state) {
+    const double voltage_v = source_voltage_v(battery, state);
+    if (voltage_v <= 0.0) return 0.0;
+    if (battery.resistance_ohm == 0.0) return std::numeric_limits<double>::infinity();
+    return voltage_v * voltage_v / (4.0 * battery.resistance_ohm);
+}
+
+double internal_current_a(const Battery& battery, double power_w, const BatteryState& state) {
+    const double limit_w = power_limit_w(battery, state);
     if (power_w > limit_w) {
         throw NoAnswerError(
             fmt::format("the battery cannot deliver {} W: its limit U^2 / (4 R) is {} W", power_w, limit_w));
     }
-    const double u = battery.voltage_v;
+    if (power_w == 0.0) return 0.0;
+    const double u = std::max(0.0, source_voltage_v(battery, state));
     // (U - sqrt(D)) / (2 R), multiplied out: no difference of near numbers, no division by R. At the limit
     // rounding may leave D a hair below zero.
     const double discriminant = std::max(0.0, u * u - 4.0 * battery.resistance_ohm * power_w);
     return 2.0 * power_w / (u + std::sqrt(discriminant));
 }
-
-Battery battery_from(const TomlTable& table) {
-    const auto positive = [&](std::string_view key) {
-        const double value = table.number(key);
-        constexpr double absurd = 1e6;  // squared and divided, values below stay numbers
-        if (value <= 0.0 || value > absurd) {
-            throw InputError(table.where(key), fmt::format("{} = {} is not {}", key, value,
-                                                           value <= 0.0 ? "positive" : "of this world"));
-        }
-        return value;
-    };
-    Battery battery;
-    battery.name = table.optional_string("name").value_or("");
-    battery.voltage_v = positive("voltage_v");
-    battery.resistance_ohm = table.number("resistance_ohm");
-    if (battery.resistance_ohm < 0.0) {
-        throw InputError(table.where("resistance_ohm"),
-                         fmt::format("resistance_ohm = {} is negative", battery.resistance_ohm));
-    }
-    battery.capacity_ah = positive("capacity_ah");
-    table.refuse_unknown_keys();
-    return battery;
-}
-
-Battery read_battery(const std::filesystem::path& path) { return battery_from(read_toml(path)); }
 
 }  // namespace flightwatt

@@ -3,29 +3,104 @@
 #include "base/toml_reader.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace flightwatt {
 
-/// A battery as an equivalent circuit: an ideal source behind a resistor (Eqs. 8-10).
-struct Battery {
-    std::string name;
-    double voltage_v = 0.0;       ///< U_int, of the source
-    double resistance_ohm = 0.0;  ///< R_int; 0 is an ideal source
-    double capacity_ah = 0.0;     ///< Q_c
+/// Open-circuit voltage over state of charge: straight lines between knots.
+struct OpenCircuitVoltage {
+    std::vector<double> soc_percent;  ///< from 0 to 100, rising strictly
+    std::vector<double> voltage_v;    ///< positive, never falling
 };
 
-/// The greatest power that a load can draw, U^2 / (4 R) [W]; infinite if the resistance is 0.
-double power_limit_w(const Battery& battery);
+/// What the Thévenin circuit has where the paper's battery has a constant source.
+struct TheveninCircuit {
+    OpenCircuitVoltage open_circuit;
+    double rc_resistance_ohm = 0.0;   ///< 0: no RC pair
+    double rc_time_constant_s = 1.0;  ///< without meaning where there is no RC pair
+};
+
+/// A 95 % interval.
+struct Interval {
+    double low = 0.0;
+    double high = 0.0;
+    bool operator==(const Interval&) const = default;
+};
+
+/// How well the parameters are known, each where the file says it.
+struct BatteryIntervals {
+    std::optional<Interval> capacity_ah;
+    std::optional<Interval> voltage_v;  ///< of the paper's source
+    std::optional<Interval> resistance_ohm;
+    std::optional<Interval> rc_resistance_ohm;
+    std::optional<Interval> rc_time_constant_s;
+    std::vector<double> open_circuit_standard_error_v;  ///< one a knot of the curve, or empty
+};
+
+/// A battery as an equivalent circuit behind a series resistor: an ideal source (Eqs. 8-10 of the paper), or
+/// Thévenin's, whose source follows the state of charge and has an RC pair in series.
+struct Battery {
+    std::string name;
+    double voltage_v = 0.0;       ///< U_int, of the paper's source; 0 in a Thévenin circuit
+    double resistance_ohm = 0.0;  ///< R_int, in series; 0 is an ideal source
+    double capacity_ah = 0.0;     ///< Q_c
+    std::optional<TheveninCircuit> thevenin = std::nullopt;  ///< none: the paper's
+    BatteryIntervals intervals = {};
+};
+
+/// What a battery remembers.
+struct BatteryState {
+    double soc_percent = 100.0;
+    double rc_voltage_v = 0.0;  ///< across the RC pair; 0 at rest
+};
+
+/// [V] at rest.
+double open_circuit_voltage_v(const Battery& battery, double soc_percent);
+
+/// [V] before the series resistor: open circuit less the RC pair.
+double source_voltage_v(const Battery& battery, const BatteryState& state);
+
+/// [V] at the load that draws `current_a`.
+double terminal_voltage_v(const Battery& battery, const BatteryState& state, double current_a);
+
+/// The greatest power that a load can draw, U^2 / (4 R) [W] with U before the resistor; infinite if the
+/// resistance is 0, and 0 where there is no voltage left.
+double power_limit_w(const Battery& battery, const BatteryState& state = {});
 
 /// I_int [A] while the load draws `power_w` (Eq. 10): the smaller root of R I^2 - U I + P = 0, in a form that
 /// is exact for R = 0. Negative power charges: the current is then negative. Throws NoAnswerError if the
 /// power is above the limit.
-double internal_current_a(const Battery& battery, double power_w);
+double internal_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
 
-/// Reads voltage_v, resistance_ohm, capacity_ah and optionally name. Throws InputError for keys missing or
-/// unknown, a voltage or capacity that is not positive, or a negative resistance.
+/// Reads a battery:
+///
+///     name = "pack"                       # optional
+///     model = "paper"                     # the default: a constant voltage_v
+///     voltage_v = 11.1
+///     resistance_ohm = 0.05
+///     capacity_ah = 3.2
+///
+/// or, with model = "thevenin" and no voltage_v,
+///
+///     rc_resistance_ohm = 0.03            # default 0: no RC pair
+///     rc_time_constant_s = 40             # 0.1 to 1e5, due with an RC pair
+///     [open_circuit]
+///     soc_percent = [0, 50, 100]
+///     voltage_v = [9.8, 11.4, 12.5]
+///     standard_error_v = [0.3, 0.1, 0.01] # optional
+///
+/// and in both, optionally, 95 % intervals that hold the value:
+///
+///     [intervals]
+///     resistance_ohm = [0.04, 0.06]       # also capacity_ah, voltage_v, rc_resistance_ohm, ...
+///
+/// Throws InputError for keys missing, unknown or of another model, and values that no battery has.
 Battery read_battery(const std::filesystem::path& path);
 Battery battery_from(const TomlTable& table);
+
+/// The battery as read_battery reads it.
+std::string to_toml(const Battery& battery);
 
 }  // namespace flightwatt

@@ -3,11 +3,11 @@
 #include "base/units.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
 
-#include <boost/numeric/odeint/algebra/vector_space_algebra.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
 
 namespace flightwatt {
@@ -16,89 +16,150 @@ namespace {
 constexpr double time_tolerance_s = 1e-10;
 constexpr double full_percent = units::percent_per_whole;
 
-/// Halves [low, high], where `is_before` holds at low and not at high, down to the tolerance.
-template <typename Predicate>
-void bisect(double& low, double& high, const Predicate& is_before) {
-    while (high - low > time_tolerance_s) {
-        const double middle = low + (high - low) / 2.0;
-        if (middle <= low || middle >= high) return;  // the doubles here are further apart than the tolerance
-        (is_before(middle) ? low : high) = middle;
-    }
-}
+/// One step from `time_s` on.
+struct Step {
+    const Battery& battery;
+    const PowerOverTime& power_w;
+    double time_s;
+    BatteryState from;
+};
 
-/// The state of charge one Runge-Kutta step later. `power_w` is within the limit over the step.
-double step(const Battery& battery, const PowerOverTime& power_w, double time_s, double step_s,
-            double soc_percent) {
-    namespace odeint = boost::numeric::odeint;
-    odeint::runge_kutta4<double, double, double, double, odeint::vector_space_algebra> stepper;
-    const double limit_w = power_limit_w(battery);
-    const auto rate = [&](double /*soc*/, double& percent_per_s, double time) {
-        // The limit was looked for at the step's samples: this min() only takes away rounding beyond it.
-        const double current_a = internal_current_a(battery, std::min(power_w(time), limit_w));
-        percent_per_s = -units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
+/// The state one Runge-Kutta step later.
+BatteryState after(const Step& step, double elapsed_s) {
+    using State = std::array<double, 2>;  // state of charge, voltage of the RC pair
+    const auto& battery = step.battery;
+    const auto rate = [&](const State& x, State& per_s, double time) {
+        const BatteryState state{x[0], x[1]};
+        // The limit is looked for at the step's samples: this min() only takes away what lies beyond it.
+        const double current_a =
+            internal_current_a(battery, std::min(step.power_w(time), power_limit_w(battery, state)), state);
+        per_s[0] = -units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
+        per_s[1] = 0.0;
+        if (!battery.thevenin) return;
+        const auto& [curve, rc_ohm, tau_s] = *battery.thevenin;
+        per_s[1] = (rc_ohm * current_a - x[1]) / tau_s;
     };
-    stepper.do_step(rate, soc_percent, time_s, step_s);
-    return std::min(soc_percent, full_percent);
+    boost::numeric::odeint::runge_kutta4<State> stepper;
+    State x{step.from.soc_percent, step.from.rc_voltage_v};
+    stepper.do_step(rate, x, step.time_s, elapsed_s);
+    return {std::min(x[0], full_percent), x[1]};
 }
 
-/// How far into the step from `time_s` the power stays within the limit: the first instant beyond it, if
-/// one of the step's samples is. `within_s` becomes the last time known to be good.
-std::optional<Undeliverable> first_excess(const Battery& battery, const PowerOverTime& power_w, double time_s,
-                                          double step_s, double& within_s) {
-    const double limit_w = power_limit_w(battery);
-    const auto is_within = [&](double time) { return power_w(time) <= limit_w; };
-    within_s = time_s;
-    for (const double sample_s : {time_s, time_s + step_s / 2.0, time_s + step_s}) {
-        if (is_within(sample_s)) {
-            within_s = sample_s;
+/// Where in a step something came to hold: not yet at `last_before_s`, at `first_s` it did.
+struct Onset {
+    double last_before_s;
+    double first_s;
+};
+
+/// The onset of `holds` in [0, length_s], if it holds at one of the samples 0, half and all of it.
+template <typename Predicate>
+std::optional<Onset> first_onset(double length_s, const Predicate& holds) {
+    double before_s = 0.0;
+    for (double at_s : {0.0, length_s / 2.0, length_s}) {
+        if (!holds(at_s)) {
+            before_s = at_s;
             continue;
         }
-        double beyond_s = sample_s;
-        bisect(within_s, beyond_s, is_within);
-        return Undeliverable{beyond_s, power_w(beyond_s), limit_w};
+        while (at_s - before_s > time_tolerance_s) {
+            const double middle_s = before_s + (at_s - before_s) / 2.0;
+            if (middle_s <= before_s || middle_s >= at_s) break;  // the doubles are no nearer than this
+            (holds(middle_s) ? at_s : before_s) = middle_s;
+        }
+        return Onset{before_s, at_s};
     }
     return std::nullopt;
 }
 
-/// One step, ended by the first of the two accidents.
-Discharge guarded_step(const Battery& battery, const PowerOverTime& power_w, double time_s, double step_s,
-                       double soc_percent) {
-    double within_s = time_s;
-    const auto excess = first_excess(battery, power_w, time_s, step_s, within_s);
-    if (excess) step_s = within_s - time_s;
-    const auto soc_after = [&](double elapsed_s) {
-        return step(battery, power_w, time_s, elapsed_s, soc_percent);
-    };
-    const double soc = soc_after(step_s);
-    if (soc > 0.0) return {soc, std::nullopt, excess};
-    double left_s = 0.0;
-    double empty_s = step_s;
-    bisect(left_s, empty_s, [&](double elapsed_s) { return soc_after(elapsed_s) > 0.0; });
-    return {0.0, time_s + empty_s, std::nullopt};
+/// Where the power first goes beyond what the battery can deliver.
+std::optional<Onset> first_excess(const Step& step, double length_s) {
+    const bool limited = step.battery.resistance_ohm > 0.0 || step.battery.thevenin;
+    if (!limited) return std::nullopt;
+    return first_onset(length_s, [&](double elapsed_s) {
+        const auto state = step.battery.thevenin ? after(step, elapsed_s) : step.from;
+        return step.power_w(step.time_s + elapsed_s) > power_limit_w(step.battery, state);
+    });
+}
+
+bool is_below_cutoff(const Step& step, double elapsed_s, double cutoff_v) {
+    const auto state = after(step, elapsed_s);
+    const double power_w =
+        std::min(step.power_w(step.time_s + elapsed_s), power_limit_w(step.battery, state));
+    return terminal_voltage_v(step.battery, state, internal_current_a(step.battery, power_w, state)) <
+           cutoff_v;
+}
+
+Discharge left(const BatteryState& state, std::optional<Undeliverable> undeliverable = std::nullopt) {
+    return {state.soc_percent, std::nullopt, undeliverable, std::nullopt, state.rc_voltage_v};
+}
+
+/// One step, ended by the first of the three accidents.
+Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
+    std::optional<Undeliverable> undeliverable;
+    if (const auto excess = first_excess(step, length_s)) {
+        const double beyond_s = step.time_s + excess->first_s;
+        undeliverable = Undeliverable{beyond_s, step.power_w(beyond_s),
+                                      power_limit_w(step.battery, after(step, excess->first_s))};
+        if (excess->first_s == 0.0) return left(step.from, undeliverable);  // nothing else comes before it
+        length_s = excess->last_before_s;
+    }
+    const auto state = after(step, length_s);
+    std::optional<Onset> cut_off;
+    if (cutoff_v > 0.0) {
+        cut_off = first_onset(length_s, [&](double s) { return is_below_cutoff(step, s, cutoff_v); });
+    }
+    std::optional<Onset> empty;
+    if (state.soc_percent <= 0.0) {
+        empty = first_onset(length_s, [&](double s) { return after(step, s).soc_percent <= 0.0; });
+    }
+    if (empty && (!cut_off || empty->first_s <= cut_off->first_s)) {
+        auto end = left({0.0, after(step, empty->first_s).rc_voltage_v});
+        end.empty_at_s = step.time_s + empty->first_s;
+        return end;
+    }
+    if (cut_off) {
+        auto end = left(after(step, cut_off->first_s));
+        end.cut_off_at_s = step.time_s + cut_off->first_s;
+        return end;
+    }
+    return left(state, undeliverable);
 }
 
 }  // namespace
 
 Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double from_s, double to_s,
-                    double soc_percent, double max_step_s) {
-    if (!(to_s >= from_s) || !(max_step_s > 0.0) || !(soc_percent <= full_percent)) {
-        throw std::invalid_argument("discharge: from_s <= to_s, a positive step and at most 100 % are due");
+                    const BatteryState& state, const DischargeOptions& options) {
+    if (!(to_s >= from_s) || !(options.max_step_s > 0.0) || !(state.soc_percent <= full_percent) ||
+        !(options.cutoff_voltage_v >= 0.0)) {
+        throw std::invalid_argument(
+            "discharge: from_s <= to_s, a positive step, at most 100 % and no negative voltage are due");
     }
-    if (soc_percent <= 0.0) return {0.0, from_s, std::nullopt};
+    auto result = left(state);
+    if (state.soc_percent <= 0.0) {
+        result.soc_percent = 0.0;
+        result.empty_at_s = from_s;
+        return result;
+    }
+    double max_step_s = options.max_step_s;
+    if (battery.thevenin) max_step_s = std::min(max_step_s, battery.thevenin->rc_time_constant_s / 2.0);
     const double length_s = to_s - from_s;
     // A quotient a rounding error above a whole number is that number.
     const auto steps =
         static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_step_s * (1.0 - 1e-12))));
-    Discharge state{soc_percent, std::nullopt, std::nullopt};
     double time_s = from_s;
     for (std::uint64_t k = 1; k <= steps; ++k) {
         const double part = static_cast<double>(k) / static_cast<double>(steps);
         const double next_s = k == steps ? to_s : from_s + length_s * part;
-        state = guarded_step(battery, power_w, time_s, next_s - time_s, state.soc_percent);
-        if (state.empty_at_s || state.undeliverable) return state;
+        result = guarded_step({battery, power_w, time_s, result.state()}, next_s - time_s,
+                              options.cutoff_voltage_v);
+        if (result.ended_at_s() || result.undeliverable) return result;
         time_s = next_s;
     }
-    return state;
+    return result;
+}
+
+Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double from_s, double to_s,
+                    double soc_percent, double max_step_s) {
+    return discharge(battery, power_w, from_s, to_s, BatteryState{soc_percent, 0.0}, {max_step_s, 0.0});
 }
 
 }  // namespace flightwatt

@@ -1,7 +1,6 @@
 #include "mission/comparison.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,10 +8,12 @@
 namespace flightwatt {
 namespace {
 
-/// Greater is better.
-std::pair<double, double> merit(const MissionSummary& summary) {
-    constexpr double never = std::numeric_limits<double>::infinity();
-    return {summary.final_soc_percent.value_or(-never), summary.depleted_at_s.value_or(never)};
+/// Greater is better: what lasts, by the charge left; then what gave out, by how long it lasted.
+std::pair<int, double> merit(const MissionSummary& summary) {
+    if (!summary.final_soc_percent) return {0, 0.0};  // undeliverable
+    if (summary.depleted_at_s) return {1, *summary.depleted_at_s};
+    if (summary.cut_off_at_s) return {1, *summary.cut_off_at_s};
+    return {2, *summary.final_soc_percent};
 }
 
 std::string cell(const std::optional<double>& value, int decimals) {
@@ -37,12 +38,17 @@ TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
                     "compute_energy_wh",
                     "duration_s",
                     "depleted_at_s"};
+    // Most missions have no cut-off voltage, and tables wide enough without it.
+    const bool cut_off =
+        std::any_of(ranked.begin(), ranked.end(), [](const auto& s) { return s.cut_off_at_s.has_value(); });
+    if (cut_off) table.header.emplace_back("cut_off_at_s");
     for (std::size_t i = 0; i < ranked.size(); ++i) {
         const auto& summary = ranked[i];
         table.rows.push_back({fmt::format("{}", i + 1), summary.mission, cell(summary.final_soc_percent, 2),
                               cell(summary.energy_wh, 3), cell(summary.mechanical_energy_wh, 3),
                               cell(summary.compute_energy_wh, 3), cell(summary.duration_s, 1),
                               cell(summary.depleted_at_s, 1)});
+        if (cut_off) table.rows.back().push_back(cell(summary.cut_off_at_s, 1));
     }
     return table;
 }

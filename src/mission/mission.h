@@ -24,6 +24,8 @@ struct Mission {
     ComputeModel compute;
     std::vector<Stretch> schedule;  ///< in order, covers each instant of each phase exactly once
     double initial_soc_percent = 100.0;
+    double cutoff_voltage_v = 0.0;     ///< the battery is cut off below it; 0: never
+    double reserve_soc_percent = 0.0;  ///< what should be left at the end
 };
 
 /// Reads a mission file:
@@ -31,13 +33,16 @@ struct Mission {
 ///     name = "phased"                         # default: the file's name
 ///     mechanical = "../opterra.toml"          # or "none": then every phase needs its duration
 ///     duration_s = { cruise = 900 }           # default: the mechanical model's
-///     phase_clock = "stretch"                 # of a phase flown longer or shorter than the model's: its
-///     curve is
-///                                             # stretched; or "absolute": it runs on in its own seconds
-///     battery = "../pack.toml"                # or { voltage_v = 11.1, resistance_ohm = 0.05, capacity_ah
-///     = 3.2 } initial_soc_percent = 100 [components.detection] profile = "../detection.csv"            # any
-///     format of compute/profile_reader.h parameters = ["fps"]                    # names for a profile that
-///     has none; or `columns`
+///     phase_clock = "stretch"                 # a phase flown longer or shorter stretches its curve;
+///                                             # or "absolute": it runs on in its own seconds
+///     battery = "../pack.toml"                # or { voltage_v = 11.1, resistance_ohm = 0.05, ... }
+///     initial_soc_percent = 100
+///     capacity_ah = 3.0                       # default: the battery's
+///     cutoff_voltage_v = 9.9                  # default: none
+///     reserve_soc_percent = 20                # default: 0
+///     [components.detection]
+///     profile = "../detection.csv"            # any format of compute/profile_reader.h
+///     parameters = ["fps"]                    # names for a profile that has none; or `columns`
 ///     [[schedule]]                            # see mission/schedule_toml.h
 ///
 /// Paths are relative to the mission file. Throws InputError, placed in the file that is wrong, for a missing

@@ -69,9 +69,25 @@ PerPhase<double> read_durations(const TomlTable& root, const std::optional<Mecha
     return durations;
 }
 
+/// An optional number that is to be above `low` (or at it, if that makes sense) and at most `high`.
+std::optional<double> optional_between(const TomlTable& root, std::string_view key, double low, double high,
+                                       bool low_too) {
+    const auto value = root.optional_number(key);
+    if (value && (*value > high || *value < low || (*value == low && !low_too))) {
+        throw InputError(root.where(key), fmt::format("{} = {} is out of range", key, *value),
+                         fmt::format("expected {} {} to {}", low_too ? "from" : "above", low, high));
+    }
+    return value;
+}
+
 Battery read_mission_battery(const TomlTable& root) {
-    return root.is_table("battery") ? battery_from(root.table("battery"))
-                                    : read_battery(file_of(root, "battery"));
+    auto battery = root.is_table("battery") ? battery_from(root.table("battery"))
+                                            : read_battery(file_of(root, "battery"));
+    if (const auto capacity_ah = optional_between(root, "capacity_ah", 0.0, 1e6, false)) {
+        battery.capacity_ah = *capacity_ah;
+        battery.intervals.capacity_ah.reset();  // that was of the other capacity
+    }
+    return battery;
 }
 
 Component read_component(const TomlTable& table, const std::string& name) {
@@ -129,7 +145,8 @@ double read_initial_soc(const TomlTable& root) {
 Mission parse_mission(std::string_view text, const std::filesystem::path& path) {
     const auto root = parse_toml(text, path.string());
     root.refuse_keys_except({"name", "mechanical", "duration_s", "phase_clock", "battery",
-                             "initial_soc_percent", "components", "schedule"});
+                             "initial_soc_percent", "capacity_ah", "cutoff_voltage_v", "reserve_soc_percent",
+                             "components", "schedule"});
     Mission mission;
     mission.file = path.string();
     mission.name = root.optional_string("name").value_or(path.stem().string());
@@ -139,6 +156,9 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& path) 
     mission.battery = read_mission_battery(root);
     mission.compute = read_components(root);
     mission.initial_soc_percent = read_initial_soc(root);
+    mission.cutoff_voltage_v = optional_between(root, "cutoff_voltage_v", 0.0, 1e6, true).value_or(0.0);
+    mission.reserve_soc_percent =
+        optional_between(root, "reserve_soc_percent", 0.0, 100.0, true).value_or(0.0);
     mission.schedule = lay_out(read_mission_schedule(root, mission), mission.duration_s);
     return mission;
 }

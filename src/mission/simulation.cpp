@@ -50,29 +50,40 @@ void add_row(SocCurve& curve, const Battery& battery, const Demand& demand, doub
     row.mechanical_w = mechanical_w(demand, time_s);
     row.compute_w = demand.compute_w;
     row.power_w = power_w(demand, time_s);
-    if (!state.empty_at_s) {
-        row.current_a = internal_current_a(battery, std::min(row.power_w, power_limit_w(battery)));
+    auto now = state.state();
+    if (const auto ended_at_s = state.ended_at_s()) {
+        // Without a load the RC pair discharges itself.
+        if (battery.thevenin) {
+            now.rc_voltage_v *= std::exp((*ended_at_s - time_s) / battery.thevenin->rc_time_constant_s);
+        }
+    } else {
+        row.current_a = internal_current_a(battery, std::min(row.power_w, power_limit_w(battery, now)), now);
     }
     row.soc_percent = state.soc_percent;
+    row.terminal_voltage_v = terminal_voltage_v(battery, now, row.current_a);
     if (curve.rows.empty() || curve.rows.back() != row) curve.rows.push_back(row);
 }
 
 /// Follows the battery from `state` through one demand and adds its rows.
-Discharge run_demand(const Battery& battery, const Demand& demand, const SimulationSteps& steps,
+Discharge run_demand(const Mission& mission, const Demand& demand, const SimulationSteps& steps,
                      Discharge state, SocCurve& curve) {
+    const auto& battery = mission.battery;
+    const DischargeOptions options{steps.integration_s, mission.cutoff_voltage_v};
     const auto load = [&](double time_s) { return power_w(demand, time_s); };
     const auto times = output_times(demand, steps.output_s);
     add_row(curve, battery, demand, times.front(), state);
     for (std::size_t i = 1; i < times.size(); ++i) {
-        if (!state.empty_at_s) {
-            state = discharge(battery, load, times[i - 1], times[i], state.soc_percent, steps.integration_s);
+        if (!state.ended_at_s()) {
+            state = discharge(battery, load, times[i - 1], times[i], state.state(), options);
             if (state.undeliverable) {
                 add_row(curve, battery, demand, state.undeliverable->time_s, state);
                 return state;
             }
-            if (state.empty_at_s) {  // the last row with a current, and the first without
-                add_row(curve, battery, demand, *state.empty_at_s, Discharge{});
-                add_row(curve, battery, demand, *state.empty_at_s, state);
+            if (const auto ended_at_s = state.ended_at_s()) {
+                const Discharge before{state.soc_percent, std::nullopt, std::nullopt, std::nullopt,
+                                       state.rc_voltage_v};
+                add_row(curve, battery, demand, *ended_at_s, before);  // the last row with a current,
+                add_row(curve, battery, demand, *ended_at_s, state);   // and the first without
             }
         }
         add_row(curve, battery, demand, times[i], state);
@@ -97,14 +108,19 @@ MissionSummary summarize(const Mission& mission, const std::vector<Demand>& dema
     summary.mission = mission.name;
     summary.duration_s = demands.back().to_s;
     summary.undeliverable = end.undeliverable;
-    if (end.empty_at_s && *end.empty_at_s < summary.duration_s - same_time_s) {
-        summary.depleted_at_s = end.empty_at_s;
-    }
+    const auto ended_early_at_s = [&](const std::optional<double>& time_s) {
+        return time_s && *time_s < summary.duration_s - same_time_s ? time_s : std::nullopt;
+    };
+    summary.depleted_at_s = ended_early_at_s(end.empty_at_s);
+    summary.cut_off_at_s = ended_early_at_s(end.cut_off_at_s);
     if (!end.undeliverable) summary.final_soc_percent = end.soc_percent;
     const double delivered_until_s =
-        end.undeliverable ? end.undeliverable->time_s : summary.depleted_at_s.value_or(summary.duration_s);
+        end.undeliverable ? end.undeliverable->time_s
+                          : summary.depleted_at_s.value_or(summary.cut_off_at_s.value_or(summary.duration_s));
     add_energies(demands, delivered_until_s, summary);
-    summary.feasible = !summary.undeliverable && !summary.depleted_at_s;
+    summary.feasible = !summary.undeliverable && !summary.depleted_at_s && !summary.cut_off_at_s;
+    summary.reserve_soc_percent = mission.reserve_soc_percent;
+    summary.keeps_reserve = summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent;
     return summary;
 }
 
@@ -117,7 +133,7 @@ Simulation simulate(const Mission& mission, const SimulationSteps& steps) {
     SocCurve curve;
     Discharge state{mission.initial_soc_percent, std::nullopt, std::nullopt};
     for (const auto& demand : demands) {
-        state = run_demand(mission.battery, demand, steps, state, curve);
+        state = run_demand(mission, demand, steps, state, curve);
         if (state.undeliverable) break;
     }
     return {std::move(curve), summarize(mission, demands, state)};
@@ -129,20 +145,27 @@ std::string describe(const MissionSummary& summary) {
             "{}: the battery cannot deliver {:.6g} W at {:.6g} s: its limit U^2 / (4 R) is {:.6g} W",
             summary.mission, failure->power_w, failure->time_s, failure->limit_w);
     }
-    const auto end =
-        summary.depleted_at_s
-            ? fmt::format("empty at {:.1f} s of {:.1f} s", *summary.depleted_at_s, summary.duration_s)
-            : fmt::format("{:.2f} % left after {:.1f} s", *summary.final_soc_percent, summary.duration_s);
+    auto end = fmt::format("{:.2f} % left after {:.1f} s", *summary.final_soc_percent, summary.duration_s);
+    if (summary.depleted_at_s) {
+        end = fmt::format("empty at {:.1f} s of {:.1f} s", *summary.depleted_at_s, summary.duration_s);
+    } else if (summary.cut_off_at_s) {
+        end = fmt::format("cut off at {:.1f} s of {:.1f} s with {:.2f} % left", *summary.cut_off_at_s,
+                          summary.duration_s, *summary.final_soc_percent);
+    } else if (!summary.keeps_reserve) {
+        end += fmt::format(", less than the reserve of {:.6g} %", summary.reserve_soc_percent);
+    }
     return fmt::format("{}: {}; {:.3f} Wh, {:.3f} mechanical and {:.3f} computing", summary.mission, end,
                        summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh);
 }
 
 std::string to_csv(const SocCurve& curve) {
-    std::string text = "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent\n";
+    std::string text =
+        "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v\n";
     for (const auto& row : curve.rows) {
-        fmt::format_to(std::back_inserter(text), "{:.10g},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}\n",
-                       row.time_s, to_string(row.phase), row.mechanical_w, row.compute_w, row.power_w,
-                       row.current_a, row.soc_percent);
+        fmt::format_to(std::back_inserter(text),
+                       "{:.10g},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}\n", row.time_s,
+                       to_string(row.phase), row.mechanical_w, row.compute_w, row.power_w, row.current_a,
+                       row.soc_percent, row.terminal_voltage_v);
     }
     return text;
 }

@@ -15,14 +15,15 @@ struct SocRow {
     double mechanical_w = 0.0;  ///< what the mission demands, whatever the battery has left
     double compute_w = 0.0;
     double power_w = 0.0;    ///< both together
-    double current_a = 0.0;  ///< inside the battery (Eq. 10); 0 once it is empty
+    double current_a = 0.0;  ///< inside the battery (Eq. 10); 0 once it has given out
     double soc_percent = 0.0;
+    double terminal_voltage_v = 0.0;  ///< at the load
     bool operator==(const SocRow&) const = default;
 };
 
 /// State of charge over a mission. Time never decreases. Where power jumps (a phase or a configuration ends,
-/// the battery is empty) two rows have the same time: the last before the jump and the first after it, so
-/// that straight lines between rows are true to the curve.
+/// the battery is empty or cut off) two rows have the same time: the last before the jump and the first after
+/// it, so that straight lines between rows are true to the curve.
 struct SocCurve {
     std::vector<SocRow> rows;
 };
@@ -38,8 +39,11 @@ struct MissionSummary {
     double delivered_energy_wh = 0.0;  ///< demanded until the battery ended or failed
     double duration_s = 0.0;
     std::optional<double> depleted_at_s;  ///< when the battery was empty, if before the mission's end
+    std::optional<double> cut_off_at_s;   ///< when its voltage fell below the cut-off, if before the end
     std::optional<Undeliverable> undeliverable;
     bool feasible = false;  ///< the battery lasts: empty at the very end counts, any earlier does not
+    double reserve_soc_percent = 0.0;  ///< what the mission asks to be left
+    bool keeps_reserve = false;        ///< feasible, and the reserve is left
 };
 
 struct Simulation {
@@ -54,14 +58,15 @@ struct SimulationSteps {
 
 /// Runs a mission: mechanical and computing power, added, drain the battery (Eqs. 8-10). Energies are exact
 /// integrals; state of charge is integrated numerically and empties once: power that flows back later does
-/// not revive it. Throws UsageError for an output step that is not positive or makes too many rows, and
-/// std::invalid_argument for a mission without a schedule.
+/// not revive it, and neither does the voltage that recovers after a cut-off. Throws UsageError for an output
+/// step that is not positive or makes too many rows, and std::invalid_argument for a mission without a
+/// schedule.
 Simulation simulate(const Mission& mission, const SimulationSteps& steps = {});
 
 /// One line for people: what is left, or when and why the battery failed.
 std::string describe(const MissionSummary& summary);
 
-/// time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent
+/// time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v
 std::string to_csv(const SocCurve& curve);
 
 }  // namespace flightwatt

@@ -72,7 +72,8 @@ TEST(Battery, RefusesWhatIsNoBattery) {
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_mah = 1\n"),
               "b.toml:3:1: has no key 'capacity_ah'; 'capacity_mah' is here; was that meant?");
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 3\n"),
-              "b.toml:4:1: unknown key 'cells'; known keys: capacity_ah, name, resistance_ohm, voltage_v");
+              "b.toml:4:1: unknown key 'cells'; known keys: capacity_ah, intervals, model, "
+              "name, resistance_ohm, voltage_v");
 }
 
 }  // namespace

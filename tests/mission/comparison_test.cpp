@@ -29,6 +29,18 @@ TEST(Comparison, RanksByChargeThenByHowLongItLasts) {
               (std::vector<std::string>{"much", "little", "just", "late", "early", "fails", "fails too"}));
 }
 
+TEST(Comparison, CutOffRanksBelowWhateverLasts) {
+    auto cut_off = outcome("cut off", 40.0);
+    cut_off.cut_off_at_s = 500.0;
+    const auto ranking = ranked({outcome("early", 0.0, 100.0), cut_off, outcome("lasts", 2.0)});
+    EXPECT_EQ(ranking[0].mission, "lasts");
+    EXPECT_EQ(ranking[1].mission, "cut off");
+    const auto table = comparison_table(ranking);
+    EXPECT_EQ(table.header.back(), "cut_off_at_s");
+    EXPECT_EQ(table.rows[1].back(), "500.0");
+    EXPECT_EQ(table.rows[2].back(), "-");
+}
+
 TEST(Comparison, KeepsTheOrderOfEquals) {
     const auto ranking = ranked({outcome("b", 5.0), outcome("a", 5.0), outcome("c", 5.0)});
     EXPECT_EQ(ranking[0].mission, "b");

@@ -76,6 +76,36 @@ TEST(MissionToml, HasDefaults) {
     EXPECT_TRUE(mission.schedule[1].run.empty());
 }
 
+TEST(MissionToml, ReadsWhatTheBatteryIsHeldTo) {
+    const auto folder = mission_folder();
+    const auto mission = parse_mission(
+        with("initial_soc", "capacity_ah = 2.5\ncutoff_voltage_v = 9\nreserve_soc_percent = 20\ninitial_soc"),
+        folder / "m.toml");
+    EXPECT_EQ(mission.battery.capacity_ah, 2.5);
+    EXPECT_EQ(mission.cutoff_voltage_v, 9.0);
+    EXPECT_EQ(mission.reserve_soc_percent, 20.0);
+    const auto plain = parse_mission(good, folder / "m.toml");
+    EXPECT_EQ(plain.battery.capacity_ah, 3.0);
+    EXPECT_EQ(plain.cutoff_voltage_v, 0.0);
+    EXPECT_EQ(plain.reserve_soc_percent, 0.0);
+}
+
+TEST(MissionToml, ReadsATheveninBattery) {
+    const auto folder = mission_folder();
+    write_text(folder / "pack.toml",
+               "model = \"thevenin\"\ncapacity_ah = 2\nresistance_ohm = 0.1\nrc_resistance_ohm = 0.05\n"
+               "rc_time_constant_s = 30\n[open_circuit]\nsoc_percent = [0, 100]\nvoltage_v = [9.9, 12.5]\n"
+               "[intervals]\ncapacity_ah = [1.8, 2.2]\n");
+    const std::string text = "mechanical = \"opterra.toml\"\nbattery = \"pack.toml\"\n";
+    const auto own = parse_mission(text, folder / "m.toml").battery;
+    ASSERT_TRUE(own.thevenin);
+    EXPECT_EQ(own.thevenin->rc_time_constant_s, 30.0);
+    EXPECT_TRUE(own.intervals.capacity_ah);
+    const auto other = parse_mission(text + "capacity_ah = 3\n", folder / "m.toml").battery;
+    EXPECT_EQ(other.capacity_ah, 3.0);
+    EXPECT_FALSE(other.intervals.capacity_ah);  // it was of the other capacity
+}
+
 TEST(MissionToml, TakesDurationsFromTheMissionFirst) {
     const auto text =
         "mechanical = \"opterra.toml\"\nduration_s = { cruise = 900 }\nphase_clock = \"absolute\"\n"
@@ -148,6 +178,14 @@ const BadMission bad_missions[] = {
     {"= 90", "= 0", "m.toml:5:1: initial_soc_percent = 0 is out of range; expected above 0, to 100"},
     {"= 90", "= 100.5", "m.toml:5:1: initial_soc_percent = 100.5 is out of range; expected above 0, to 100"},
     {"= 90", "= \"90\"", "m.toml:5:23: 'initial_soc_percent' is a TOML string, expected a finite number"},
+    {"initial_soc", "capacity_ah = 0\ninitial_soc",
+     "m.toml:5:1: capacity_ah = 0 is out of range; expected above 0 to 1000000"},
+    {"initial_soc", "reserve_soc_percent = 101\ninitial_soc",
+     "m.toml:5:1: reserve_soc_percent = 101 is out of range; expected from 0 to 100"},
+    {"initial_soc", "cutoff_voltage_v = -1\ninitial_soc",
+     "m.toml:5:1: cutoff_voltage_v = -1 is out of range; expected from 0 to 1000000"},
+    {"initial_soc", "cutoff_voltage = 9\ninitial_soc",
+     "m.toml:5:1: unknown key 'cutoff_voltage'; did you mean 'cutoff_voltage_v'?"},
     {"cruise = 600", "cruise = -1",
      "m.toml:3:30: cruise = -1 s is no phase's duration; expected 0 (not flown) or 0.001 .. 10000000 s"},
     {"cruise = 600, ", "", "m.toml:3:14: has no key 'cruise'"},

@@ -57,9 +57,10 @@ TEST(Simulate, PrintsTheCurveAndASummaryLine) {
     write_mission(folder, "m", lasting);
     const auto result = run(folder, "simulate", "m.toml --step 1800");
     EXPECT_EQ(result.code, 0);
-    EXPECT_EQ(result.out,
-              "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent\n"
-              "0,cruise,0,25,25,2.5,100\n1800,cruise,0,25,25,2.5,87.5\n3600,cruise,0,25,25,2.5,75\n");
+    EXPECT_EQ(
+        result.out,
+        "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v\n"
+        "0,cruise,0,25,25,2.5,100,10\n1800,cruise,0,25,25,2.5,87.5,10\n3600,cruise,0,25,25,2.5,75,10\n");
     EXPECT_EQ(result.err,
               "flightwatt-simulate: m: 75.00 % left after 3600.0 s; 25.000 Wh, 0.000 mechanical and 25.000 "
               "computing\n");
@@ -84,16 +85,17 @@ TEST(Simulate, PrintsJson) {
     const auto json = nlohmann::ordered_json::parse(result.out);
     std::vector<std::string> keys;
     for (const auto& [key, value] : json.items()) keys.push_back(key);
-    EXPECT_THAT(keys, testing::ElementsAre("mission", "final_soc_percent", "energy_wh",
-                                           "mechanical_energy_wh", "compute_energy_wh", "delivered_energy_wh",
-                                           "duration_s", "depleted_at_s", "feasible"));
+    EXPECT_THAT(
+        keys, testing::ElementsAre("mission", "final_soc_percent", "energy_wh", "mechanical_energy_wh",
+                                   "compute_energy_wh", "delivered_energy_wh", "duration_s", "depleted_at_s",
+                                   "cut_off_at_s", "feasible", "reserve_soc_percent", "keeps_reserve"));
     EXPECT_EQ(json["mission"], "m");
     EXPECT_NEAR(json["final_soc_percent"].get<double>(), 75.0, 1e-9);
     EXPECT_EQ(json["compute_energy_wh"], 25.0);
     EXPECT_EQ(json["duration_s"], 3600.0);
     EXPECT_TRUE(json["depleted_at_s"].is_null());
     EXPECT_EQ(json["feasible"], true);
-    EXPECT_THAT(read_file(folder / "curve.csv"), EndsWith("\n3600,cruise,0,25,25,2.5,75\n"));
+    EXPECT_THAT(read_file(folder / "curve.csv"), EndsWith("\n3600,cruise,0,25,25,2.5,75,10\n"));
     EXPECT_EQ(nlohmann::json::parse(run(folder, "simulate", "m.toml --json").out)["mission"], "m");
 }
 

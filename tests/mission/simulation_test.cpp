@@ -194,6 +194,69 @@ TEST(Simulation, ReportsPowerThatTheBatteryCannotDeliver) {
               "phased: the battery cannot deliver 68.2975 W at 268 s: its limit U^2 / (4 R) is 61.605 W");
 }
 
+/// 12 V at full, 10 V at empty, 0.1 ohm; 0.06 ohm with 30 s.
+Battery thevenin_pack(double capacity_ah) {
+    Battery pack{"", 0.0, 0.1, capacity_ah};
+    pack.thevenin = TheveninCircuit{{{0.0, 100.0}, {10.0, 12.0}}, 0.06, 30.0};
+    return pack;
+}
+
+TEST(Simulation, ShowsTheTerminalVoltage) {
+    const auto pack = thevenin_pack(3.0);
+    const auto [curve, summary] = simulate(flight(40.0, 600.0, pack));
+    EXPECT_TRUE(summary.feasible);
+    for (std::size_t i = 1; i < curve.rows.size(); ++i) {
+        const auto& row = curve.rows[i];
+        EXPECT_NEAR(row.terminal_voltage_v * row.current_a, row.power_w, 1e-9);  // what the load gets
+        EXPECT_LT(row.terminal_voltage_v, curve.rows[i - 1].terminal_voltage_v);
+    }
+    for (const auto& row : simulate(flight(150.0, 60.0, {"", 11.1, 0.08, 2.0})).curve.rows) {
+        EXPECT_EQ(row.terminal_voltage_v, 11.1 - 0.08 * row.current_a);
+    }
+}
+
+TEST(Simulation, EndsAtCutOff) {
+    auto mission = flight(40.0, 3000.0, thevenin_pack(3.0));
+    mission.cutoff_voltage_v = 10.5;
+    const auto [curve, summary] = simulate(mission);
+    ASSERT_TRUE(summary.cut_off_at_s);
+    EXPECT_FALSE(summary.depleted_at_s);
+    EXPECT_FALSE(summary.feasible);
+    EXPECT_FALSE(summary.keeps_reserve);
+    EXPECT_GT(*summary.final_soc_percent, 20.0);
+    EXPECT_NEAR(summary.delivered_energy_wh, 40.0 * *summary.cut_off_at_s / 3600.0, 1e-9);
+    std::size_t loaded = 0;
+    for (const auto& row : curve.rows) {
+        if (row.current_a > 0.0) {
+            ++loaded;
+            EXPECT_GE(row.terminal_voltage_v, 10.5 - 1e-9);
+        } else {
+            EXPECT_EQ(row.soc_percent, *summary.final_soc_percent);
+        }
+    }
+    EXPECT_EQ(loaded, static_cast<std::size_t>(*summary.cut_off_at_s) + 2);
+    // Without a load the voltage recovers to that of the open circuit.
+    EXPECT_NEAR(curve.rows.back().terminal_voltage_v,
+                open_circuit_voltage_v(mission.battery, *summary.final_soc_percent), 1e-3);
+    EXPECT_EQ(describe(summary).substr(0, 18), "flight: cut off at");
+    for (const auto& steps : {SimulationSteps{7.77, 0.1}, {1.0, 0.01}, {1e6, 0.05}}) {
+        EXPECT_NEAR(*simulate(mission, steps).summary.cut_off_at_s, *summary.cut_off_at_s, 1e-6);
+    }
+}
+
+TEST(Simulation, KeepsTheReserveOrSaysThatItDoesNot) {
+    auto mission = constant(25.0, 100.0);
+    mission.reserve_soc_percent = 75.001;
+    const auto missed = simulate(mission).summary;
+    EXPECT_TRUE(missed.feasible);  // the battery lasts
+    EXPECT_FALSE(missed.keeps_reserve);
+    EXPECT_EQ(missed.reserve_soc_percent, 75.001);
+    EXPECT_EQ(describe(missed).substr(0, 74),
+              "constant: 75.00 % left after 3600.0 s, less than the reserve of 75.001 %; ");
+    mission.reserve_soc_percent = 74.999;
+    EXPECT_TRUE(simulate(mission).summary.keeps_reserve);
+}
+
 TEST(Simulation, DescribesItsOutcome) {
     EXPECT_EQ(describe(simulate(constant(25.0, 100.0)).summary),
               "constant: 75.00 % left after 3600.0 s; 25.000 Wh, 0.000 mechanical and 25.000 computing");
@@ -202,9 +265,10 @@ TEST(Simulation, DescribesItsOutcome) {
 }
 
 TEST(Simulation, WritesCsv) {
-    EXPECT_EQ(to_csv(simulate(constant(25.0, 100.0), {1800.0, 0.1}).curve),
-              "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent\n"
-              "0,cruise,0,25,25,2.5,100\n1800,cruise,0,25,25,2.5,87.5\n3600,cruise,0,25,25,2.5,75\n");
+    EXPECT_EQ(
+        to_csv(simulate(constant(25.0, 100.0), {1800.0, 0.1}).curve),
+        "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v\n"
+        "0,cruise,0,25,25,2.5,100,10\n1800,cruise,0,25,25,2.5,87.5,10\n3600,cruise,0,25,25,2.5,75,10\n");
 }
 
 TEST(Simulation, RefusesStepsThatMakeNoSense) {
