@@ -42,8 +42,9 @@ inline void add_fit_options(boost::program_options::options_description& options
 /// Overrules that flights with an absurd power record are left out.
 inline void add_keep_option(boost::program_options::options_description& options) {
     namespace po = boost::program_options;
-    options.add_options()("keep", po::value<std::vector<std::string>>()->value_name("FLIGHT")->composing(),
-                          "use this flight though its power record is absurd");
+    options.add_options()(
+        "keep", po::value<std::vector<std::string>>()->value_name("FLIGHT")->composing(),
+        "use this flight though it would be left out (absurd power record, not-fitted.txt)");
 }
 
 /// What becomes of doubtful power records.

@@ -219,7 +219,12 @@ int main(int argc, char** argv) {
         "and\n"
         "phase. Logs whose results are up to date are not done again. A log that cannot be used is reported "
         "and the\n"
-        "others go on; the exit code is then 3. Flights whose log is gone are dropped.\n\n"
+        "others go on; the exit code is then 3. Flights whose log is gone are dropped. "
+        "Logs\n"
+        "of a folder below FOLDER that holds a file not-fitted.txt are listed and left out of the fit; its "
+        "first "
+        "line\n"
+        "says why.\n\n"
         "SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. "
         "However it\n"
         "ended, the same command goes on where it stopped and comes to the same results.";

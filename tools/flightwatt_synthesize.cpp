@@ -82,6 +82,7 @@ std::size_t write_log(const cli::StageCall& call, const SyntheticScenario& scena
                       const LogIdentity& identity, std::uint64_t seed) {
     SyntheticSensors sensors;
     sensors.current_noise_a = call.get<double>("current-noise");
+    sensors.sends_other_messages = !call.has("flight-messages-only");
     const auto log = make_synthetic_log(scenario, sensors, identity.name, identity.made_by, seed);
     const auto stem = std::filesystem::path(*call.output) / identity.name;
     write_file_atomically(stem.string() + ".log", log.log);
@@ -140,12 +141,21 @@ void check_options(const cli::StageCall& call) {
     }
 }
 
+/// The cruise of another duration, its curve stretched.
+void set_cruise(PhaseModel& cruise, double duration_s) {
+    require_between("cruise", duration_s, 60.0, 1e5);
+    cruise.fourier = flown_model(cruise, duration_s, PhaseClock::stretched);
+    cruise.duration_s = duration_s;
+}
+
 int synthesize(const cli::StageCall& call) {
     check_options(call);
     const auto count = static_cast<std::size_t>(call.get<int>("flights"));
     const auto seed = static_cast<std::uint64_t>(call.get<std::int64_t>("seed"));
     const auto hazard_list = chosen_hazards(call.get<std::string>("hazard"));
-    const auto model = read_mechanical_model(call.inputs.front());
+    auto model = read_mechanical_model(call.inputs.front());
+    if (const auto cruise_s = call.maybe<double>("cruise"))
+        set_cruise(model.phases[Phase::cruise], *cruise_s);
     require_flyable(model, call.inputs.front());
     make_directories(*call.output);
     SpreadOptions spread;
@@ -194,10 +204,12 @@ int main(int argc, char** argv) {
         "current-noise",
         po::value<double>()->value_name("A")->default_value(SyntheticSensors{}.current_noise_a, "0.001"),
         "noise of the current sensor, as a standard deviation")(
+        "cruise", po::value<double>()->value_name("S"), "how long flights cruise, in seconds (the model's)")(
+        "flight-messages-only", "leave out the messages that no flight is read from: small logs")(
         "truth", "write the true phases beside each log, as NAME.truth.csv")(
         "hazard", po::value<std::string>()->value_name("NAME")->default_value("none"),
         "something that real logs do and that must not fool the segmentation: "
-        "estimator-starts-at-zero, dives-in-cruise, power-burst-after-landing, "
+        "estimator-starts-at-zero, dives-in-cruise, run-up, power-burst-after-landing, "
         "throttle-burst-before-touchdown, two-sorties, begins-in-the-air, ends-in-the-air, or all, a log "
         "each");
     return cli::run_stage(argc, argv, stage, synthesize);

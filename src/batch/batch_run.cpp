@@ -104,13 +104,18 @@ void restore_airspeed(const FlightRecord& record, FlightSelection& selection) {
     }
 }
 
-/// What is fitted of a flight: nothing if its power record is absurd, unless the user keeps it.
+/// What is fitted of a flight: nothing if its power record is absurd or its folder is not to be fitted,
+/// unless the user keeps it.
 FlightSelection select_for_fit(const FlightSeries& series, const FlightPhases& phases,
-                               const FlightRecord& record, const BatchOptions& options) {
+                               const FlightRecord& record, const LogFile& log, const BatchOptions& options) {
     auto selection = select_samples(series, phases, options.needed_samples);
     restore_airspeed(record, selection);
-    if (!record.absurdities.empty() && !options.keep.contains(series.flight)) {
-        leave_out_all(selection, series.flight, describe_absurdities(record.absurdities));
+    if (!options.keep.contains(series.flight)) {
+        if (!record.absurdities.empty()) {
+            leave_out_all(selection, series.flight, describe_absurdities(record.absurdities));
+        } else if (!log.why_not_fitted.empty()) {
+            leave_out_all(selection, series.flight, log.why_not_fitted);
+        }
     }
     for (auto& flight : selection.flights) {  // kept until the fit, of thousands of flights
         for (auto& phase : flight.phases.values) {
@@ -133,7 +138,7 @@ BatchFlight do_accepted(const LogFile& log, const BatchOptions& options) {
     if (options.correct_idle_offset) correct_idle_offset(series, power.idle);
     done.record = record_of(series, phases);
     done.record.absurdities = power.absurdities;
-    done.selection = select_for_fit(series, phases, done.record, options);
+    done.selection = select_for_fit(series, phases, done.record, log, options);
     write_result(options, log.flight, series_ending, to_csv(series));
     write_result(options, log.flight, phases_ending, phases_csv(series, phases));
     return done;
@@ -150,7 +155,7 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
             if (!done.record.accepted) return done;
             auto series = read_series_csv(result_path(options, log.flight, series_ending));
             series.flight = log.flight;
-            done.selection = select_for_fit(series, phases_of(done.record), done.record, options);
+            done.selection = select_for_fit(series, phases_of(done.record), done.record, log, options);
             return done;
         }
         remove_results(options, log.flight);

@@ -23,7 +23,7 @@ struct BatchOptions {
     unsigned jobs = 0;  ///< logs at a time; 0: one a core
     std::size_t needed_samples = 8;
     bool correct_idle_offset = false;  ///< see correct_idle_offset()
-    std::set<std::string> keep = {};   ///< flights that are fitted though their power record is absurd
+    std::set<std::string> keep = {};   ///< flights that are fitted though they would be left out
     WriteGate* gate = nullptr;         ///< passed to write a file, if there is one
 };
 

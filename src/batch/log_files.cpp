@@ -1,5 +1,6 @@
 #include "batch/log_files.h"
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "telemetry/log_configuration.h"
 
@@ -8,6 +9,7 @@
 #include <set>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,13 +25,32 @@ bool is_log_name(const std::filesystem::path& path) {
                        [&](std::string_view ending) { return name.ends_with(ending); });
 }
 
-void add_folder(const std::filesystem::path& folder, std::vector<std::filesystem::path>& paths) {
+/// What the nearest not-fitted.txt between the folder that was given and the log says; empty without one.
+std::string why_not_fitted(const std::filesystem::path& log, const std::filesystem::path& given) {
+    auto inner = log.parent_path().lexically_relative(given);  // "." for the folder itself
+    for (; !inner.empty() && inner != "."; inner = inner.parent_path()) {
+        const auto file = given / inner / "not-fitted.txt";
+        if (!std::filesystem::exists(file)) continue;
+        const auto text = read_file(file);
+        auto reason = text.substr(0, text.find_first_of("\r\n"));
+        if (reason.empty()) {
+            throw InputError({file.string(), 1}, "is empty",
+                             "its first line says why these logs are not fitted");
+        }
+        return reason;
+    }
+    return {};
+}
+
+void add_folder(const std::filesystem::path& folder, std::vector<LogFile>& logs) {
     std::error_code error;
     std::filesystem::recursive_directory_iterator entry(folder, error);
     while (!error && entry != std::filesystem::recursive_directory_iterator()) {
         std::error_code ignored;
         // What has a log's name and is no file (a link to nowhere) is rejected later, not passed over.
-        if (is_log_name(entry->path()) && !entry->is_directory(ignored)) paths.push_back(entry->path());
+        if (is_log_name(entry->path()) && !entry->is_directory(ignored)) {
+            logs.push_back({entry->path(), {}, why_not_fitted(entry->path(), folder)});
+        }
         entry.increment(error);
     }
     if (error) throw InputError({folder.string()}, fmt::format("cannot be listed: {}", error.message()));
@@ -43,12 +64,14 @@ std::filesystem::path identity(const std::filesystem::path& path) {
     return error ? path : canonical / path.filename();
 }
 
-std::vector<std::filesystem::path> each_once(std::vector<std::filesystem::path> paths) {
-    for (auto& path : paths) path = path.lexically_normal();
-    std::sort(paths.begin(), paths.end());
+std::vector<LogFile> each_once(std::vector<LogFile> logs) {
+    for (auto& log : logs) log.path = log.path.lexically_normal();
+    std::sort(logs.begin(), logs.end(), [](const LogFile& a, const LogFile& b) {
+        return std::tie(a.path, a.why_not_fitted) < std::tie(b.path, b.why_not_fitted);
+    });
     std::set<std::filesystem::path> seen;
-    std::erase_if(paths, [&](const auto& path) { return !seen.insert(identity(path)).second; });
-    return paths;
+    std::erase_if(logs, [&](const auto& log) { return !seen.insert(identity(log.path)).second; });
+    return logs;
 }
 
 /// The log's own name, or, where another log has that, the next free one of NAME_2, NAME_3, ...
@@ -63,12 +86,12 @@ std::string free_name(const std::filesystem::path& path, const std::set<std::str
 }  // namespace
 
 std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
-    std::vector<std::filesystem::path> paths;
+    std::vector<LogFile> logs;
     for (const auto& input : inputs) {
         std::error_code error;
         const auto status = std::filesystem::status(input, error);
         if (std::filesystem::is_directory(status)) {
-            add_folder(input, paths);
+            add_folder(input, logs);
             continue;
         }
         if (!std::filesystem::exists(status)) {
@@ -78,19 +101,17 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
             throw InputError({input.empty() ? "''" : input}, cause,
                              "expected a .data log or a folder of them");
         }
-        paths.emplace_back(input);
+        logs.push_back({input, {}, {}});
     }
-    paths = each_once(std::move(paths));
-    if (paths.empty()) {
+    logs = each_once(std::move(logs));
+    if (logs.empty()) {
         throw InputError({}, fmt::format("no .data log in {}", fmt::join(inputs, ", ")),
                          "expected *.data, also .gz, .bz2, .xz or .zst");
     }
-    std::vector<LogFile> logs;
     std::set<std::string> taken;
-    for (auto& path : paths) {
-        auto name = free_name(path, taken);
-        taken.insert(name);
-        logs.push_back({std::move(path), std::move(name)});
+    for (auto& log : logs) {
+        log.flight = free_name(log.path, taken);
+        taken.insert(log.flight);
     }
     return logs;
 }

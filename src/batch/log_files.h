@@ -10,11 +10,14 @@ namespace flightwatt {
 struct LogFile {
     std::filesystem::path path;
     std::string flight;
+    std::string why_not_fitted = {};  ///< empty: it is fitted
 };
 
 /// The logs among files and folders (searched to the bottom for .data files, compressed or not), in the order
 /// of their paths, each once however it is written. Flights of the same name get the names NAME, NAME_2, ...
-/// Throws InputError for an input that does not exist, or where there is no log at all.
+/// Logs in a folder below the one that was given, or deeper, are not fitted if that folder holds a file
+/// not-fitted.txt, whose first line says why. Throws InputError for an input that does not exist, where there
+/// is no log at all, or for a not-fitted.txt that does not say why.
 std::vector<LogFile> find_logs(const std::vector<std::string>& inputs);
 
 }  // namespace flightwatt

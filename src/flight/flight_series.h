@@ -51,6 +51,7 @@ struct FlightSeries {
     Track altitude_track;
     Track ground_speed_track;
     Track airspeed_track;                     ///< [m/s] as measured; empty without a sensor
+    Track wind_speed_track;                   ///< [m/s] as the aircraft estimates it
     std::optional<double> ground_altitude_m;  ///< from the flight plan or NAVIGATION_REF
     FlightWitnesses witnesses;
 

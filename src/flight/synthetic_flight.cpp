@@ -15,13 +15,12 @@ constexpr double ground_run_s = 1.0;  // from standing to lift-off height
 constexpr double flare_s = 2.0;       // from touchdown height to standing
 constexpr double motor_off_after_s = 3.0;
 constexpr double hand_over_s = 1.5;  // from one phase's power to the next one's
-constexpr double run_up_s = 4.0;
-constexpr double run_up_power_w = 35.0;
 constexpr double full_power_w = 95.0;
 constexpr double dive_part = 0.7;  // of the height
 constexpr double dive_down_s = 8.0;
 constexpr double dive_low_s = 5.0;
 constexpr double dive_up_s = 20.0;
+constexpr double close_dives_s = 30.0;  // from one to the next, before the first is climbed back
 constexpr double estimator_climb_s = 15.0;
 constexpr double settling_s = 4.0;     // how slowly the climb ends in the cruise height
 constexpr double oscillation = 0.008;  // of the height, while the autopilot holds it
@@ -98,7 +97,8 @@ std::optional<Motor> unusual_motor(const SyntheticFlight& flight, double time_s)
 
 double power_w_at(const SyntheticFlight& flight, double time_s) {
     const double touchdown = flight.end_s(Phase::landing);
-    if (time_s >= flight.motor_run_up_s && time_s < flight.motor_run_up_s + run_up_s) return run_up_power_w;
+    if (time_s >= flight.motor_run_up_s && time_s < flight.motor_run_up_end_s())
+        return flight.motor_run_up_power_w;
     if (time_s < flight.lift_off_s - spool_up_s || time_s > touchdown + motor_off_after_s) return 0.0;
     const auto phase_power_w = [&](Phase phase) {
         const double tau = (time_s - flight.start_s(phase)) / flight.duration_s[phase];
@@ -164,7 +164,7 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     if (time_s > touchdown - manual_landing_s) state.mode = 1;
     if (time_s > touchdown + motor_off_after_s) state.mode = 0;
     state.block = 2;
-    if (time_s > flight.motor_run_up_s + run_up_s + 5.0) state.block = 3;
+    if (time_s > flight.motor_run_up_end_s() + 5.0) state.block = 3;
     if (time_s > flight.lift_off_s + 10.0) state.block = 4;
     if (time_s > flight.end_s(Phase::takeoff)) state.block = 5;
     if (time_s > flight.start_s(Phase::landing)) state.block = 6;
@@ -179,6 +179,7 @@ const std::vector<std::pair<std::string, Hazard>>& hazards() {
     static const std::vector<std::pair<std::string, Hazard>> all{
         {"estimator-starts-at-zero", Hazard::estimator_starts_at_zero},
         {"dives-in-cruise", Hazard::dives_in_cruise},
+        {"run-up", Hazard::run_up},
         {"power-burst-after-landing", Hazard::power_burst_after_landing},
         {"throttle-burst-before-touchdown", Hazard::throttle_burst_before_touchdown},
         {"two-sorties", Hazard::two_sorties},
@@ -194,9 +195,14 @@ SyntheticScenario scenario_with(SyntheticFlight flight, Hazard hazard) {
     if (hazard == Hazard::power_burst_after_landing) flight.power_burst_after_landing = true;
     if (hazard == Hazard::throttle_burst_before_touchdown) flight.throttle_burst_before_touchdown = true;
     if (hazard == Hazard::dives_in_cruise) {
-        for (const double part : {0.2, 0.5, 0.55, 0.8}) {
-            flight.dives_s.push_back(flight.start_s(Phase::cruise) + part * cruise_s);
-        }
+        const double cruise_start_s = flight.start_s(Phase::cruise);
+        flight.dives_s = {cruise_start_s + 0.2 * cruise_s, cruise_start_s + 0.5 * cruise_s,
+                          cruise_start_s + 0.5 * cruise_s + close_dives_s, cruise_start_s + 0.8 * cruise_s};
+    }
+    if (hazard == Hazard::run_up) {  // as long and as hard as a take-off
+        flight.motor_run_up_length_s = 28.0;
+        flight.motor_run_up_power_w = full_power_w;
+        flight.lift_off_s += flight.motor_run_up_length_s;
     }
     auto scenario = plain_scenario(flight);
     const double middle_s = flight.start_s(Phase::cruise) + 0.5 * cruise_s;

@@ -11,6 +11,8 @@ namespace flightwatt {
 /// takes off, climbs into a circle, descends in circles, lands and waits.
 struct SyntheticFlight {
     double motor_run_up_s = 30.0;  ///< when the motor is tried on the ground
+    double motor_run_up_length_s = 4.0;
+    double motor_run_up_power_w = 35.0;
     double lift_off_s = 60.0;
     PerPhase<double> duration_s{{28.0, 600.0, 60.0}};
     double ground_after_s = 30.0;  ///< from touchdown to the end of the log
@@ -27,6 +29,7 @@ struct SyntheticFlight {
     /// Power [W] of a phase at tau in [0, 1] of it.
     std::function<double(Phase phase, double tau)> power_w;
 
+    double motor_run_up_end_s() const { return motor_run_up_s + motor_run_up_length_s; }
     double start_s(Phase phase) const;
     double end_s(Phase phase) const { return start_s(phase) + duration_s[phase]; }
     double log_end_s() const { return end_s(Phase::landing) + ground_after_s; }
@@ -68,6 +71,7 @@ enum class Hazard {
     none,
     estimator_starts_at_zero,
     dives_in_cruise,
+    run_up,
     power_burst_after_landing,
     throttle_burst_before_touchdown,
     two_sorties,

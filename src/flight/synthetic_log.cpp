@@ -2,8 +2,10 @@
 
 #include "base/units.h"
 #include "flight/synthetic_reports.h"
+#include "flight/telemetry_series.h"
 #include "telemetry/log_writer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -105,12 +107,24 @@ std::string log_document(const SyntheticFlight& flight, const std::vector<Report
     return to_log_xml(document);
 }
 
+std::vector<Report> reports_of(const SyntheticSensors& sensors) {
+    auto reports = telemetry_reports();
+    if (sensors.sends_other_messages) return reports;
+    const auto read = flight_messages();
+    std::erase_if(reports, [&](const Report& report) {
+        return std::none_of(read.begin(), read.end(), [&](const MessageRequest& request) {
+            return request.message == report.definition.name;
+        });
+    });
+    return reports;
+}
+
 }  // namespace
 
 SyntheticLog make_synthetic_log(const SyntheticScenario& scenario, const SyntheticSensors& sensors,
                                 const std::string& name, const std::string& made_by, std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    const auto reports = telemetry_reports();
+    const auto reports = reports_of(sensors);
     Simulation simulation(sensors, random);
     LossyLink link(sensors.lost_fraction, random);
     std::vector<double> due_s;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -95,6 +96,24 @@ FoundTrack ground_speed_of(const SenderLog& sender) {
     return {make_track(table->time_s, speed, Merge::mean), "GPS_INT.ecef velocity"};
 }
 
+/// The wind's speed as the aircraft estimates it; 0 east and 0 north says that it does not know yet.
+Track wind_of(const SenderLog& sender) {
+    const auto* table = sender.table("WIND_INFO");
+    if (table == nullptr) return {};
+    const auto* east = table->column("east");
+    const auto* north = table->column("north");
+    if (east == nullptr || north == nullptr) return {};
+    if (east->quantity != Quantity::metre_per_second || north->quantity != Quantity::metre_per_second) {
+        return {};
+    }
+    std::vector<double> speed;
+    for (std::size_t i = 0; i < east->values.size(); ++i) {
+        const double value = std::hypot(east->values[i], north->values[i]);
+        speed.push_back(value > 0.0 ? value : std::numeric_limits<double>::quiet_NaN());  // nan is dropped
+    }
+    return make_track(table->time_s, speed, Merge::mean);
+}
+
 /// Puts a channel onto the power clock and remembers where it came from.
 void add_channel(FlightSeries& series, std::vector<double> FlightSeries::*channel, const char* name,
                  const FoundTrack& found) {
@@ -151,6 +170,7 @@ void add_channels(FlightSeries& series, const SenderLog& sender) {
                                  Merge::mean);
     // An aircraft without a sensor says the same throughout: 0 or -1.
     if (!is_constant(airspeed.track)) series.airspeed_track = std::move(airspeed.track);
+    series.wind_speed_track = wind_of(sender);
 }
 
 /// Modes and blocks have no unit.
@@ -311,6 +331,7 @@ std::vector<MessageRequest> flight_messages() {
         {"NAVIGATION_REF", {"ground_alt"}},
         {"PPRZ_MODE", {"ap_mode"}},
         {"TAKEOFF", {"cpu_time"}},
+        {"WIND_INFO", {"east", "north"}},
     };
 }
 

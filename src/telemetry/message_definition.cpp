@@ -73,6 +73,11 @@ Layouts all_layouts() {
         layout("AIR_DATA", "7 fields",
                {"pressure:-", "diff_p:-", "temp:-", "qnh:-", "amsl_baro:m", "airspeed:m/s", "tas:m/s"}),
     };
+    all["WIND_INFO"] = {
+        layout("WIND_INFO", "5 fields", {"ac_id:-", "pad0:-", "east:m/s", "north:m/s", "airspeed:m/s"}),
+        layout("WIND_INFO", "6 fields",
+               {"ac_id:-", "flags:-", "east:m/s", "north:m/s", "up:m/s", "airspeed:m/s"}),
+    };
     constexpr auto fixed_point = "0.00390625m";  // 2^-8 m
     for (const auto* version : {"14 fields", "15 fields"}) {
         std::vector<std::string> fields;

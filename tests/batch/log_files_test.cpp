@@ -92,5 +92,26 @@ TEST(FindLogs, RefusesWhatIsNotThere) {
               "'': does not exist; expected a .data log or a folder of them");
 }
 
+TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {
+    const auto folder = test::scratch_dir();
+    touch(folder / "a.data");
+    touch(folder / "odd" / "b.data");
+    touch(folder / "odd" / "deeper" / "c.data");
+    write_text(folder / "odd" / "not-fitted.txt", "trials of a propeller\r\nin June\n");
+    const auto reasons = [](const std::vector<std::string>& inputs) {
+        std::vector<std::string> found;
+        for (const auto& log : find_logs(inputs)) found.push_back(log.why_not_fitted);
+        return found;
+    };
+    const std::string reason = "trials of a propeller";
+    EXPECT_THAT(reasons({folder.string()}), ElementsAre("", reason, reason));
+    EXPECT_THAT(reasons({folder.string() + "/"}), ElementsAre("", reason, reason));
+    EXPECT_THAT(reasons({(folder / "odd").string()}), ElementsAre("", "")) << "asked for by name";
+    EXPECT_THAT(reasons({folder.string(), (folder / "odd" / "b.data").string()}),
+                ElementsAre("", "", reason));
+    write_text(folder / "odd" / "not-fitted.txt", "\n");
+    EXPECT_THAT(rejected([&] { find_logs({folder.string()}); }), testing::HasSubstr("not-fitted.txt:1"));
+}
+
 }  // namespace
 }  // namespace flightwatt

@@ -1,0 +1,1 @@
+flightwatt segment "$SOURCE/logs/hazards/hazard_01_two-sorties.data" --explain
