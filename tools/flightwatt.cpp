@@ -27,6 +27,7 @@ constexpr StageLine stages[] = {
     {"fit", "several flights to a mechanical power model and Table I"},
     {"validate", "leaves each flight out and predicts its energy, beside simple baselines"},
     {"predict", "the energy to the end of a flight that is in the air"},
+    {"battery", "flights to the battery that they were flown on"},
     {"batch", "parse, segment and fit every log of a folder, incrementally"},
     {"simulate", "a mission file to its state of charge over time"},
     {"compare", "several missions, ranked by final state of charge"},

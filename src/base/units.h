@@ -17,6 +17,8 @@ inline constexpr double table_one_time_per_phase = 28.0;
 constexpr double wh_from_joule(double energy_j) { return energy_j / seconds_per_hour; }
 constexpr double joule_from_wh(double energy_wh) { return energy_wh * seconds_per_hour; }
 constexpr double coulomb_from_ah(double charge_ah) { return charge_ah * seconds_per_hour; }
+constexpr double ah_from_coulomb(double charge_as) { return charge_as / seconds_per_hour; }
+constexpr double mv_from_v(double voltage_v) { return voltage_v * 1000.0; }
 constexpr double percent_of(double part, double whole) { return part / whole * percent_per_whole; }
 constexpr double part_of(double whole, double percent) { return whole * percent / percent_per_whole; }
 constexpr double percent_from_pprz(double throttle_pprz) {

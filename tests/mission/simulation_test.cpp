@@ -215,6 +215,20 @@ TEST(Simulation, ShowsTheTerminalVoltage) {
     }
 }
 
+TEST(Simulation, FliesTheExampleOnTheSyntheticPack) {
+    auto mission = read_mission(test::source_dir() / "missions" / "synthetic" / "thevenin-pack.toml");
+    ASSERT_TRUE(mission.battery.thevenin);
+    EXPECT_NEAR(mission.battery.resistance_ohm, 0.06, 0.001);  // what the logs were made with
+    const auto summary = simulate(mission, {60.0, 0.1}).summary;
+    EXPECT_TRUE(summary.keeps_reserve);
+    // The charge is the energy by the mean voltage, which is between those at both ends.
+    const double drawn_ah = (100.0 - *summary.final_soc_percent) / 100.0 * mission.battery.capacity_ah;
+    EXPECT_GT(drawn_ah, summary.energy_wh / 12.24);
+    EXPECT_LT(drawn_ah, summary.energy_wh / 11.07);
+    mission.cutoff_voltage_v = 11.5;
+    EXPECT_TRUE(simulate(mission).summary.cut_off_at_s);
+}
+
 TEST(Simulation, EndsAtCutOff) {
     auto mission = flight(40.0, 3000.0, thevenin_pack(3.0));
     mission.cutoff_voltage_v = 10.5;

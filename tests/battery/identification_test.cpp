@@ -1,0 +1,185 @@
+// Batteries identified from flights: whether the intervals hold the truth, and how the voltage is foretold.
+
+#include "battery/identification.h"
+
+#include "base/error.h"
+#include "flight/flight_reader.h"
+#include "rejected.h"
+#include "synthetic_discharge.h"
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using test::known_pack;
+using test::rejected;
+using test::synthetic_discharge;
+using test::SyntheticDischarge;
+
+constexpr std::size_t all_seeds = 20;
+constexpr std::size_t enough_seeds = 18;
+
+/// In how many of seeds 1..20 each parameter's interval holds the truth. A seed is `flights` flights.
+std::map<std::string, std::size_t> held(const Battery& pack, const SyntheticDischarge& settings,
+                                        std::size_t flights) {
+    std::map<std::string, std::size_t> counts;
+    for (std::size_t seed = 1; seed <= all_seeds; ++seed) {
+        std::vector<DischargeRecord> records;
+        for (std::size_t f = 0; f < flights; ++f) {
+            auto flown = settings;
+            flown.duration_s -= 150.0 * static_cast<double>(f);
+            records.push_back(discharge_record(synthetic_discharge(pack, flown, seed + 1000 * f)));
+        }
+        IdentificationOptions options;
+        options.capacity_ah = pack.capacity_ah;
+        const auto found = identify_battery(records, options);
+        const auto count = [&](const std::string& name, double truth, const Interval& interval) {
+            counts[name] += truth >= interval.low && truth <= interval.high ? 1 : 0;
+        };
+        count("resistance", pack.resistance_ohm, found.errors.resistance_ohm);
+        count("rc_resistance", pack.thevenin->rc_resistance_ohm, found.errors.rc_resistance_ohm);
+        count("rc_time_constant", pack.thevenin->rc_time_constant_s, found.errors.rc_time_constant_s);
+        const auto& curve = found.battery.thevenin->open_circuit;
+        const auto& error_v = found.battery.intervals.open_circuit_standard_error_v;
+        const std::size_t knots[] = {curve.soc_percent.size() - 1,
+                                     curve.soc_percent.size() - 1 - found.fit.knots_ah.size() / 2,
+                                     curve.soc_percent.size() - found.fit.knots_ah.size()};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double truth_v = open_circuit_voltage_v(pack, curve.soc_percent[knots[k]]);
+            const double half_v = 1.96 * error_v[knots[k]];
+            count(fmt::format("open_circuit_{}", std::array{"full", "middle", "last"}.at(k)), truth_v,
+                  {curve.voltage_v[knots[k]] - half_v, curve.voltage_v[knots[k]] + half_v});
+        }
+    }
+    for (const auto& [name, count] : counts) {
+        fmt::print("{} flights: {} inside its interval in {} of {}\n", flights, name, count, all_seeds);
+    }
+    return counts;
+}
+
+TEST(Identification, IntervalsHoldTheTruthOfAFlight) {
+    for (const auto& [name, count] : held(known_pack(), {}, 1)) EXPECT_GE(count, enough_seeds) << name;
+}
+
+TEST(Identification, IntervalsHoldTheTruthOfThreeFlights) {
+    for (const auto& [name, count] : held(known_pack(), {}, 3)) EXPECT_GE(count, enough_seeds) << name;
+}
+
+TEST(Identification, IntervalsHoldTheTruthBehindACoarseSensor) {
+    SyntheticDischarge coarse;
+    coarse.voltage_step_v = 0.1;
+    coarse.voltage_noise_v = 0.02;
+    coarse.current_step_a = 0.1;
+    for (const auto& [name, count] : held(known_pack(), coarse, 2)) EXPECT_GE(count, enough_seeds) << name;
+}
+
+TEST(Identification, FindsItselfWithoutNoise) {
+    SyntheticDischarge clean;
+    clean.voltage_noise_v = clean.current_noise_a = clean.lost_fraction = 0.0;
+    clean.voltage_step_v = clean.current_step_a = 1e-9;
+    auto pack = known_pack();
+    pack.thevenin->open_circuit = {{0.0, 100.0}, {10.2, 12.4}};
+    const std::vector records{discharge_record(synthetic_discharge(pack, clean, 3))};
+    const auto found = identify_battery(records, {2.4, 3, "clean"});
+    EXPECT_NEAR(found.fit.resistance_ohm, 0.08, 1e-4);
+    EXPECT_NEAR(found.fit.rc_resistance_ohm, 0.05, 2e-4);
+    EXPECT_NEAR(found.fit.rc_time_constant_s, 35.0, 0.2);
+    EXPECT_LT(found.fit.rms_v, 1e-3);
+    EXPECT_EQ(found.battery.name, "clean");
+    EXPECT_EQ(found.battery.capacity_ah, 2.4);
+    // What is written is read again as the same battery.
+    const auto again = battery_from(parse_toml(to_toml(found.battery), "b.toml"));
+    EXPECT_EQ(to_toml(again), to_toml(found.battery));
+}
+
+TEST(Identification, AlignsFlightsByTheirRestingVoltage) {
+    SyntheticDischarge late;
+    late.initial_charge_ah = 0.4;
+    const std::vector records{discharge_record(synthetic_discharge(known_pack(), {}, 1)),
+                              discharge_record(synthetic_discharge(known_pack(), late, 2))};
+    const auto found = identify_battery(records, {2.4, {}, ""});
+    EXPECT_EQ(found.flights[0].initial_charge_ah, 0.0);
+    EXPECT_NEAR(found.flights[1].initial_charge_ah, 0.4, 0.02);
+    EXPECT_NEAR(found.fit.knots_ah.back(), 0.4 + found.flights[1].drawn_ah, 0.02);
+    EXPECT_LT(found.fit.rms_v, 0.015);
+    const auto checks = leave_each_out(records, {2.4, {}, ""});
+    ASSERT_EQ(checks.size(), 2U);
+    EXPECT_EQ(checks[0].flight, "synthetic_1");
+    EXPECT_GT(checks[1].beyond_percent, 20.0);  // its end was never flown before
+}
+
+TEST(Identification, ForetellsAFlightWithinItsNoise) {
+    std::vector<DischargeRecord> records;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        records.push_back(discharge_record(synthetic_discharge(known_pack(), {}, seed)));
+    }
+    const double noise_v = std::hypot(SyntheticDischarge{}.voltage_noise_v, 0.006 / std::sqrt(12.0));
+    for (const auto& check : leave_each_out(records, {2.4, {}, ""})) {
+        EXPECT_LT(check.voltage_rms_v, 1.3 * noise_v) << check.flight;
+        EXPECT_GT(check.voltage_rms_v, 0.8 * noise_v) << check.flight;
+    }
+    EXPECT_TRUE(leave_each_out(std::span(records).first(1), {2.4, {}, ""}).empty());
+}
+
+TEST(Identification, SaysWhereNoRcPairIsSeen) {
+    auto pack = known_pack();
+    pack.thevenin->rc_resistance_ohm = 0.0;
+    std::vector<DischargeRecord> records;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        records.push_back(discharge_record(synthetic_discharge(pack, {}, seed)));
+    }
+    const auto found = identify_battery(records, {2.4, {}, ""});
+    EXPECT_EQ(found.errors.rc_resistance_ohm.low, 0.0);
+    EXPECT_LT(found.fit.rc_resistance_ohm, 0.003);
+    EXPECT_GE(found.errors.resistance_ohm.high, 0.08);
+    EXPECT_LE(found.errors.resistance_ohm.low, 0.08);
+}
+
+TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
+    // 12.5 V falling by 1.4 V over 3.2 Ah behind 0.06 ohm. The log's current is power by terminal voltage and
+    // its drop that of power by open-circuit voltage, so the resistance that is seen is up to 2 % off.
+    std::vector<DischargeRecord> records;
+    for (const auto* name : {"01", "02", "03", "04", "05", "06"}) {
+        records.push_back(discharge_record(
+            read_flight(test::source_dir() / "logs" / (std::string("opterra_synthetic_") + name + ".data"))));
+    }
+    const auto found = identify_battery(records, {3.2, {}, ""});
+    EXPECT_NEAR(found.fit.resistance_ohm + found.fit.rc_resistance_ohm, 0.06, 0.02 * 0.06);
+    EXPECT_LT(found.fit.rc_resistance_ohm, 0.001);
+    EXPECT_NEAR(found.fit.open_circuit_v.front(), 12.5, 0.003);
+    const double slope = (found.fit.open_circuit_v.front() - found.fit.open_circuit_v.back()) /
+                         (found.fit.knots_ah.back() - found.fit.knots_ah.front());
+    EXPECT_NEAR(slope, 1.4 / 3.2, 0.01 * 1.4 / 3.2);
+    for (const auto& check : leave_each_out(records, {3.2, {}, ""})) EXPECT_LT(check.voltage_rms_v, 0.001);
+}
+
+TEST(Identification, ForetellsRealFlights) {
+    FLIGHTWATT_NEEDS_SHARED();
+    std::vector<DischargeRecord> records;
+    for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
+        records.push_back(
+            discharge_record(read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
+        EXPECT_GT(records.back().resting_voltage_v, 12.3);  // a pack of 11.1 V that starts full
+    }
+    for (const auto& check : leave_each_out(records, {})) {
+        fmt::print("{} left out: {:.1f} mV RMS, {:.0f} % of it beyond the others\n", check.flight,
+                   1e3 * check.voltage_rms_v, check.beyond_percent);
+        EXPECT_LT(check.voltage_rms_v, 0.120) << check.flight;
+    }
+    const auto found = identify_battery(records, {});
+    fmt::print("resistance {:.4f} ohm [{:.4f}, {:.4f}]\n", found.fit.resistance_ohm,
+               found.errors.resistance_ohm.low, found.errors.resistance_ohm.high);
+    EXPECT_EQ(found.cells, 3);
+    EXPECT_EQ(found.capacity.origin, CapacityOrigin::chart);
+    EXPECT_GT(found.fit.resistance_ohm, 0.05);
+    EXPECT_LT(found.fit.resistance_ohm, 0.2);
+}
+
+}  // namespace
+}  // namespace flightwatt

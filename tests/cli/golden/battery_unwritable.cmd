@@ -1,0 +1,1 @@
+flightwatt battery "$SOURCE"/logs/opterra_synthetic_01.data --capacity 3.2 -o /nowhere/pack.toml

@@ -1,0 +1,145 @@
+// flightwatt battery: flights to the battery that they were flown on.
+
+#include "battery/lipo_chart.h"
+#include "battery_output.h"
+#include "cli/stage.h"
+#include "flight/flight_reader.h"
+#include "flight/power_report.h"
+#include "flight/segmentation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace {
+
+using namespace flightwatt;
+
+IdentificationOptions read_options(const cli::StageCall& call) {
+    IdentificationOptions options;
+    options.capacity_ah = call.maybe<double>("capacity");
+    options.cells = call.maybe<int>("cells");
+    if (options.capacity_ah && !(*options.capacity_ah > 0.0 && std::isfinite(*options.capacity_ah))) {
+        throw UsageError(fmt::format("--capacity is {} Ah, expected more than 0", *options.capacity_ah));
+    }
+    constexpr int most_cells = 24;
+    if (options.cells && (*options.cells < 1 || *options.cells > most_cells)) {
+        throw UsageError(fmt::format("--cells is {}, expected 1 to {}", *options.cells, most_cells));
+    }
+    options.name = call.maybe<std::string>("name").value_or(
+        call.output ? std::filesystem::path(*call.output).stem().string() : "identified");
+    return options;
+}
+
+/// What makes a power record absurd makes a battery record absurd. Without altitude there is no telling.
+std::vector<std::string> absurdities_of(const FlightSeries& series) {
+    return series.altitude_m.empty() ? std::vector<std::string>{}
+                                     : examine_power(series, segment(series)).absurdities;
+}
+
+/// The records that can be used; each flight that cannot is named, with the reason.
+std::vector<DischargeRecord> read_records(const cli::StageCall& call) {
+    const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
+    std::vector<DischargeRecord> records;
+    std::optional<InputError> last_refusal;
+    for (const auto& file : call.inputs) {
+        const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
+        for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
+        try {
+            const auto absurdities = absurdities_of(series);
+            if (!absurdities.empty() && std::find(keep.begin(), keep.end(), series.flight) == keep.end()) {
+                throw InputError({file},
+                                 fmt::format("{}: {}", series.flight, describe_absurdities(absurdities)));
+            }
+            records.push_back(discharge_record(series));
+        } catch (const InputError& error) {
+            if (call.inputs.size() == 1) throw;
+            cli::warn(call, fmt::format("left out: {}", error.what()));
+            last_refusal = error;
+        }
+    }
+    if (records.empty() && last_refusal) throw InputError(*last_refusal);
+    return records;
+}
+
+void warn_if_never_full(const cli::StageCall& call, const BatteryIdentification& identified) {
+    double highest_v = 0.0;
+    for (const auto& flight : identified.flights) highest_v = std::max(highest_v, flight.resting_voltage_v);
+    const double percent = lipo_chart_soc_percent(highest_v / identified.cells);
+    constexpr double as_good_as_full_percent = 85.0;
+    if (percent >= as_good_as_full_percent) return;
+    cli::warn(call,
+              fmt::format("no flight begins full: the fullest rests at {:.3f} V, which for {} LiPo cells "
+                          "is usually {:.0f} %; it counts as 100 %",
+                          highest_v, identified.cells, percent));
+}
+
+void note_what_it_rests_on(const cli::StageCall& call, const BatteryIdentification& identified) {
+    warn_if_never_full(call, identified);
+    if (identified.capacity.origin == CapacityOrigin::given) {
+        cli::note(call, "the capacity is the one given: the flights do not tell it");
+    }
+    if (identified.capacity.origin == CapacityOrigin::chart) {
+        cli::warn(call, fmt::format("the flights do not tell the capacity, as none runs empty: {}; give what "
+                                    "the pack says with --capacity",
+                                    describe(identified.capacity)));
+    }
+    if (identified.known_down_to_percent > 0.0) {
+        cli::note(
+            call,
+            fmt::format("below {:.0f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: "
+                        "it goes on in parallel to the usual chart of {} LiPo cells",
+                        identified.known_down_to_percent, identified.fit.knots_ah.back(), identified.cells));
+    }
+    if (identified.fit.rc_resistance_ohm == 0.0) {
+        cli::warn(call, "no RC pair explains anything: the battery has none");
+    } else if (identified.errors.rc_resistance_ohm.low == 0.0) {
+        cli::warn(call, "the RC pair may be none: its resistance's interval reaches down to 0");
+    }
+}
+
+int identify(const cli::StageCall& call) {
+    const auto options = read_options(call);
+    const auto records = read_records(call);
+    const auto identified = identify_battery(records, options);
+    const auto left_out = leave_each_out(records, options);
+    note_what_it_rests_on(call, identified);
+    if (left_out.empty()) cli::note(call, "a single flight: none can be left out to check the battery");
+    cli::write_result(call, provenance(identified) + to_toml(identified.battery));
+    if (call.json) {
+        cli::print(json_text(to_json(identified, left_out)));
+    } else if (call.output) {
+        cli::print(to_text(parameters_table(identified)) + "\n" +
+                   to_text(flights_table(identified, left_out)));
+    }
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    namespace po = boost::program_options;
+    cli::StageDefinition stage;
+    stage.name = "battery";
+    stage.arguments = "FLIGHT.data|SERIES.csv...";
+    stage.description =
+        "Identifies the battery from the flights' own voltage, current and charge: open-circuit voltage "
+        "over\n"
+        "state of charge, series resistance and one RC pair, with 95 % intervals, for missions (model =\n"
+        "\"thevenin\"). The battery goes to the standard output as TOML; with -o it goes to the file, and "
+        "its\n"
+        "parameters and flights are shown: how well each flight's voltage is met, and how well the others\n"
+        "foretell it. The fullest flight begins at 100 %, the others where their resting voltage lies. "
+        "Flights\n"
+        "whose current was computed from throttle are refused.";
+    stage.options.add_options()("capacity", po::value<double>()->value_name("AH"),
+                                "the pack's capacity; without it, what a flight drew from full to empty, or "
+                                "else a guess after the usual chart of LiPo cells")(
+        "cells", po::value<int>()->value_name("N"),
+        "cells in series; default: by the highest resting voltage")(
+        "name", po::value<std::string>()->value_name("NAME"), "the battery's name; default: FILE's")(
+        "keep", po::value<std::vector<std::string>>()->value_name("FLIGHT")->composing(),
+        "use this flight though its power record is absurd")(
+        "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
+    return cli::run_stage(argc, argv, stage, identify);
+}
