@@ -4,12 +4,16 @@
 #include "fit_options.h"
 #include "flight/flight_reader.h"
 #include "flight/power_report.h"
+#include "mechanical/covariates.h"
 #include "mechanical/measured_flight.h"
 #include "validation_output.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+
+#include <boost/algorithm/string/split.hpp>
+#include <fmt/ranges.h>
 
 namespace {
 
@@ -48,10 +52,61 @@ std::vector<MeasuredFlight> read_flights(const cli::StageCall& call, const std::
     return in_cruise;
 }
 
-std::string report(const std::vector<ValidatedFlight>& flights, bool in_flight) {
+/// --covariate NAME[,NAME] or all.
+std::vector<Covariate> read_covariates(const cli::StageCall& call) {
+    const auto text = call.maybe<std::string>("covariate");
+    if (!text) return {};
+    if (call.has("until")) {
+        throw UsageError("--covariate is for predictions before the flight: leave out it or --until");
+    }
+    if (*text == "all") return {all_covariates.begin(), all_covariates.end()};
+    std::vector<std::string> names;
+    boost::algorithm::split(names, *text, [](char c) { return c == ','; });
+    std::vector<Covariate> covariates;
+    for (const auto& name : names) {
+        const auto covariate = covariate_from(name);
+        if (!covariate) {
+            std::vector<std::string_view> known{"all"};
+            for (const auto c : all_covariates) known.push_back(to_string(c));
+            throw UsageError(fmt::format("--covariate {}: expected {}", name, fmt::join(known, ", ")));
+        }
+        if (std::find(covariates.begin(), covariates.end(), *covariate) == covariates.end()) {
+            covariates.push_back(*covariate);
+        }
+    }
+    return covariates;
+}
+
+/// Which covariates beat the constant mean in cruise, and which cannot be judged.
+std::string verdicts_on(const std::vector<Covariate>& covariates,
+                        const std::vector<ValidatedFlight>& flights) {
+    std::string text;
+    const auto mean = score_of(flights, "constant_mean", Phase::cruise);
+    for (const auto covariate : covariates) {
+        const auto model = fmt::format("by_{}", to_string(covariate));
+        const auto score = score_of(flights, model, Phase::cruise);
+        if (!score || !mean) {
+            text += fmt::format("cruise: {} is not known of all flights\n", model);
+            continue;
+        }
+        text += fmt::format(
+            "cruise: {} {} constant_mean: {:.3f} Wh against {:.3f} Wh\n", model,
+            score->mean_absolute_error_wh < mean->mean_absolute_error_wh ? "beats" : "does not beat",
+            score->mean_absolute_error_wh, mean->mean_absolute_error_wh);
+    }
+    if (!covariates.empty() && flights.size() <= 3) {
+        text +=
+            "a line through 2 flights or fewer fits any covariate: what beats the mean here may be chance\n";
+    }
+    return text;
+}
+
+std::string report(const std::vector<ValidatedFlight>& flights, const std::vector<Covariate>& covariates,
+                   bool in_flight) {
     auto text = to_text(flights_table(flights)) + "\n" + to_text(scores_table(flights)) + "\n" +
                 verdict(flights, "fourier", "constant_mean");
     if (in_flight) text += verdict(flights, "in_flight", "fourier");
+    text += verdicts_on(covariates, flights);
     constexpr std::size_t few = 20;
     if (flights.size() < few) {
         text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n",
@@ -66,13 +121,14 @@ int validate_flights(const cli::StageCall& call) {
     if (until_s && !(*until_s > 0.0 && std::isfinite(*until_s))) {
         throw UsageError(fmt::format("--until is {}, expected more than 0 s since lift-off", *until_s));
     }
+    const auto covariates = read_covariates(call);
     std::vector<MeasuredFlight> flights;
     for (const auto& file : call.inputs) {
         auto read = read_flights(call, file, samples_needed(options.phases.order));
         std::move(read.begin(), read.end(), std::back_inserter(flights));
     }
-    const auto validated = leave_one_out(flights, options);
-    cli::write_result(call, report(validated, until_s.has_value()));
+    const auto validated = leave_one_out(flights, options, covariates);
+    cli::write_result(call, report(validated, covariates, until_s.has_value()));
     if (call.json) cli::print(scores_json(validated).dump(2) + "\n");
     return cli::ok;
 }
@@ -108,6 +164,12 @@ int main(int argc, char** argv) {
     add_keep_option(stage.options);
     stage.options.add_options()("until", po::value<double>()->value_name("S"),
                                 "validate the prediction in flight, S seconds after lift-off")(
-        "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
+        "covariate", po::value<std::string>()->value_name("NAME[,NAME]"),
+        "also foretell the cruise by what is known before the flight (height_m, initial_voltage_v) or in the "
+        "first "
+        "60 s of the cruise (wind_m_per_s, airspeed_m_per_s, ground_speed_m_per_s, "
+        "airspeed_cubed_m3_per_s3), or "
+        "all: one further model by_NAME each")("aircraft", po::value<std::string>()->value_name("ID"),
+                                               "the aircraft to read, where several flew");
     return cli::run_stage(argc, argv, stage, validate_flights);
 }

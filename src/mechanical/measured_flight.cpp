@@ -1,6 +1,7 @@
 #include "mechanical/measured_flight.h"
 
 #include "flight/phase_statistics.h"
+#include "mechanical/covariates.h"
 
 #include <utility>
 
@@ -19,6 +20,9 @@ MeasuredFlights measure_flights(const FlightSeries& series, const FlightPhases& 
         if (selection.flights.empty()) continue;
         MeasuredFlight flight;
         flight.samples = std::move(selection.flights.front());
+        if (auto& cruise = flight.samples.phases[Phase::cruise]) {
+            cruise->covariates = covariates_of(series, phases.sorties[s]);
+        }
         for (const auto& span : phases.sorties[s].phases) {
             if (!flight.samples.phases[span.phase]) continue;
             const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "mechanical/baselines.h"
+#include "mechanical/covariates.h"
 #include "mechanical/prediction.h"
 
 #include <algorithm>
@@ -57,6 +58,18 @@ EnergyEstimate after(double known_wh, EnergyEstimate rest) {
     return rest;
 }
 
+std::string model_of(Covariate covariate) { return fmt::format("by_{}", to_string(covariate)); }
+
+void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Covariate> covariates) {
+    const double duration_s = fold.flown.duration_s;
+    for (const auto covariate : covariates) {
+        const auto power = fold.phase == Phase::cruise
+                               ? power_by_covariate(fold.others, fold.flown, covariate)
+                               : constant_mean(fold.others);
+        if (power) estimates.emplace_back(model_of(covariate), energy_of(*power, duration_s));
+    }
+}
+
 Estimates predict_phase(const Fold& fold, const ModelFitOptions& options) {
     const double duration_s = fold.flown.duration_s;
     const auto mean = constant_mean(fold.others);
@@ -105,8 +118,13 @@ Estimates predict_cruise_in_flight(const Fold& fold, const FlownSoFar& flown, do
     return estimates;
 }
 
-Estimates estimates_of(const MeasuredFlight& left_out, const Fold& fold, const ModelFitOptions& options) {
-    if (!left_out.flown) return predict_phase(fold, options);
+Estimates estimates_of(const MeasuredFlight& left_out, const Fold& fold, const ModelFitOptions& options,
+                       std::span<const Covariate> covariates) {
+    if (!left_out.flown) {
+        auto estimates = predict_phase(fold, options);
+        add_covariates(estimates, fold, covariates);
+        return estimates;
+    }
     if (fold.phase == Phase::takeoff) return {};
     if (fold.phase == Phase::landing) return predict_landing_in_flight(fold, options);
     const double remaining_s = fold.flown.duration_s - left_out.flown->cruise_s();
@@ -122,14 +140,14 @@ FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& mode
 }
 
 ValidatedFlight validate_flight(const MeasuredFlight& left_out, std::span<const FlightSamples> others,
-                                const ModelFitOptions& options) {
+                                const ModelFitOptions& options, std::span<const Covariate> covariates) {
     ValidatedFlight flight{left_out.samples.flight, {}, {}, {}};
     for (const auto phase : all_phases) {
         if (!left_out.samples.phases[phase]) continue;
         const Fold fold{phase, *left_out.samples.phases[phase], phases_of(others, phase),
                         nearest_with(phase, others, left_out.samples)};
         if (fold.others.empty()) continue;
-        for (const auto& [model, estimate] : estimates_of(left_out, fold, options)) {
+        for (const auto& [model, estimate] : estimates_of(left_out, fold, options, covariates)) {
             prediction_of(flight, model).phases[phase] = estimate;
             flight.measured_wh[phase] = left_out.energy_wh[phase];
             flight.counter_wh[phase] = left_out.counter_energy_wh[phase];
@@ -146,7 +164,8 @@ ValidatedFlight validate_flight(const MeasuredFlight& left_out, std::span<const 
 }  // namespace
 
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights,
-                                           const ModelFitOptions& options) {
+                                           const ModelFitOptions& options,
+                                           std::span<const Covariate> covariates) {
     if (flights.size() < 2) {
         throw NoAnswerError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
@@ -164,7 +183,7 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
         for (std::size_t i = 0; i < flights.size(); ++i) {
             if (i != left_out) others.push_back(flights[i].samples);
         }
-        validated.push_back(validate_flight(flights[left_out], others, options));
+        validated.push_back(validate_flight(flights[left_out], others, options, covariates));
     }
     return validated;
 }

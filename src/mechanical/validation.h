@@ -39,13 +39,16 @@ struct ValidatedFlight {
 ///   nearest_flight   the mean power of the flight with the nearest durations
 ///   airspeed_cubed   cruise: AirspeedLaw at the airspeed that was flown, as if it had been known; other
 ///                    phases as constant_mean; only if the flight and two others measured airspeed
+///   by_NAME          cruise: power_by_covariate, for each of `covariates`; other phases as constant_mean
 /// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without
-/// airspeed_cubed) say of the rest of the cruise is added to what was measured until then, and beside them
+/// airspeed_cubed and covariates) say of the rest of the cruise is added to what was measured until then, and
+/// beside them
 ///   in_flight            predict_rest by the curve
 ///   in_flight_constant   predict_rest by the curve's mean
 ///   in_flight_airspeed   predict_rest by the airspeed so far
 /// Throws NoAnswerError for fewer than 2 flights, and what fit_phase_model throws.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights,
-                                           const ModelFitOptions& options = {});
+                                           const ModelFitOptions& options = {},
+                                           std::span<const Covariate> covariates = {});
 
 }  // namespace flightwatt
