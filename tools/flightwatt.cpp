@@ -31,6 +31,7 @@ constexpr StageLine stages[] = {
     {"batch", "parse, segment and fit every log of a folder, incrementally"},
     {"simulate", "a mission file to its state of charge over time"},
     {"compare", "several missions, ranked by final state of charge"},
+    {"plan", "the schedule worth most that lands a mission with its reserve"},
     {"synthesize", "made-up Paparazzi logs of flights after a model"},
 };
 

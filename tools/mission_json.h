@@ -14,6 +14,7 @@ inline nlohmann::ordered_json to_json(const MissionSummary& summary) {
     };
     nlohmann::ordered_json json;
     json["mission"] = summary.mission;
+    if (!summary.schedule.empty()) json["schedule"] = summary.schedule;
     json["final_soc_percent"] = or_null(summary.final_soc_percent);
     json["energy_wh"] = summary.energy_wh;
     json["mechanical_energy_wh"] = summary.mechanical_energy_wh;
@@ -25,6 +26,7 @@ inline nlohmann::ordered_json to_json(const MissionSummary& summary) {
     json["feasible"] = summary.feasible;
     json["reserve_soc_percent"] = summary.reserve_soc_percent;
     json["keeps_reserve"] = summary.keeps_reserve;
+    if (summary.utility) json["utility"] = *summary.utility;
     return json;
 }
 

@@ -42,13 +42,20 @@ TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
     const bool cut_off =
         std::any_of(ranked.begin(), ranked.end(), [](const auto& s) { return s.cut_off_at_s.has_value(); });
     if (cut_off) table.header.emplace_back("cut_off_at_s");
+    const bool has_utility = std::any_of(ranked.begin(), ranked.end(),
+                                         [](const auto& summary) { return summary.utility.has_value(); });
+    if (has_utility) table.header.emplace_back("utility");
     for (std::size_t i = 0; i < ranked.size(); ++i) {
         const auto& summary = ranked[i];
-        table.rows.push_back({fmt::format("{}", i + 1), summary.mission, cell(summary.final_soc_percent, 2),
+        const auto name = summary.schedule.empty()
+                              ? summary.mission
+                              : fmt::format("{} ({})", summary.mission, summary.schedule);
+        table.rows.push_back({fmt::format("{}", i + 1), name, cell(summary.final_soc_percent, 2),
                               cell(summary.energy_wh, 3), cell(summary.mechanical_energy_wh, 3),
                               cell(summary.compute_energy_wh, 3), cell(summary.duration_s, 1),
                               cell(summary.depleted_at_s, 1)});
         if (cut_off) table.rows.back().push_back(cell(summary.cut_off_at_s, 1));
+        if (has_utility) table.rows.back().push_back(cell(summary.utility, 3));
     }
     return table;
 }

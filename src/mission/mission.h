@@ -3,7 +3,9 @@
 #include "battery/battery.h"
 #include "compute/compute_model.h"
 #include "mechanical/mechanical_model.h"
+#include "mission/plan_settings.h"
 #include "mission/schedule.h"
+#include "mission/utility.h"
 
 #include <filesystem>
 #include <optional>
@@ -22,10 +24,20 @@ struct Mission {
     PerPhase<double> duration_s;  ///< as flown; 0 leaves a phase out
     Battery battery;
     ComputeModel compute;
-    std::vector<Stretch> schedule;  ///< in order, covers each instant of each phase exactly once
+    std::vector<std::optional<Utility>> utilities;  ///< one a component (or none at all)
+    /// In order, covers each instant of each phase exactly once; of a mission that is yet to be planned, only
+    /// what is fixed beforehand.
+    std::vector<Stretch> schedule;
     double initial_soc_percent = 100.0;
     double cutoff_voltage_v = 0.0;     ///< the battery is cut off below it; 0: never
     double reserve_soc_percent = 0.0;  ///< what should be left at the end
+    std::optional<PlanSettings> plan;  ///< the schedule is yet to be planned
+};
+
+/// What else than the file decides how a mission is read.
+struct MissionReading {
+    bool may_lack_schedule = false;  ///< accept a mission that is yet to be planned
+    std::optional<double> cruise_s;  ///< fly the cruise this long, whatever the file says
 };
 
 /// Reads a mission file:
@@ -43,13 +55,20 @@ struct Mission {
 ///     [components.detection]
 ///     profile = "../detection.csv"            # any format of compute/profile_reader.h
 ///     parameters = ["fps"]                    # names for a profile that has none; or `columns`
+///     utility = { parameter = "fps" }         # of a component: what its quality is worth, see
+///                                             # mission/utility_toml.h
+///     [plan]                                  # the schedule is yet to be planned, [[schedule]] says what
+///                                             # is fixed: see mission/plan_settings_toml.h
 ///     [[schedule]]                            # see mission/schedule_toml.h
 ///
-/// Paths are relative to the mission file. Throws InputError, placed in the file that is wrong, for a missing
-/// file, a key missing, unknown or out of range, and whatever schedules and models refuse.
-Mission read_mission(const std::filesystem::path& path);
+/// A mission with components and neither [[schedule]] nor [plan] is yet to be planned too; one of these two
+/// is refused unless `reading` accepts it. Paths are relative to the mission file. Throws InputError, placed
+/// in the file that is wrong, for a missing file, a key missing, unknown or out of range, and whatever
+/// schedules and models refuse.
+Mission read_mission(const std::filesystem::path& path, const MissionReading& reading = {});
 
 /// The same from text; `path` names it and is where relative paths start.
-Mission parse_mission(std::string_view text, const std::filesystem::path& path);
+Mission parse_mission(std::string_view text, const std::filesystem::path& path,
+                      const MissionReading& reading = {});
 
 }  // namespace flightwatt

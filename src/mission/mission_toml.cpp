@@ -1,7 +1,9 @@
 #include "base/atomic_file.h"
 #include "compute/profile_reader.h"
 #include "mission/mission.h"
+#include "mission/plan_settings_toml.h"
 #include "mission/schedule_toml.h"
+#include "mission/utility_toml.h"
 
 #include <fmt/format.h>
 
@@ -91,7 +93,7 @@ Battery read_mission_battery(const TomlTable& root) {
 }
 
 Component read_component(const TomlTable& table, const std::string& name) {
-    table.refuse_keys_except({"profile", "parameters", "columns"});
+    table.refuse_keys_except({"profile", "parameters", "columns", "utility"});
     ProfileNaming naming;
     naming.where = table.where();
     for (const std::string_view key : {"parameters", "columns"}) {
@@ -105,29 +107,45 @@ Component read_component(const TomlTable& table, const std::string& name) {
     return {name, read_power_profile(file_of(table, "profile"), naming)};
 }
 
-ComputeModel read_components(const TomlTable& root) {
-    ComputeModel compute;
-    if (const auto components = root.optional_table("components")) {
-        for (const auto& name : components->keys()) {
-            compute.components.push_back(read_component(components->table(name), name));
+void read_components(const TomlTable& root, Mission& mission) {
+    const auto components = root.optional_table("components");
+    if (!components) return;
+    for (const auto& name : components->keys()) {
+        const auto table = components->table(name);
+        mission.compute.components.push_back(read_component(table, name));
+        std::optional<Utility> utility;
+        if (const auto stated = table.optional_table("utility")) {
+            utility = read_utility(*stated, mission.compute.components.back().profile);
         }
+        mission.utilities.push_back(std::move(utility));
     }
-    return compute;
 }
 
-std::vector<ScheduleEntry> read_mission_schedule(const TomlTable& root, const Mission& mission) {
-    if (root.has("schedule")) {
-        auto entries = read_schedule(root, mission.compute, mission.duration_s);
-        if (!entries.empty()) return entries;
-    }
-    if (!mission.compute.components.empty()) {
+/// The stretches that are fixed, the rest to be planned; or, as it should be, the whole schedule.
+void read_mission_schedule(const TomlTable& root, const MissionReading& reading, Mission& mission) {
+    auto entries = read_schedule(root, mission.compute, mission.duration_s);
+    const bool lacks_schedule = entries.empty() && !mission.compute.components.empty();
+    if (lacks_schedule && !root.has("plan") && !reading.may_lack_schedule) {
         throw InputError(root.where("components"), "there are components and no [[schedule]] that runs them",
-                         "add [[schedule]] with otherwise = true and run = { ... }");
+                         "add [[schedule]] with otherwise = true and run = { ... }, or let `flightwatt plan` "
+                         "make a schedule");
     }
-    ScheduleEntry nothing;  // mechanical only: nothing runs, all the time
-    nothing.otherwise = true;
-    nothing.where = root.where();
-    return {nothing};
+    if (root.has("plan") && !reading.may_lack_schedule) {
+        throw InputError(root.where("plan"), "this mission has no complete schedule: it is yet to be planned",
+                         "`flightwatt plan` makes one; without [plan], [[schedule]] is taken as complete");
+    }
+    if (lacks_schedule || root.has("plan")) {
+        mission.plan = read_plan_settings(root, mission.compute);
+        mission.schedule = lay_out_fixed(entries, mission.duration_s);
+        return;
+    }
+    if (entries.empty()) {
+        ScheduleEntry nothing;  // mechanical only: nothing runs, all the time
+        nothing.otherwise = true;
+        nothing.where = root.where();
+        entries.push_back(nothing);
+    }
+    mission.schedule = lay_out(entries, mission.duration_s);
 }
 
 double read_initial_soc(const TomlTable& root) {
@@ -142,27 +160,31 @@ double read_initial_soc(const TomlTable& root) {
 
 }  // namespace
 
-Mission parse_mission(std::string_view text, const std::filesystem::path& path) {
+Mission parse_mission(std::string_view text, const std::filesystem::path& path,
+                      const MissionReading& reading) {
     const auto root = parse_toml(text, path.string());
     root.refuse_keys_except({"name", "mechanical", "duration_s", "phase_clock", "battery",
                              "initial_soc_percent", "capacity_ah", "cutoff_voltage_v", "reserve_soc_percent",
-                             "components", "schedule"});
+                             "components", "schedule", "plan"});
     Mission mission;
     mission.file = path.string();
     mission.name = root.optional_string("name").value_or(path.stem().string());
     mission.mechanical = read_mechanical(root);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
     mission.duration_s = read_durations(root, mission.mechanical);
+    if (reading.cruise_s) mission.duration_s[Phase::cruise] = *reading.cruise_s;
     mission.battery = read_mission_battery(root);
-    mission.compute = read_components(root);
+    read_components(root, mission);
     mission.initial_soc_percent = read_initial_soc(root);
     mission.cutoff_voltage_v = optional_between(root, "cutoff_voltage_v", 0.0, 1e6, true).value_or(0.0);
     mission.reserve_soc_percent =
         optional_between(root, "reserve_soc_percent", 0.0, 100.0, true).value_or(0.0);
-    mission.schedule = lay_out(read_mission_schedule(root, mission), mission.duration_s);
+    read_mission_schedule(root, reading, mission);
     return mission;
 }
 
-Mission read_mission(const std::filesystem::path& path) { return parse_mission(read_file(path), path); }
+Mission read_mission(const std::filesystem::path& path, const MissionReading& reading) {
+    return parse_mission(read_file(path), path, reading);
+}
 
 }  // namespace flightwatt

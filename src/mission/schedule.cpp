@@ -130,4 +130,27 @@ std::vector<Stretch> lay_out(const std::vector<ScheduleEntry>& entries, const Pe
     return stretches;
 }
 
+std::vector<Stretch> lay_out_fixed(const std::vector<ScheduleEntry>& entries,
+                                   const PerPhase<double>& duration_s) {
+    for (const auto& entry : entries) {
+        if (!entry.otherwise) continue;
+        throw InputError(entry.where, "`otherwise` leaves nothing to plan",
+                         "take it out: what no other entry fixes is planned");
+    }
+    std::vector<Stretch> stretches;
+    for (const auto phase : all_phases) {
+        const double tolerance_s = same_time_tolerance_s(duration_s[phase]);
+        refuse_overlaps(entries, phase, tolerance_s);
+        double covered_s = 0.0;
+        for (const auto* entry : explicit_entries(entries, phase)) {
+            const double from_s = entry->from_s > covered_s + tolerance_s ? entry->from_s : covered_s;
+            const double to_s =
+                entry->to_s >= duration_s[phase] - tolerance_s ? duration_s[phase] : entry->to_s;
+            stretches.push_back({phase, from_s, to_s, entry->run});
+            covered_s = to_s;
+        }
+    }
+    return stretches;
+}
+
 }  // namespace flightwatt

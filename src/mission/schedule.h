@@ -39,4 +39,10 @@ constexpr double same_time_tolerance_s(double phase_duration_s) {
 /// `otherwise` fills, or an `otherwise` that is there twice or has nothing left to cover.
 std::vector<Stretch> lay_out(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s);
 
+/// The stretches of the explicit entries alone, in order: what is fixed of a schedule yet to be planned.
+/// Throws InputError for two entries at the same time, and for `otherwise`, which would leave nothing to
+/// plan.
+std::vector<Stretch> lay_out_fixed(const std::vector<ScheduleEntry>& entries,
+                                   const PerPhase<double>& duration_s);
+
 }  // namespace flightwatt

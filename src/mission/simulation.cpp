@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 #include "mission/demand.h"
+#include "mission/mission_utility.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,6 +122,7 @@ MissionSummary summarize(const Mission& mission, const std::vector<Demand>& dema
     summary.feasible = !summary.undeliverable && !summary.depleted_at_s && !summary.cut_off_at_s;
     summary.reserve_soc_percent = mission.reserve_soc_percent;
     summary.keeps_reserve = summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent;
+    summary.utility = mean_worth(mission, delivered_until_s);
     return summary;
 }
 
@@ -128,7 +130,7 @@ MissionSummary summarize(const Mission& mission, const std::vector<Demand>& dema
 
 Simulation simulate(const Mission& mission, const SimulationSteps& steps) {
     const auto demands = demands_of(mission);
-    if (demands.empty()) throw std::invalid_argument("simulate: the mission has no schedule");
+    if (demands.empty() || mission.plan) throw std::invalid_argument("simulate: the mission has no schedule");
     require_output_step(steps.output_s, demands.back().to_s);
     SocCurve curve;
     Discharge state{mission.initial_soc_percent, std::nullopt, std::nullopt};

@@ -32,6 +32,7 @@ struct SocCurve {
 /// battery's end.
 struct MissionSummary {
     std::string mission;
+    std::string schedule;  ///< how it came about, "optimal", if the mission did not give it
     std::optional<double> final_soc_percent;  ///< none if the battery cannot deliver the power
     double mechanical_energy_wh = 0.0;
     double compute_energy_wh = 0.0;
@@ -41,6 +42,9 @@ struct MissionSummary {
     std::optional<double> depleted_at_s;  ///< when the battery was empty, if before the mission's end
     std::optional<double> cut_off_at_s;   ///< when its voltage fell below the cut-off, if before the end
     std::optional<Undeliverable> undeliverable;
+    /// Mean worth a second over the whole mission (of a linear utility of FPS with weight 1: mean FPS), where
+    /// the mission states utilities. What would run after the battery's end is worth nothing.
+    std::optional<double> utility;
     bool feasible = false;  ///< the battery lasts: empty at the very end counts, any earlier does not
     double reserve_soc_percent = 0.0;  ///< what the mission asks to be left
     bool keeps_reserve = false;        ///< feasible, and the reserve is left

@@ -272,7 +272,7 @@ TEST(MissionToml, RefusesAMissionThatDoesNotFitItsParts) {
     EXPECT_EQ(of(flight + "[components.detection]\nprofile = \"detection.csv\"\n"),
               "m.toml:3:2: there are components and no [[schedule]] that runs them; add [[schedule]] with "
               "otherwise = "
-              "true and run = { ... }");
+              "true and run = { ... }, or let `flightwatt plan` make a schedule");
     EXPECT_EQ(of(flight + "[[schedule]]\notherwise = true\nrun = { detection = { fps = 1 } }\n"),
               "m.toml:5:9: there is no component 'detection'; the mission has no [components.NAME]");
     EXPECT_EQ(of(flight + "phase_clock = \"stretched\"\n"),

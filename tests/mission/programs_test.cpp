@@ -207,7 +207,7 @@ TEST(Compare, ReproducesThePaper) {
     for (const auto& summary : nlohmann::json::parse(result.out)) names.push_back(summary["mission"]);
     EXPECT_THAT(
         names, testing::ElementsAre("computing-only", "mechanical-only", "invariant-5.8fps-32bit", "adaptive",
-                                    "invariant-10fps-240bit", "phased", "invariant-32fps-448bit"));
+                                    "plan", "invariant-10fps-240bit", "phased", "invariant-32fps-448bit"));
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "mission/mission.h"
+
+#include <vector>
+
+namespace flightwatt {
+
+/// Standard deviation [points] of what a mission drains, from how the flights' mean powers differ: of each
+/// phase, the drain of one standard deviation more mechanical power for as long as it is flown, beside the
+/// configuration that draws most; the phases' variances add. The deviation of a flight from a model of few
+/// flights is the predictive one of mechanical/prediction.h. Without resistance the drain is linear in power,
+/// so that Gaussian levels make a Gaussian drain; with it, this errs on the safe side. Throws
+/// InputError where there is no mechanical model, or one that does not say how flights differ; NoAnswerError
+/// where the battery could not deliver that power.
+double drain_sd_percent(const Mission& mission, const std::vector<Configuration>& configurations);
+
+/// What to plan for above a reserve, so that it is kept with `probability` (from 0.5, below 1): that quantile
+/// of a Gaussian with the deviation above, taken as known. Throws std::invalid_argument for other
+/// probabilities.
+double margin_percent(const Mission& mission, const std::vector<Configuration>& configurations,
+                      double probability);
+
+}  // namespace flightwatt

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "mission/drain_table.h"
+#include "mission/mission.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace flightwatt {
+
+/// What all plans of a mission have in common, whenever they are made: configurations with their worth, and
+/// what they drain.
+struct Planner {
+    DrainTable drains;                ///< its configurations are the choices
+    std::vector<double> worth_per_s;  ///< of each of them
+    std::size_t free_choices = 0;     ///< the first so many may be chosen; the others are only fixed
+};
+
+/// The configurations that the mission's [plan] allows, without those that draw more than another one that is
+/// worth as much, and those that its fixed stretches run. Throws InputError if the mission states no utility,
+/// or has more than a million combinations.
+Planner make_planner(const Mission& mission);
+
+/// The configuration that the mission's [plan] allows and that draws least.
+Configuration weakest_configuration(const Mission& mission);
+
+/// A part of a phase in which one configuration runs throughout.
+struct MissionSlot {
+    Phase phase = Phase::takeoff;
+    double from_s = 0.0;  ///< since the phase began
+    double to_s = 0.0;
+    std::optional<Configuration> fixed;
+};
+
+/// The mission from `time_s` on: fixed stretches, and between them slots that end at multiples of slot_s
+/// since their phase began, or where a fixed stretch or the phase does. Throws InputError for more than 20000
+/// slots.
+std::vector<MissionSlot> slots_of(const Mission& mission, double time_s = 0.0);
+
+}  // namespace flightwatt

@@ -1,0 +1,1 @@
+flightwatt plan --help

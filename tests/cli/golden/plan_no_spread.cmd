@@ -1,0 +1,1 @@
+flightwatt plan "$SOURCE/missions/paper/plan.toml" --probability 0.95

@@ -1,0 +1,1 @@
+flightwatt plan --outptu x something

@@ -1,0 +1,266 @@
+#include "mission/plan.h"
+
+#include "base/atomic_file.h"
+#include "base/units.h"
+#include "mission/drain_spread.h"
+#include "mission/planned_mission_toml.h"
+#include "test_paths.h"
+
+#include <chrono>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+Mission paper(const std::string& name) {
+    return read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"), {true, std::nullopt});
+}
+
+Mission paper_with_reserve(double reserve_soc_percent) {
+    auto mission = paper("plan");
+    mission.reserve_soc_percent = reserve_soc_percent;
+    return mission;
+}
+
+/// Every schedule of a mission of few slots, simulated.
+double best_simulated(const Mission& mission) {
+    const auto planner = make_planner(mission);
+    const auto slots = slots_of(mission);
+    std::vector<std::size_t> choices(slots.size(), 0);
+    double best = -1.0;
+    for (;;) {
+        auto flown = mission;
+        flown.plan.reset();
+        flown.schedule.clear();
+        for (std::size_t i = 0; i < slots.size(); ++i) {
+            flown.schedule.push_back({slots[i].phase, slots[i].from_s, slots[i].to_s,
+                                      slots[i].fixed.value_or(planner.drains.configurations[choices[i]])});
+        }
+        const auto summary = simulate(flown, {1e3, 1.0}).summary;
+        if (summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent) {
+            best = std::max(best, *summary.utility);
+        }
+        std::size_t i = 0;
+        while (i < choices.size() && (slots[i].fixed || ++choices[i] == planner.free_choices))
+            choices[i++] = 0;
+        if (i == choices.size()) return best;
+    }
+}
+
+TEST(Plan, ReachesThePapersAdaptiveScheduleWithItsReserve) {
+    const auto adaptive = simulate(paper("adaptive")).summary;
+    const auto mission = paper("plan");
+    EXPECT_NEAR(mission.reserve_soc_percent, *adaptive.final_soc_percent, 1e-9);
+    EXPECT_LE(mission.reserve_soc_percent, *adaptive.final_soc_percent);
+    const auto plan = plan_mission(mission);
+    ASSERT_TRUE(plan.plan.feasible);
+    EXPECT_GE(*plan.summary.utility, *adaptive.utility - 1e-12);
+    EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.001);
+    EXPECT_GE(*plan.summary.final_soc_percent, mission.reserve_soc_percent);
+}
+
+TEST(Plan, SpendsWhatTheReserveLeaves) {
+    double last = 0.0;
+    for (const double reserve : {7.0, 5.0, 2.0, 0.0}) {
+        const auto plan = plan_mission(paper_with_reserve(reserve));
+        ASSERT_TRUE(plan.plan.feasible) << reserve;
+        EXPECT_GE(*plan.summary.final_soc_percent, reserve);
+        EXPECT_LE(*plan.summary.final_soc_percent, reserve + 0.05) << "a slot's worth is left unused";
+        EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.001) << reserve;
+        EXPECT_NEAR(plan.plan.utility, *plan.summary.utility, 1e-9);
+        EXPECT_GT(*plan.summary.utility, last);
+        last = *plan.summary.utility;
+        for (const auto& stretch : plan.flown.schedule) {
+            const bool middle = stretch.phase == Phase::cruise && stretch.from_s == 240.0;
+            EXPECT_EQ(stretch.run == (Configuration{{0, {32.0}}, {1, {448.0}}}), middle);
+        }
+    }
+}
+
+TEST(Plan, BeatsThePhasedScheduleWithWhatThatSpends) {
+    const auto phased = simulate(paper("phased")).summary;
+    const auto plan = plan_mission(paper_with_reserve(*phased.final_soc_percent));
+    ASSERT_TRUE(plan.plan.feasible);
+    EXPECT_GT(*plan.summary.utility, *phased.utility * 1.3);  // it does not pay for long keys
+}
+
+TEST(Plan, IsTheBestOfAllSimulatedSchedules) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    int feasible = 0;
+    for (int i = 0; i < 12; ++i) {
+        auto mission = paper("plan");
+        mission.plan->slot_s = 100.0;
+        mission.plan->choices[0].levels = {{5.8, 12.0 + 20.0 * uniform(random)}};
+        mission.plan->choices[1].levels = {{32.0}};
+        mission.battery = {"", 3.6, i % 2 == 0 ? 0.0 : 0.01, 3.4};
+        const double least = simulate(with_least_schedule(mission)).summary.final_soc_percent.value();
+        mission.reserve_soc_percent = uniform(random) * least;
+        const auto plan = plan_mission(mission);
+        const double best = best_simulated(mission);
+        ASSERT_EQ(plan.plan.feasible, best >= 0.0);
+        if (!plan.plan.feasible) continue;
+        ++feasible;
+        EXPECT_NEAR(*plan.summary.utility, best, 1e-5 * best);
+        EXPECT_GE(plan.plan.bound, best - 1e-9);
+    }
+    EXPECT_EQ(feasible, 12);
+}
+
+TEST(Plan, KeepsTheDwellTime) {
+    auto mission = paper_with_reserve(2.0);
+    const double without = *plan_mission(mission).summary.utility;
+    mission.plan->dwell_s = 70.0;
+    const auto plan = plan_mission(mission);
+    ASSERT_TRUE(plan.plan.feasible);
+    EXPECT_LE(*plan.summary.utility, without + 1e-9);
+    EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.001);
+    const auto& schedule = plan.flown.schedule;
+    for (std::size_t i = 0; i < schedule.size();) {
+        double lasts_s = 0.0;
+        const auto& run = schedule[i].run;
+        for (; i < schedule.size() && schedule[i].run == run; ++i)
+            lasts_s += schedule[i].to_s - schedule[i].from_s;
+        EXPECT_GE(lasts_s, 70.0 - 1e-9);
+    }
+}
+
+TEST(Plan, MayBeMadeAnewInFlight) {
+    const auto mission = paper_with_reserve(2.0);
+    const auto planner = make_planner(mission);
+    const auto whole = plan_rest(mission, planner, {0.0, 100.0, {}, 0.0}, 2.0);
+    // Half way, with what the plan itself has left by then, the rest is as good.
+    const auto flown = plan_mission(mission).flown;
+    const auto curve = simulate(flown, {300.0, 0.1}).curve;
+    const auto at = std::find_if(curve.rows.begin(), curve.rows.end(),
+                                 [](const auto& row) { return row.time_s == 300.0; });
+    ASSERT_NE(at, curve.rows.end());
+    const auto begin = std::chrono::steady_clock::now();
+    const auto rest = plan_rest(mission, planner, {300.0, at->soc_percent, {}, 0.0}, 2.0);
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+    RecordProperty("milliseconds", std::to_string(took.count()));
+    ASSERT_TRUE(rest.feasible);
+    EXPECT_GE(rest.final_soc_percent, 2.0 - 1e-9);
+    EXPECT_EQ(rest.schedule.front().from_s, 300.0 - 28.0);
+    EXPECT_EQ(rest.schedule.front().run, (Configuration{{0, {32.0}}, {1, {448.0}}}));  // still fixed
+    double worth_before = 0.0;
+    for (const auto& s : whole.schedule) {
+        const double begins_s = s.phase == Phase::takeoff ? 0.0 : s.phase == Phase::cruise ? 28.0 : 628.0;
+        const double before_s = std::min(begins_s + s.to_s, 300.0) - (begins_s + s.from_s);
+        if (before_s > 0.0) worth_before += before_s * s.run.front().qos.front();
+    }
+    EXPECT_NEAR(worth_before + rest.utility * 388.0, whole.utility * 688.0, 1e-4 * whole.utility * 688.0);
+    // With less, it does less; with too little, it does the least.
+    EXPECT_LT(plan_rest(mission, planner, {300.0, at->soc_percent - 1.0, {}, 0.0}, 2.0).utility,
+              rest.utility);
+    const auto lost = plan_rest(mission, planner, {300.0, 20.0, {}, 0.0}, 2.0);
+    EXPECT_FALSE(lost.feasible);
+    EXPECT_EQ(lost.schedule.back().run.front().qos.front(), 5.8);
+}
+
+TEST(Plan, ReplansWithWhatRuns) {
+    auto mission = paper_with_reserve(2.0);
+    mission.plan->dwell_s = 60.0;
+    const auto planner = make_planner(mission);
+    const Configuration strong{{0, {32.0}}, {1, {32.0}}};
+    const auto rest = plan_rest(mission, planner, {28.0, 95.0, strong, 20.0}, 2.0);
+    ASSERT_FALSE(rest.schedule.empty());
+    EXPECT_EQ(rest.schedule.front().run, strong);
+    EXPECT_GE(rest.schedule.front().to_s, 40.0);
+}
+
+TEST(Plan, AnswersWhereTheBatteryIsCharged) {
+    auto mission = paper_with_reserve(0.0);
+    mission.initial_soc_percent = 100.0;
+    mission.mechanical->phases[Phase::takeoff].fourier.a0_w = -60.0;  // down a slope: full at once
+    const auto plan = plan_mission(mission);
+    ASSERT_TRUE(plan.plan.feasible);
+    EXPECT_GE(*plan.summary.final_soc_percent, 0.0);
+    EXPECT_TRUE(plan.summary.feasible);
+    EXPECT_GE(plan.plan.bound, *plan.summary.utility);
+}
+
+TEST(Plan, SaysThatItIsInfeasible) {
+    const auto plan = plan_mission(paper_with_reserve(9.0));
+    EXPECT_FALSE(plan.plan.feasible);
+    EXPECT_TRUE(plan.plan.deliverable);
+    EXPECT_NEAR(*plan.summary.final_soc_percent, 7.4306, 1e-4);
+    auto weak = paper_with_reserve(0.0);
+    weak.battery = {"", 11.1, 0.5, 3.2};
+    EXPECT_FALSE(plan_mission(weak).plan.deliverable);
+    EXPECT_TRUE(plan_mission(weak).summary.undeliverable);
+}
+
+TEST(Plan, KeepsAMarginForFlightsThatDiffer) {
+    auto mission = paper_with_reserve(2.0);
+    EXPECT_THROW(plan_mission(mission, 0.95), InputError);
+    for (const auto phase : all_phases) {
+        mission.mechanical->phases[phase].flights = 5;
+        mission.mechanical->phases[phase].level_spread = {5, 0.2, 0.1, 20.0};
+    }
+    const auto plan = plan_mission(mission, 0.95);
+    ASSERT_TRUE(plan.plan.feasible);
+    // Each phase's level by itself: 0.2 W sqrt(1 + 1/5) for as long as it lasts, in points of 39.35 kJ.
+    const double sd_j = 0.2 * std::sqrt(1.2) * std::sqrt(28.0 * 28.0 + 600.0 * 600.0 + 60.0 * 60.0);
+    EXPECT_NEAR(plan.margin_percent, 1.6448536 * sd_j / (3.416 * 3.2 * 36.0), 1e-6);
+    EXPECT_GE(*plan.summary.final_soc_percent, 2.0 + plan.margin_percent);
+    EXPECT_NEAR(plan_mission(mission, 0.5).margin_percent, 0.0, 1e-12);
+    mission.battery.resistance_ohm = 0.002;
+    EXPECT_GT(drain_sd_percent(mission, configurations_of(plan.flown.schedule)),
+              plan.margin_percent / 1.6448536);
+}
+
+TEST(Plan, IsWrittenAsAMission) {
+    const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
+    auto mission = paper_with_reserve(2.0);
+    mission.plan->choices[1].may_be_off = true;
+    const auto plan = plan_mission(mission);
+    const auto folder = test::scratch_dir();
+    const auto text = planned_mission_toml(read_file(path), path, plan.flown, folder);
+    const auto again = parse_mission(text, folder / "planned.toml");
+    EXPECT_EQ(again.name, "plan");
+    EXPECT_EQ(again.reserve_soc_percent, paper("plan").reserve_soc_percent);
+    const auto summary = simulate(again).summary;
+    EXPECT_EQ(summary.final_soc_percent, plan.summary.final_soc_percent);
+    EXPECT_EQ(summary.utility, plan.summary.utility);
+}
+
+TEST(Planner, LeavesOutWhatIsDominated) {
+    auto mission = paper("plan");
+    EXPECT_EQ(make_planner(mission).free_choices, 4U);  // longer keys are worth nothing here
+    mission.utilities[1]->weight = 0.01;
+    EXPECT_GT(make_planner(mission).free_choices, 4U);
+    mission.utilities.assign(2, std::nullopt);
+    EXPECT_THROW(make_planner(mission), InputError);
+}
+
+TEST(Planner, CutsSlotsAtFixedStretchesAndPhases) {
+    auto mission = paper("plan");
+    mission.plan->slot_s = 50.0;
+    const auto slots = slots_of(mission);
+    std::vector<std::pair<double, double>> times;
+    for (const auto& slot : slots) times.emplace_back(slot.from_s, slot.to_s);
+    EXPECT_EQ(times, (std::vector<std::pair<double, double>>{{0, 28},
+                                                             {0, 50},
+                                                             {50, 100},
+                                                             {100, 150},
+                                                             {150, 200},
+                                                             {200, 240},
+                                                             {240, 360},
+                                                             {360, 400},
+                                                             {400, 450},
+                                                             {450, 500},
+                                                             {500, 550},
+                                                             {550, 600},
+                                                             {0, 50},
+                                                             {50, 60}}));
+    EXPECT_TRUE(slots[6].fixed);
+    EXPECT_EQ(slots_of(mission, 28.0 + 250.0).front().from_s, 250.0);
+    EXPECT_TRUE(slots_of(mission, 688.0).empty());
+}
+
+}  // namespace
+}  // namespace flightwatt
