@@ -9,10 +9,13 @@
 namespace flightwatt {
 namespace {
 
-/// A path through the first slots, by its sums; `trail` is where its last run stands in the arena.
+/// A path through the first slots, by its sums and its last run; `before` is where the run before stands in
+/// the trail.
 struct Label {
     DrainAndWorth sum;
-    std::size_t trail = 0;
+    std::size_t before = 0;
+    std::size_t choice = 0;
+    std::size_t to = 0;
 };
 
 struct TrailStep {
@@ -51,7 +54,8 @@ class LabelPass {
         std::vector<std::vector<std::vector<Label>>> at(graph.slots + 1);
         for (auto& labels : at) labels.resize(graph.choices + 1);
         trail_.push_back({0, graph.begin_choice, graph.begin});
-        at[graph.begin][std::min(graph.begin_choice, graph.choices)].push_back({graph.before_begin, 0});
+        at[graph.begin][std::min(graph.begin_choice, graph.choices)].push_back(
+            {graph.before_begin, 0, graph.begin_choice, graph.begin});
         for (std::size_t i = graph.begin; i < graph.slots; ++i) {
             expand(i, at);
             at[i].clear();
@@ -76,22 +80,33 @@ class LabelPass {
         return all;
     }
 
+    /// Puts the labels' last runs into the trail: only those that survived, for it grows with every slot.
+    void leave_trail(std::vector<Label>& labels) {
+        for (auto& label : labels) {
+            trail_.push_back({label.before, label.choice, label.to});
+            label.before = trail_.size() - 1;
+        }
+    }
+
     void expand(std::size_t i, std::vector<Layer>& at) {
         const auto& graph = search_.graph;
-        const auto free = merged(i, at[i]);
+        auto free = merged(i, at[i]);
+        leave_trail(free);
         for (const auto& run : graph.runs[i]) carry(free, run, at[run.to][run.choice]);
         for (const auto& run : graph.one_more[i]) {
             auto& own = at[i][run.choice];
             prune(own, search_.by_slope.with[i][run.choice], search_.by_drain.with[i][run.choice]);
+            leave_trail(own);
             carry(own, run, at[run.to][run.choice]);
         }
     }
 
     void carry(const std::vector<Label>& labels, const SlotRun& run, std::vector<Label>& to) {
         for (const auto& label : labels) {
-            trail_.push_back({label.trail, run.choice, run.to});
-            to.push_back(
-                {{label.sum.drain + run.sum.drain, label.sum.worth + run.sum.worth}, trail_.size() - 1});
+            to.push_back({{label.sum.drain + run.sum.drain, label.sum.worth + run.sum.worth},
+                          label.before,
+                          run.choice,
+                          run.to});
         }
     }
 
@@ -135,14 +150,16 @@ class LabelPass {
 
     SlotPath path_of(const Label& label) const {
         SlotPath path{std::vector<std::size_t>(search_.graph.slots), label.sum};
-        for (auto step = label.trail;;) {
-            const auto from = step == 0 ? 0 : trail_[trail_[step].before].to;
-            std::fill(path.choices.begin() + static_cast<std::ptrdiff_t>(from),
-                      path.choices.begin() + static_cast<std::ptrdiff_t>(trail_[step].to),
-                      trail_[step].choice);
-            if (step == 0) return path;
-            step = trail_[step].before;
+        TrailStep step{label.before, label.choice, label.to};
+        for (;;) {
+            const auto& before = trail_[step.before];
+            std::fill(path.choices.begin() + static_cast<std::ptrdiff_t>(before.to),
+                      path.choices.begin() + static_cast<std::ptrdiff_t>(step.to), step.choice);
+            if (step.before == 0) break;
+            step = before;
         }
+        std::fill_n(path.choices.begin(), trail_[0].to, trail_[0].choice);
+        return path;
     }
 
     const Search& search_;
@@ -173,6 +190,16 @@ void relax(const SlotPath& greedy, Search& search) {
     }
 }
 
+/// As many labels as the effort allows, and as time and memory do for many slots, choices or long runs.
+std::size_t affordable_labels(const SlotGraph& graph, const SlotChoiceEffort& effort) {
+    constexpr std::size_t most_in_all = 4000000;
+    constexpr std::size_t fewest = 50;
+    std::size_t work = 1;  // labels made of each, over all slots
+    for (const auto& runs : graph.runs) work += runs.size();
+    for (const auto& runs : graph.one_more) work += runs.size();
+    return std::min(effort.most_labels, std::max(fewest, most_in_all / work));
+}
+
 }  // namespace
 
 SlotChoice choose_slots(const SlotChoiceProblem& problem, const SlotChoiceEffort& effort) {
@@ -200,11 +227,12 @@ SlotChoice choose_slots(const SlotChoiceProblem& problem, const SlotChoiceEffort
     if (greedy.sum.drain <= problem.budget) return finish(greedy, true, greedy.sum.worth);
     search.bound = greedy.sum.worth;
     relax(greedy, search);
+    const auto most_labels = affordable_labels(graph, effort);
     for (std::size_t labels = 200;; labels *= 10) {
         const double gap = effort.relative_gap * std::max(std::abs(search.best.sum.worth), 1e-9);
         if (search.bound - search.best.sum.worth <= gap) break;
-        LabelPass(search, std::min(labels, effort.most_labels), gap).run(search);
-        if (labels >= effort.most_labels) break;
+        LabelPass(search, std::min(labels, most_labels), gap).run(search);
+        if (labels >= most_labels) break;
     }
     return finish(search.best, true, search.bound);
 }

@@ -199,6 +199,16 @@ TEST(SlotChoice, ProvesItsGapWhereNothingIsAlike) {
     }
 }
 
+TEST(SlotChoice, StaysWithinItsMeansInTenHours) {
+    for (const double dwell_s : {0.0, 120.0}) {
+        const auto problem = large_problem(3600, 8, dwell_s);
+        const auto plan = choose_slots(problem);
+        ASSERT_TRUE(plan.feasible);
+        EXPECT_LE(plan.drain, problem.budget);
+        EXPECT_LE(plan.bound, plan.worth * 1.001) << dwell_s;
+    }
+}
+
 TEST(SlotChoice, HasABoundThatHoldsWhenItMayNotSearch) {
     const auto problem = large_problem(12, 3, 0.0);
     const auto plan = choose_slots(problem, {1e-9, 1});
