@@ -57,14 +57,13 @@ struct MissionReading {
 ///     parameters = ["fps"]                    # names for a profile that has none; or `columns`
 ///     utility = { parameter = "fps" }         # of a component: what its quality is worth, see
 ///                                             # mission/utility_toml.h
-///     [plan]                                  # the schedule is yet to be planned, [[schedule]] says what
-///                                             # is fixed: see mission/plan_settings_toml.h
+///     [plan]                                  # see mission/plan_settings_toml.h
 ///     [[schedule]]                            # see mission/schedule_toml.h
 ///
-/// A mission with components and neither [[schedule]] nor [plan] is yet to be planned too; one of these two
-/// is refused unless `reading` accepts it. Paths are relative to the mission file. Throws InputError, placed
-/// in the file that is wrong, for a missing file, a key missing, unknown or out of range, and whatever
-/// schedules and models refuse.
+/// A mission with [plan], or with components and no [[schedule]], is yet to be planned: its [[schedule]] is
+/// what is fixed. It is refused unless `reading` accepts it. Paths are relative to the mission file. Throws
+/// InputError, placed in the file that is wrong, for a missing file, a key missing, unknown or out of range,
+/// and whatever schedules and models refuse.
 Mission read_mission(const std::filesystem::path& path, const MissionReading& reading = {});
 
 /// The same from text; `path` names it and is where relative paths start.
