@@ -32,6 +32,17 @@ constexpr double rad_from_turns(double turns) { return turns * rad_per_turn; }
 /// Table I's xi, an angular frequency, from omega * duration of the phase.
 constexpr double table_one_xi_from_rad(double theta_rad) { return theta_rad / table_one_time_per_phase; }
 
+constexpr double milli = 1e-3;
+constexpr double micro = 1e-6;
+constexpr double watt_from_milliwatt(double power_mw) { return power_mw * milli; }
+constexpr double watt_from_microwatt(double power_uw) { return power_uw * micro; }
+constexpr double volt_from_millivolt(double voltage_mv) { return voltage_mv * milli; }
+constexpr double volt_from_microvolt(double voltage_uv) { return voltage_uv * micro; }
+constexpr double ampere_from_milliampere(double current_ma) { return current_ma * milli; }
+constexpr double ampere_from_microampere(double current_ua) { return current_ua * micro; }
+constexpr double joule_from_microjoule(double energy_uj) { return energy_uj * micro; }
+constexpr double second_from_millisecond(double time_ms) { return time_ms * milli; }
+
 /// What a declared unit measures; the base unit of each is the suffix used in names.
 enum class Quantity { volt, ampere, watt, ampere_hour, watt_hour, metre, metre_per_second, second, percent };
 
