@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace flightwatt {
+
+/// A parameter of quality of service and the values that it is profiled at.
+struct QosRange {
+    std::string name;
+    std::vector<double> values;  ///< rising
+};
+
+/// from, from + step, ... up to `to`, which is among them if it is a whole number of steps away. `step` > 0
+/// and `to` >= `from`. Rounded to 12 digits, so that 0.1 + 0.2 is spelled 0.3 on a command line.
+std::vector<double> evenly_spaced(double from, double to, double step);
+
+/// powprofiler's pow(factor): from, from * factor, ... up to `to`; 0 is followed by the factor. `factor` > 1.
+std::vector<double> multiplied(double from, double to, double factor);
+
+/// Every combination of the values, the last parameter running fastest; one empty combination of no ranges.
+std::vector<std::vector<double>> combinations_of(const std::vector<QosRange>& ranges);
+
+/// "fps=4 key_bits=32".
+std::string spell_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos);
+
+/// `text` with every {name} of a parameter replaced by its value; other braces stay (they may be a shell's).
+std::string with_qos(const std::string& text, const std::vector<std::string>& parameters,
+                     const std::vector<double>& qos);
+
+}  // namespace flightwatt
