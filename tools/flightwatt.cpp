@@ -29,6 +29,7 @@ constexpr StageLine stages[] = {
     {"predict", "the energy to the end of a flight that is in the air"},
     {"battery", "flights to the battery that they were flown on"},
     {"batch", "parse, segment and fit every log of a folder, incrementally"},
+    {"profile", "software to its power by quality of service, measured while it runs"},
     {"simulate", "a mission file to its state of charge over time"},
     {"compare", "several missions, ranked by final state of charge"},
     {"plan", "the schedule worth most that lands a mission with its reserve"},

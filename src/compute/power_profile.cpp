@@ -91,7 +91,10 @@ PowerProfile make_power_profile(const std::string& file, const std::vector<std::
     PowerProfile profile{file, parameters, {}, {}};
     for (std::size_t i = 0; i < parameters.size(); ++i) profile.axes.push_back(axis_of(nodes, i));
     require_full_grid(profile, nodes);
-    for (const auto& node : nodes) profile.power_w.push_back(node.power_w);
+    for (const auto& node : nodes) {
+        profile.power_w.push_back(node.power_w);
+        if (node.standard_error_w) profile.standard_error_w.push_back(*node.standard_error_w);
+    }
     return profile;
 }
 

@@ -3,6 +3,7 @@
 #include "base/error.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct ProfileNode {
     std::vector<double> qos;  ///< one value a parameter
     double power_w = 0.0;
     Location where;
+    std::optional<double> standard_error_w = {};
 };
 
 /// Power of a component as a function of its quality of service (QoS): the nodes of a full grid. A component
@@ -21,8 +23,9 @@ struct ProfileNode {
 struct PowerProfile {
     std::string file;
     std::vector<std::string> parameters;
-    std::vector<std::vector<double>> axes;  ///< the values that each parameter was profiled at, rising
-    std::vector<double> power_w;            ///< of every node; the last parameter runs fastest
+    std::vector<std::vector<double>> axes;      ///< the values that each parameter was profiled at, rising
+    std::vector<double> power_w;                ///< of every node; the last parameter runs fastest
+    std::vector<double> standard_error_w = {};  ///< of every node, or empty where it is not known
 };
 
 /// The grid of `nodes`, which may come in any order. Throws InputError for no nodes, for a node that is there

@@ -17,6 +17,11 @@ namespace {
 
 constexpr std::string_view power_column = "power_w";
 constexpr std::string_view ignored_column = "_";
+constexpr std::string_view error_column = "standard_error_w";
+/// What may follow power_w in a profile of ours: on what it rests.
+constexpr std::string_view evidence_columns[] = {error_column, "total_power_w", "above_idle_power_w",
+                                                 "duration_s", "energy_j",      "samples",
+                                                 "repeats",    "source"};
 
 void refuse_bad_names(const std::vector<std::string>& parameters, const Location& where) {
     std::set<std::string_view> seen;
@@ -49,11 +54,32 @@ std::vector<ProfileNode> nodes_of(const CsvTable& table, std::size_t first_row,
     std::vector<ProfileNode> nodes;
     for (std::size_t i = first_row; i < table.rows.size(); ++i) {
         const auto& row = table.rows[i];
-        ProfileNode node{{}, cell_number(table, row, power), {table.file, row.line}};
+        ProfileNode node{{}, cell_number(table, row, power), {table.file, row.line}, {}};
         for (const auto column : parameter_columns) node.qos.push_back(cell_number(table, row, column));
         nodes.push_back(std::move(node));
     }
     return nodes;
+}
+
+/// How many columns stand before power_w; those after it must be evidence.
+std::size_t parameter_count(const CsvTable& table) {
+    const auto& header = table.rows.front();
+    const auto power = std::find_if(header.cells.begin(), header.cells.end(),
+                                    [](const auto& cell) { return cell.text == power_column; });
+    if (power == header.cells.end()) {
+        throw InputError(
+            {table.file, header.line, header.cells.back().column},
+            fmt::format("the last column is '{}', expected '{}'", header.cells.back().text, power_column),
+            "a profile's columns are its parameters and then power_w");
+    }
+    for (auto cell = power + 1; cell != header.cells.end(); ++cell) {
+        const auto known = std::find(std::begin(evidence_columns), std::end(evidence_columns), cell->text);
+        if (known != std::end(evidence_columns)) continue;
+        throw InputError({table.file, header.line, cell->column},
+                         fmt::format("the column '{}' follows {}", cell->text, power_column),
+                         "parameters stand before it, after it only what `flightwatt profile` writes there");
+    }
+    return static_cast<std::size_t>(power - header.cells.begin());
 }
 
 PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
@@ -62,22 +88,23 @@ PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
         throw InputError(naming.where, fmt::format("{} names its parameters itself", table.file),
                          "leave `parameters` out");
     }
-    if (header.cells.back().text != power_column) {
-        throw InputError(
-            {table.file, header.line, header.cells.back().column},
-            fmt::format("the last column is '{}', expected '{}'", header.cells.back().text, power_column),
-            "a profile's columns are its parameters and then power_w");
-    }
+    const auto count = parameter_count(table);
     table.rows.erase(table.rows.begin());
     std::vector<std::size_t> columns;
-    for (const auto& cell : header.cells) {
-        columns.push_back(table.columns.size());
-        table.columns.push_back(cell.text);
-    }
-    columns.pop_back();  // power_w
-    const std::vector<std::string> parameters(table.columns.begin(), table.columns.end() - 1);
+    for (const auto& cell : header.cells) table.columns.push_back(cell.text);
+    for (std::size_t i = 0; i < count; ++i) columns.push_back(i);
+    const std::vector<std::string> parameters(table.columns.begin(),
+                                              table.columns.begin() + static_cast<std::ptrdiff_t>(count));
     refuse_bad_names(parameters, {table.file, header.line});
-    return make_power_profile(table.file, parameters, nodes_of(table, 0, columns, parameters.size()));
+    auto nodes = nodes_of(table, 0, columns, count);
+    const auto errors = std::find(table.columns.begin(), table.columns.end(), error_column);
+    if (errors != table.columns.end()) {
+        const auto column = static_cast<std::size_t>(errors - table.columns.begin());
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            nodes[i].standard_error_w = cell_number(table, table.rows[i], column);
+        }
+    }
+    return make_power_profile(table.file, parameters, std::move(nodes));
 }
 
 PowerProfile profile_without_header(CsvTable table, const ProfileNaming& naming) {
@@ -110,6 +137,7 @@ PowerProfile profile_without_header(CsvTable table, const ProfileNaming& naming)
 
 PowerProfile profile_of_combinations(const std::filesystem::path& path, const ProfileNaming& naming) {
     const auto config = read_powprofiler_config(path);
+    require_combinations(config, path);
     require_names(naming, config.combinations.front().qos.size(), path.string());
     std::vector<ProfileNode> nodes;
     for (const auto& combination : config.combinations) {
@@ -118,7 +146,7 @@ PowerProfile profile_of_combinations(const std::filesystem::path& path, const Pr
                              fmt::format("the recording {} does not exist", combination.recording.string()));
         }
         const auto recording = read_power_recording(combination.recording, config.sampling_hz);
-        nodes.push_back({combination.qos, mean_power_w(recording), combination.where});
+        nodes.push_back({combination.qos, mean_power_w(recording), combination.where, {}});
     }
     return make_power_profile(path.string(), naming.parameters, std::move(nodes));
 }

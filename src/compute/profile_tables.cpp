@@ -1,0 +1,133 @@
+#include "compute/profile_tables.h"
+
+#include "base/atomic_file.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt {
+namespace {
+
+constexpr int first_parameter_flag = 200;  // of powprofiler
+
+std::string comments_of(const ComponentEstimate& component, const ProfileOutcome& outcome,
+                        const ProfileSpecification& specification) {
+    std::string text = fmt::format("# Power of {}, profiled by flightwatt after {}; sampled by {}\n",
+                                   component.name, specification.file, outcome.sampler);
+    if (specification.above_idle) {
+        text += fmt::format(
+            "# power_w is what comes on top of the idle computer, which draws {:.5g} W "
+            "(idle.csv, a component of its own)\n",
+            outcome.idle->power_w);
+    } else if (outcome.idle) {
+        text += fmt::format(
+            "# power_w is the whole computer's, the {:.5g} W of the idle one among it: in a "
+            "mission with several components only one should be so\n",
+            outcome.idle->power_w);
+    } else {
+        text += "# power_w is what the sampler saw, the idle computer's among it; that was not measured\n";
+    }
+    for (const auto& run : component.failures) {
+        text += fmt::format("# {} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status),
+                            run.note);
+    }
+    if (component.interpolation) {
+        text += fmt::format(
+            "# interpolated by {}; leaving out one of the {} measured nodes: RMS error {:.4g} W "
+            "(their standard_error_w), largest {:.4g} W\n",
+            component.interpolation->method, component.interpolation->nodes, component.interpolation->rms_w,
+            component.interpolation->largest_w);
+    }
+    return text;
+}
+
+std::string row_of(const NodeEstimate& node, const std::optional<PowerEstimate>& idle, bool above_idle) {
+    const auto reported = reported_power(node.total, idle, above_idle);
+    std::string row;
+    for (const double value : node.qos) row += fmt::format("{},", value);
+    row +=
+        fmt::format("{:.6f},{:.6f},{:.6f},", reported.power_w, reported.standard_error_w, node.total.power_w);
+    if (idle) row += fmt::format("{:.6f},", node.total.power_w - idle->power_w);
+    if (!node.is_measured) return row + ",,0,0,interpolated\n";
+    return row + fmt::format("{:.6f},{:.6f},{},{},measured\n", node.total.duration_s,
+                             reported.power_w * node.total.duration_s, node.total.samples,
+                             node.total.repeats);
+}
+
+void write_powprofiler(const ProfileOutcome& outcome, const std::filesystem::path& folder) {
+    for (const auto& component : outcome.components) {
+        if (component.nodes.empty()) continue;
+        make_directories(folder);
+        write_file_atomically(folder / (component.name + ".csv"), powprofiler_layer2_csv(component));
+    }
+    for (const auto& run : outcome.runs) {
+        if (run.status != RunStatus::ok) continue;
+        const auto path = folder / run.layer1;
+        make_directories(path.parent_path());
+        write_file_atomically(path, powprofiler_layer1_csv(run.trace));
+    }
+}
+
+}  // namespace
+
+ReportedPower reported_power(const PowerEstimate& total, const std::optional<PowerEstimate>& idle,
+                             bool above_idle) {
+    if (!above_idle) return {total.power_w, total.standard_error_w};
+    return {total.power_w - idle->power_w, std::hypot(total.standard_error_w, idle->standard_error_w)};
+}
+
+std::string layer2_csv(const ComponentEstimate& component, const ProfileOutcome& outcome,
+                       const ProfileSpecification& specification) {
+    auto text = comments_of(component, outcome, specification);
+    for (const auto& name : component.parameters) text += name + ",";
+    text += "power_w,standard_error_w,total_power_w,";
+    if (outcome.idle) text += "above_idle_power_w,";
+    text += "duration_s,energy_j,samples,repeats,source\n";
+    for (const auto& node : component.nodes) text += row_of(node, outcome.idle, specification.above_idle);
+    return text;
+}
+
+std::string idle_csv(const PowerEstimate& idle) {
+    return fmt::format(
+        "# Power of the idle computer, before the components ran\n"
+        "power_w,standard_error_w,duration_s,energy_j,samples\n{:.7g},{:.4g},{:.6f},{:.7g},{}\n",
+        idle.power_w, idle.standard_error_w, idle.duration_s, idle.energy_j, idle.samples);
+}
+
+std::string powprofiler_layer2_csv(const ComponentEstimate& component) {
+    std::string text;
+    for (std::size_t i = 0; i < component.parameters.size(); ++i) {
+        text += fmt::format("{},", first_parameter_flag + static_cast<int>(i));
+    }
+    text += "100,130\n";
+    for (const auto& node : component.nodes) {
+        if (!node.is_measured) continue;
+        for (const double value : node.qos) text += fmt::format("{},", value);
+        text += fmt::format("{:.7g},{:.7g}\n", node.total.power_w, node.total.energy_j);
+    }
+    return text;
+}
+
+std::string powprofiler_layer1_csv(const PowerTrace& trace) {
+    std::string text = "100\n";
+    for (const double power_w : trace.power_w) text += fmt::format("{:.6g}\n", power_w);
+    return text;
+}
+
+void write_profiles(const ProfileOutcome& outcome, const ProfileSpecification& specification,
+                    const std::filesystem::path& folder, bool powprofiler) {
+    if (outcome.idle) write_file_atomically(folder / "idle.csv", idle_csv(*outcome.idle));
+    for (const auto& component : outcome.components) {
+        const auto path = folder / (component.name + ".csv");
+        if (component.nodes.empty()) {
+            std::filesystem::remove(path);  // of an earlier call
+            continue;
+        }
+        write_file_atomically(path, layer2_csv(component, outcome, specification));
+    }
+    if (powprofiler) write_powprofiler(outcome, folder / "powprofiler");
+}
+
+}  // namespace flightwatt

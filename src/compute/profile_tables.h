@@ -1,0 +1,41 @@
+#pragma once
+
+#include "compute/profiler.h"
+
+#include <string>
+
+/// Layer 2 as files.
+namespace flightwatt {
+
+/// Power that stands in power_w of a node: its total, or what is above `idle`; the standard error then holds
+/// that of idle too.
+struct ReportedPower {
+    double power_w = 0.0;
+    double standard_error_w = 0.0;
+};
+
+ReportedPower reported_power(const PowerEstimate& total, const std::optional<PowerEstimate>& idle,
+                             bool above_idle);
+
+/// A component's profile, as missions and read_power_profile take it: its parameters, power_w, and on what
+/// that rests. Comment lines say how it was made, and of what power_w consists. energy_j is power_w times
+/// duration_s; interpolated nodes have neither.
+std::string layer2_csv(const ComponentEstimate& component, const ProfileOutcome& outcome,
+                       const ProfileSpecification& specification);
+
+/// The idle computer as a component without parameters, for missions of profiles above it.
+std::string idle_csv(const PowerEstimate& idle);
+
+/// powprofiler's layer 2, header of flags: 200, 201, ... the parameters, 100 total power, 130 energy, power
+/// times duration. Measured nodes only: what powprofiler writes, it measured.
+std::string powprofiler_layer2_csv(const ComponentEstimate& component);
+
+/// powprofiler's layer 1: 100, total power, no time. It takes the samples for equally spaced.
+std::string powprofiler_layer1_csv(const PowerTrace& trace);
+
+/// Writes NAME.csv of each component and idle.csv into the folder; with `powprofiler`, its formats into
+/// powprofiler/ below it. A component of which nothing could be measured leaves no file.
+void write_profiles(const ProfileOutcome& outcome, const ProfileSpecification& specification,
+                    const std::filesystem::path& folder, bool powprofiler);
+
+}  // namespace flightwatt

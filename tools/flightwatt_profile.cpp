@@ -1,0 +1,195 @@
+// flightwatt profile: runs software over its quality of service and measures its power.
+
+#include "base/atomic_file.h"
+#include "base/signal_watch.h"
+#include "base/toml_reader.h"
+#include "batch/folder_lock.h"
+#include "cli/stage.h"
+#include "compute/profile_reader.h"
+#include "json_text.h"
+#include "profile_output.h"
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace {
+
+using namespace flightwatt;
+
+constexpr int killed_by_signal = 128;  // what shells add to the signal
+
+std::vector<std::string> words_of(const std::string& list) {
+    std::vector<std::string> words;
+    std::istringstream text(list);
+    for (std::string word; std::getline(text, word, ',');) words.push_back(word);
+    return words;
+}
+
+ProfileNaming naming_of(const cli::StageCall& call) {
+    ProfileNaming naming;
+    naming.where.file = "the command line";
+    if (const auto names = call.maybe<std::string>("parameters")) naming.parameters = words_of(*names);
+    if (const auto names = call.maybe<std::string>("columns")) naming.columns = words_of(*names);
+    return naming;
+}
+
+int check_interpolation(const cli::StageCall& call) {
+    std::string text;
+    auto json = nlohmann::ordered_json::array();
+    for (const auto& file : call.inputs) {
+        const auto profile = read_power_profile(file, naming_of(call));
+        const auto errors = interpolation_errors(profile);
+        if (!text.empty()) text += "\n";
+        text += interpolation_text(file, profile.power_w.size(), errors);
+        nlohmann::ordered_json methods = nlohmann::ordered_json::array();
+        for (const auto& error : errors) methods.push_back(to_json(error));
+        json.push_back({{"file", file}, {"nodes", profile.power_w.size()}, {"leave_one_out", methods}});
+    }
+    cli::write_result(call, text);
+    if (call.json) cli::print(json_text(json));
+    return cli::ok;
+}
+
+/// What the command line says otherwise than the specification.
+void apply_options(const cli::StageCall& call, ProfileSpecification& specification) {
+    auto& sampler = specification.sampler;
+    if (const auto kind = call.maybe<std::string>("sampler")) {
+        const bool needs_more = *kind == "command" || *kind == "recorded";
+        const bool known = *kind == "ina3221" || std::find(sampler_kinds.begin(), sampler_kinds.end(),
+                                                           *kind) != sampler_kinds.end();
+        if (!known || (needs_more && sampler.kind != *kind)) {
+            throw UsageError(fmt::format("--sampler {}: {}", *kind,
+                                         known ? "its settings belong into the specification's [sampler]"
+                                               : "there is no such sampler; --help lists them"));
+        }
+        if (sampler.kind == "recorded" && *kind != "recorded") {
+            throw UsageError("--sampler: the specification is of recordings");
+        }
+        sampler.kind = *kind;
+    }
+    if (const auto sysfs = call.maybe<std::string>("sysfs")) {
+        if (!std::filesystem::is_directory(*sysfs)) {
+            throw UsageError(fmt::format("--sysfs {}: there is no such folder", *sysfs));
+        }
+        sampler.sysfs = *sysfs;
+    }
+    if (call.has("above-idle")) specification.above_idle = true;
+    if (specification.above_idle && specification.idle_s == 0.0) {
+        throw InputError({specification.file},
+                         "power above idle is asked for, and idle power is not measured",
+                         "set idle_s, or idle_file of recordings");
+    }
+}
+
+ProfilerOptions options_of(const cli::StageCall& call, const SignalWatch& signals, std::size_t& done,
+                           std::size_t& all) {
+    ProfilerOptions options;
+    options.folder = *call.output;
+    options.signals = signals.file();
+    options.caught = [&signals] { return signals.caught().value_or(SIGINT); };
+    options.opened = [&call](const PowerSampler& sampler) {
+        for (const auto& line : sampler.found) cli::note(call, "found " + line);
+        cli::note(call, fmt::format("sampling with {}: {}", sampler.kind, sampler.source));
+    };
+    options.progress = [&call, &done, &all](const ProfileRun& run, std::size_t count, std::size_t of) {
+        done = count;
+        all = of;
+        const auto name = run.configuration.empty() ? run.component : run.component + " " + run.configuration;
+        const auto what = run.was_done                  ? "up to date"
+                          : run.status == RunStatus::ok ? fmt::format("{:.4g} W", run.estimate.power_w)
+                                                        : to_string(run.status);
+        cli::note(call, fmt::format("[{}/{}] {} repeat {}: {}{}", count, of, name, run.repeat, what,
+                                    run.note.empty() ? "" : ": " + run.note));
+    };
+    if (const auto trials = call.maybe<int>("trials")) {
+        constexpr int fewest = 3;  // of which leaving one out says anything
+        if (*trials < fewest)
+            throw UsageError(fmt::format("--trials is {}, expected {} or more", *trials, fewest));
+        options.trials = static_cast<std::size_t>(*trials);
+    }
+    return options;
+}
+
+int conclude(const cli::StageCall& call, const ProfileOutcome& outcome,
+             const ProfileSpecification& specification) {
+    write_profiles(outcome, specification, *call.output, call.has("powprofiler"));
+    if (call.json) {
+        cli::print(json_text(to_json(outcome, specification.above_idle)));
+    } else {
+        cli::print(profile_text(outcome, specification.above_idle));
+    }
+    std::size_t failed = 0;
+    for (const auto& component : outcome.components) failed += component.failures.size();
+    if (failed == 0) return cli::ok;
+    cli::note(call, fmt::format("{} of {} runs gave no power, see {}/{}; the same command tries them again",
+                                failed, outcome.runs.size(), *call.output, runs_name));
+    return cli::no_answer;
+}
+
+int profile_components(const cli::StageCall& call) {
+    if (call.has("check-interpolation")) return check_interpolation(call);
+    if (call.has("parameters") || call.has("columns")) {
+        throw UsageError("--parameters and --columns belong to --check-interpolation");
+    }
+    if (call.inputs.size() != 1) throw UsageError("expected one SPEC");
+    if (!call.output) throw UsageError("no folder given: expected -o DIR");
+    auto specification = read_profile_specification(call.inputs.front());
+    apply_options(call, specification);
+    std::size_t done = 0;
+    std::size_t all = 0;
+    const SignalWatch signals;
+    const auto options = options_of(call, signals, done, all);
+    make_directories(options.folder);
+    const FolderLock lock(options.folder);
+    try {
+        return conclude(call, profile(specification, options), specification);
+    } catch (const Interrupted& interrupted) {
+        const auto* name = ::sigabbrev_np(interrupted.signal());
+        cli::note(call,
+                  fmt::format("stopped by SIG{} after {} of {} runs; the same command goes on from there",
+                              name == nullptr ? "?" : name, done, all));
+        return killed_by_signal + interrupted.signal();
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    namespace po = boost::program_options;
+    cli::StageDefinition stage;
+    stage.name = "profile";
+    stage.arguments = "SPEC -o DIR | --check-interpolation FILE...";
+    stage.description =
+        "Runs each component of SPEC (TOML, or powprofiler's .cfg) over its quality of service while "
+        "sampling\n"
+        "power. DIR/NAME.csv is layer 2, configuration to mean power, energy and standard error, as "
+        "missions\n"
+        "take it; DIR/layer1 holds power over time of every run, DIR/runs.csv what became of each, "
+        "DIR/idle.csv\n"
+        "the idle computer. A component that fails or hangs is recorded and ended with all its children, "
+        "the\n"
+        "others go on; the exit code is then 4. Ctrl-C leaves nothing running; the same command goes on "
+        "where\n"
+        "it stopped. Runs that succeeded are not done again while their part of SPEC is the same; remove "
+        "DIR\n"
+        "when a program itself has changed.\n\n"
+        "Samplers: auto, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, "
+        "recorded.";
+    stage.output_help = "the folder of the results";
+    stage.options.add_options()("sampler", po::value<std::string>()->value_name("KIND"),
+                                "sample with this instead of what SPEC says")(
+        "sysfs", po::value<std::string>()->value_name("ROOT"), "look for sensors below ROOT instead of /sys")(
+        "above-idle", "profiles hold the power above that of the idle computer")(
+        "powprofiler", "write powprofiler's formats too, to DIR/powprofiler")(
+        "trials", po::value<int>()->value_name("N"),
+        "run N configurations of each component, spread over its range, and interpolate the others")(
+        "check-interpolation", "of profiles: find each node from the others, and print the errors")(
+        "parameters", po::value<std::string>()->value_name("A,B"),
+        "the parameters' names, of a profile that has flags (--check-interpolation)")(
+        "columns", po::value<std::string>()->value_name("A,B,power_w"),
+        "the columns' names, of a profile without a header (--check-interpolation)");
+    return cli::run_stage(argc, argv, stage, profile_components);
+}
