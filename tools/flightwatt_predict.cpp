@@ -58,7 +58,7 @@ struct Prediction {
     EnergyEstimate landing;
     double landing_s = 0.0;
     EnergyEstimate rest;
-    Interval interval;
+    EnergyInterval interval;
 };
 
 Prediction predict_flight(const cli::StageCall& call) {

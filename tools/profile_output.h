@@ -4,6 +4,7 @@
 #include "compute/profile_interpolation.h"
 #include "compute/profile_tables.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ inline std::string component_table(const ComponentEstimate& component, const Pro
         std::vector<std::string> row;
         for (const double value : node.qos) row.push_back(fmt::format("{}", value));
         row.push_back(fmt::format("{:.4f}", reported.power_w));
-        row.push_back(fmt::format("{:.4f}", reported.standard_error_w));
+        row.push_back(number_or(reported.standard_error_w, 4, "-"));
         row.push_back(node.is_measured ? fmt::format("{:.2f}", node.total.duration_s) : "-");
         row.push_back(node.is_measured ? fmt::format("{:.2f}", reported.power_w * node.total.duration_s)
                                        : "-");
@@ -39,9 +40,9 @@ inline std::string component_table(const ComponentEstimate& component, const Pro
 inline std::string profile_text(const ProfileOutcome& outcome, bool above_idle) {
     std::string text;
     if (outcome.idle) {
-        text += fmt::format("idle: {:.4f} W, standard error {:.4f} W, {} samples in {:.2f} s\n",
-                            outcome.idle->power_w, outcome.idle->standard_error_w, outcome.idle->samples,
-                            outcome.idle->duration_s);
+        text += fmt::format("idle: {:.4f} W, standard error {} W, {} samples in {:.2f} s\n",
+                            outcome.idle->power_w, number_or(outcome.idle->standard_error_w, 4, "-"),
+                            outcome.idle->samples, outcome.idle->duration_s);
     }
     text += fmt::format("sampling interval: mean {:.4f} s, standard deviation {:.4f} s, longest {:.4f} s\n",
                         outcome.jitter.mean_s, outcome.jitter.sd_s, outcome.jitter.max_s);
@@ -118,12 +119,13 @@ inline nlohmann::ordered_json to_json(const ProfileOutcome& outcome, bool above_
     return json;
 }
 
-/// The error of finding each node of a profile from the others: as missions interpolate, then as --trials
-/// may.
+/// The error of finding each node of a profile from the others: as missions interpolate, then each method
+/// that --trials may choose, on the scale that suits it.
 inline std::vector<LeaveOneOut> interpolation_errors(const PowerProfile& profile) {
     std::vector<LeaveOneOut> errors{leave_grid_nodes_out(profile)};
+    std::set<ScatteredMethod> seen;
     for (auto& [choice, error] : ranked_methods(grid_points(profile), profile.power_w)) {
-        errors.push_back(std::move(error));
+        if (seen.insert(choice.method).second) errors.push_back(std::move(error));
     }
     return errors;
 }
@@ -136,7 +138,7 @@ inline std::string interpolation_text(const std::string& file, std::size_t nodes
     for (const auto& error : errors) {
         table.rows.push_back({error.method, fmt::format("{} of {}", error.nodes, nodes),
                               fmt::format("{:.4f}", error.mean_absolute_w),
-                              fmt::format("{:.2f}", error.mean_absolute_percent),
+                              number_or(error.mean_absolute_percent, 2, "-"),
                               fmt::format("{:.4f}", error.rms_w), fmt::format("{:.4f}", error.largest_w)});
     }
     return file + "\n" + to_text(table);

@@ -95,6 +95,7 @@ PowerProfile make_power_profile(const std::string& file, const std::vector<std::
         profile.power_w.push_back(node.power_w);
         if (node.standard_error_w) profile.standard_error_w.push_back(*node.standard_error_w);
     }
+    if (profile.standard_error_w.size() < nodes.size()) profile.standard_error_w.clear();
     return profile;
 }
 

@@ -25,7 +25,7 @@ struct PowerProfile {
     std::vector<std::string> parameters;
     std::vector<std::vector<double>> axes;      ///< the values that each parameter was profiled at, rising
     std::vector<double> power_w;                ///< of every node; the last parameter runs fastest
-    std::vector<double> standard_error_w = {};  ///< of every node, or empty where it is not known
+    std::vector<double> standard_error_w = {};  ///< of every node; empty unless all are known
 };
 
 /// The grid of `nodes`, which may come in any order. Throws InputError for no nodes, for a node that is there

@@ -101,6 +101,7 @@ PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
     if (errors != table.columns.end()) {
         const auto column = static_cast<std::size_t>(errors - table.columns.begin());
         for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (table.rows[i].cells[column].text.empty()) continue;  // of a single sample
             nodes[i].standard_error_w = cell_number(table, table.rows[i], column);
         }
     }

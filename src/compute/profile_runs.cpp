@@ -7,6 +7,7 @@
 #include "compute/qos_range.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <random>
 
@@ -107,8 +108,11 @@ std::string row_of(const ProfileRun& run) {
                            to_string(run.status), csv_cell(run.note));
     if (run.status == RunStatus::ok) {
         const auto jitter = jitter_of({run.trace});
-        row += fmt::format(",{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{}", run.estimate.samples,
-                           run.estimate.duration_s, run.estimate.power_w, run.estimate.standard_error_w,
+        row += fmt::format(",{},{:.6f},{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{}", run.estimate.samples,
+                           run.estimate.duration_s, run.estimate.power_w,
+                           std::isfinite(run.estimate.standard_error_w)
+                               ? fmt::format("{:.6f}", run.estimate.standard_error_w)
+                               : "",
                            run.estimate.energy_j, jitter.mean_s, jitter.sd_s, jitter.max_s,
                            csv_cell(run.layer1));
     } else {

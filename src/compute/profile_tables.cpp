@@ -47,8 +47,8 @@ std::string row_of(const NodeEstimate& node, const std::optional<PowerEstimate>&
     const auto reported = reported_power(node.total, idle, above_idle);
     std::string row;
     for (const double value : node.qos) row += fmt::format("{},", value);
-    row +=
-        fmt::format("{:.6f},{:.6f},{:.6f},", reported.power_w, reported.standard_error_w, node.total.power_w);
+    row += fmt::format("{:.6f},{},{:.6f},", reported.power_w, number_or(reported.standard_error_w, 6, ""),
+                       node.total.power_w);
     if (idle) row += fmt::format("{:.6f},", node.total.power_w - idle->power_w);
     if (!node.is_measured) return row + ",,0,0,interpolated\n";
     return row + fmt::format("{:.6f},{:.6f},{},{},measured\n", node.total.duration_s,
@@ -72,6 +72,10 @@ void write_powprofiler(const ProfileOutcome& outcome, const std::filesystem::pat
 
 }  // namespace
 
+std::string number_or(double value, int decimals, const std::string& unknown) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : unknown;
+}
+
 ReportedPower reported_power(const PowerEstimate& total, const std::optional<PowerEstimate>& idle,
                              bool above_idle) {
     if (!above_idle) return {total.power_w, total.standard_error_w};
@@ -92,8 +96,8 @@ std::string layer2_csv(const ComponentEstimate& component, const ProfileOutcome&
 std::string idle_csv(const PowerEstimate& idle) {
     return fmt::format(
         "# Power of the idle computer, before the components ran\n"
-        "power_w,standard_error_w,duration_s,energy_j,samples\n{:.7g},{:.4g},{:.6f},{:.7g},{}\n",
-        idle.power_w, idle.standard_error_w, idle.duration_s, idle.energy_j, idle.samples);
+        "power_w,standard_error_w,duration_s,energy_j,samples\n{:.6f},{},{:.6f},{:.6f},{}\n",
+        idle.power_w, number_or(idle.standard_error_w, 6, ""), idle.duration_s, idle.energy_j, idle.samples);
 }
 
 std::string powprofiler_layer2_csv(const ComponentEstimate& component) {

@@ -17,6 +17,9 @@ struct ReportedPower {
 ReportedPower reported_power(const PowerEstimate& total, const std::optional<PowerEstimate>& idle,
                              bool above_idle);
 
+/// A number with so many decimals, or `unknown` for one that is not finite.
+std::string number_or(double value, int decimals, const std::string& unknown);
+
 /// A component's profile, as missions and read_power_profile take it: its parameters, power_w, and on what
 /// that rests. Comment lines say how it was made, and of what power_w consists. energy_j is power_w times
 /// duration_s; interpolated nodes have neither.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace flightwatt {
@@ -38,7 +39,7 @@ double correlation_time(const std::vector<double>& deviations) {
 }
 
 double standard_error_of(const std::vector<double>& values) {
-    if (values.size() < 2) return 0.0;
+    if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     const double mean = mean_of(values);
     std::vector<double> deviations;
     double squares = 0.0;
@@ -96,7 +97,9 @@ PowerEstimate combine_repeats(const std::vector<PowerEstimate>& repeats) {
         squares += (repeat.power_w - all.power_w) * (repeat.power_w - all.power_w);
     }
     const double between = repeats.size() < 2 ? 0.0 : std::sqrt(squares / (count - 1.0) / count);
-    all.standard_error_w = std::max(between, std::sqrt(own_squares) / count);
+    all.standard_error_w = std::sqrt(own_squares) / count;
+    // fmax: of repeats that are single samples only the spread between them is known.
+    if (repeats.size() > 1) all.standard_error_w = std::fmax(between, all.standard_error_w);
     all.energy_j = all.power_w * all.duration_s;
     all.repeats = repeats.size();
     return all;

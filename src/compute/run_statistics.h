@@ -17,7 +17,7 @@ struct SamplingJitter {
 /// Power over a run, or over the repeats of a configuration.
 struct PowerEstimate {
     double power_w = 0.0;
-    double standard_error_w = 0.0;
+    double standard_error_w = 0.0;  ///< NaN where it is not known
     double duration_s = 0.0;
     double energy_j = 0.0;  ///< power_w * duration_s
     std::size_t samples = 0;
@@ -31,7 +31,7 @@ SamplingJitter jitter_of(const std::vector<PowerTrace>& runs);
 /// first: as the median interval), so that samples that come late do not count for less. The standard error
 /// is that of a stationary series: s / sqrt(n) times sqrt(1 + 2 sum of autocorrelations), summed in pairs as
 /// long as these are positive (Geyer, Practical Markov Chain Monte Carlo, 1992), and at least the
-/// uncorrelated s / sqrt(n); 0 for a single sample. `run` must not be empty.
+/// uncorrelated s / sqrt(n); NaN for a single sample. `run` must not be empty.
 PowerEstimate estimate_run(const PowerTrace& run, double duration_s);
 
 /// The repeats of a configuration: mean of their means and durations. The standard error is the larger of

@@ -24,7 +24,7 @@ double student_t_95(double freedom) {
     return boost::math::quantile(boost::math::students_t_distribution<double>(freedom), upper);
 }
 
-std::optional<Interval> interval_95(const EnergyEstimate& estimate) {
+std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate) {
     if (!estimate.uncertainty_known) return std::nullopt;
     double half_wh = 0.0;
     if (estimate.variance_wh2 > 0.0) {
@@ -32,7 +32,7 @@ std::optional<Interval> interval_95(const EnergyEstimate& estimate) {
             estimate.variance_wh2 * estimate.variance_wh2 / estimate.variance_square_per_freedom;
         half_wh = student_t_95(std::max(freedom, 1.0)) * std::sqrt(estimate.variance_wh2);
     }
-    return Interval{std::max(estimate.energy_wh - half_wh, std::min(estimate.energy_wh, 0.0)),
+    return EnergyInterval{std::max(estimate.energy_wh - half_wh, std::min(estimate.energy_wh, 0.0)),
                     estimate.energy_wh + half_wh};
 }
 

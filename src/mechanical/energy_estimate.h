@@ -24,7 +24,7 @@ void add_share(EnergyEstimate& estimate, const VarianceShare& share);
 /// Both together, as if they were independent.
 EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b);
 
-struct Interval {
+struct EnergyInterval {
     double low_wh = 0.0;
     double high_wh = 0.0;
     bool contains(double energy_wh) const { return low_wh <= energy_wh && energy_wh <= high_wh; }
@@ -32,7 +32,7 @@ struct Interval {
 
 /// 95 % predictive interval: Student's t with Welch and Satterthwaite's degrees of freedom. A low
 /// end below 0 becomes 0: a drone takes no energy back. std::nullopt without known uncertainty.
-std::optional<Interval> interval_95(const EnergyEstimate& estimate);
+std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate);
 
 /// t that a Student variable of so many degrees of freedom stays within with 95 %; 12.7 for 1, 1.96 for many.
 double student_t_95(double freedom);

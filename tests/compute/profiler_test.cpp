@@ -211,7 +211,7 @@ TEST_F(Profiler, ReadsAJetsonTree) {
 
 TEST_F(Profiler, RunsPowprofilersConfiguration) {
     write("tree/class/power_supply/BAT0/power_now", "4000000\n");
-    write("mult.sh", "#!/bin/sh\necho $1 $2 $3 >> calls\nsleep 0.1\n");
+    write("mult.sh", "#!/bin/sh\n[ $2 = data ] && sleep 0.1\n");
     std::filesystem::permissions(folder / "mult.sh", std::filesystem::perms::owner_all);
     write("config.cfg",
           "[settings]\nfrequency = 50\nh = 0.01\n[components]\n  [component.mult]\n  src = ./mult.sh\n"

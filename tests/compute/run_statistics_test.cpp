@@ -30,7 +30,11 @@ TEST(RunStatistics, EnergyIsMeanPowerTimesDuration) {
     // A late sample stands for the time that it closes, the first for the median interval, 0.3 s.
     EXPECT_NEAR(estimate_run({{0.0, 0.1, 0.4}, {1.0, 1.0, 4.0}}, 0.5).power_w, (0.3 + 0.1 + 1.2) / 0.7,
                 1e-12);
-    EXPECT_EQ(estimate_run({{0.0}, {5.0}}, 2.0).energy_j, 10.0);
+    const auto single = estimate_run({{0.0}, {5.0}}, 2.0);
+    EXPECT_EQ(single.energy_j, 10.0);
+    EXPECT_TRUE(std::isnan(single.standard_error_w));  // unknown is not 0
+    EXPECT_TRUE(std::isnan(combine_repeats({single}).standard_error_w));
+    EXPECT_EQ(combine_repeats({single, estimate_run({{0.0}, {7.0}}, 2.0)}).standard_error_w, 1.0);
 }
 
 TEST(RunStatistics, StandardErrorKnowsOfAutocorrelation) {

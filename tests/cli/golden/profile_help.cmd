@@ -1,0 +1,1 @@
+flightwatt profile --help
