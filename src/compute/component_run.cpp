@@ -51,8 +51,9 @@ class OutputFile {
 
 class Watch {
   public:
-    Watch(SupervisedProcesses* processes, const ProfileTiming& timing, const RunFrame& frame)
-        : processes_(processes), timing_(timing), frame_(frame), next_(start_) {
+    Watch(Clock::time_point start, SupervisedProcesses* processes, const ProfileTiming& timing,
+          const RunFrame& frame)
+        : processes_(processes), timing_(timing), frame_(frame), start_(start), next_(start_) {
         frame_.sampler->read();  // what came before the start is not of this run
     }
 
@@ -135,7 +136,7 @@ class Watch {
     SupervisedProcesses* processes_;
     const ProfileTiming& timing_;
     const RunFrame& frame_;
-    Clock::time_point start_ = Clock::now();
+    Clock::time_point start_;
     Clock::time_point next_;                    ///< when the sensor is asked
     std::optional<Clock::time_point> over_at_;  ///< when the first command ended
     ComponentRun run_;
@@ -174,14 +175,15 @@ std::string to_string(RunStatus status) {
 
 ComponentRun run_component(const std::vector<std::vector<std::string>>& commands, const ProfileTiming& timing,
                            const RunFrame& frame) {
-    if (commands.empty()) return Watch(nullptr, timing, frame).run();
+    if (commands.empty()) return Watch(Clock::now(), nullptr, timing, frame).run();
     const OutputFile output(frame.output);
     SupervisedProcesses::Options options;
     options.output = output.file();
     options.errors = output.file();
     options.patience = std::chrono::duration_cast<std::chrono::milliseconds>(ticks(frame.patience_s));
+    const auto start = Clock::now();  // before, or a late start of ours would make theirs look short
     SupervisedProcesses processes(commands, options);
-    auto run = Watch(&processes, timing, frame).run();
+    auto run = Watch(start, &processes, timing, frame).run();
     const bool by_itself =
         run.status != RunStatus::timed_out && (run.status != RunStatus::ok || !timing.duration_s);
     note_ending(processes.end(), by_itself, run);

@@ -106,7 +106,7 @@ TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
                         " & [ -e free ] || [ $(wc -l < starts) -lt 3 ] || sleep " + marker +
                         "; sleep 0.05']\nqos = { n = [1, 2, 3, 4] }\n");
     auto spec = text("p.toml");
-    spec.erase(spec.find("duration_s = 0.3\n"), 17);
+    spec.replace(spec.find("duration_s = 0.3\n"), 17, "timeout_s = 20\n");
     write("p.toml", spec);
     const auto child = test::start_program("flightwatt-profile", {"p.toml", "-o", "out"}, folder);
     const auto lines = [&] {
