@@ -33,7 +33,7 @@ std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate) {
         half_wh = student_t_95(std::max(freedom, 1.0)) * std::sqrt(estimate.variance_wh2);
     }
     return EnergyInterval{std::max(estimate.energy_wh - half_wh, std::min(estimate.energy_wh, 0.0)),
-                    estimate.energy_wh + half_wh};
+                          estimate.energy_wh + half_wh};
 }
 
 }  // namespace flightwatt

@@ -153,8 +153,8 @@ TEST(PlanToml, RefusesWhatMakesNoSense) {
     EXPECT_EQ(
         plan("[[schedule]]\notherwise = true\nrun = {}"),
         "m.toml:8:1: `otherwise` leaves nothing to plan; take it out: what no other entry fixes is planned");
-    EXPECT_EQ(refused("reserve_soc_percent = 100\n"),
-              "m.toml:4:1: reserve_soc_percent = 100 is out of range; expected from 0, to below 100");
+    EXPECT_EQ(refused("reserve_soc_percent = 101\n"),
+              "m.toml:4:1: reserve_soc_percent = 101 is out of range; expected from 0 to 100");
 }
 
 TEST(PlanToml, IsRefusedWhereAScheduleIsDue) {
