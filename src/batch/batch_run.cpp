@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/fingerprint.h"
+#include "batch/fit_selection.h"
 #include "batch/interruption.h"
 #include "batch/left_overs.h"
 #include "flight/flight_reader.h"
@@ -39,10 +40,11 @@ void write_result(const BatchOptions& options, const std::string& flight, const 
 /// Of everything that the result depends on.
 std::string fingerprint_of(const LogFile& log, const BatchOptions& options) {
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 4");
+    fingerprint.add(FLIGHTWATT_VERSION " record 5");
     fingerprint.add(log.flight);
     fingerprint.add(log.path.string());
     fingerprint.add(options.aircraft_id.value_or(""));
+    fingerprint.add(log.why_not_fitted);
     fingerprint.add(options.correct_idle_offset ? "idle offset corrected" : "");
     fingerprint.add(DataFile(log.path).text());
     const auto configuration = find_log_file(log.path);
@@ -93,40 +95,6 @@ std::string describe(const InputError& error) {
                        error.hint());
 }
 
-/// A series that was read back from its CSV has no airspeed any more; the record has what a fit takes of it.
-void restore_airspeed(const FlightRecord& record, FlightSelection& selection) {
-    for (const auto& phase : record.phases) {
-        const auto name = flight_name_of_sortie(record.flight, phase.sortie);
-        for (auto& flight : selection.flights) {
-            if (flight.flight != name || !flight.phases[phase.phase]) continue;
-            flight.phases[phase.phase]->airspeed_cubed_m3_per_s3 = phase.airspeed_cubed_m3_per_s3;
-        }
-    }
-}
-
-/// What is fitted of a flight: nothing if its power record is absurd or its folder is not to be fitted,
-/// unless the user keeps it.
-FlightSelection select_for_fit(const FlightSeries& series, const FlightPhases& phases,
-                               const FlightRecord& record, const LogFile& log, const BatchOptions& options) {
-    auto selection = select_samples(series, phases, options.needed_samples);
-    restore_airspeed(record, selection);
-    if (!options.keep.contains(series.flight)) {
-        if (!record.absurdities.empty()) {
-            leave_out_all(selection, series.flight, describe_absurdities(record.absurdities));
-        } else if (!log.why_not_fitted.empty()) {
-            leave_out_all(selection, series.flight, log.why_not_fitted);
-        }
-    }
-    for (auto& flight : selection.flights) {  // kept until the fit, of thousands of flights
-        for (auto& phase : flight.phases.values) {
-            if (!phase) continue;
-            phase->tau.shrink_to_fit();
-            phase->power_w.shrink_to_fit();
-        }
-    }
-    return selection;
-}
-
 /// Reads, segments and writes one log. Throws InputError where it cannot be used.
 BatchFlight do_accepted(const LogFile& log, const BatchOptions& options) {
     BatchFlight done;
@@ -138,7 +106,8 @@ BatchFlight do_accepted(const LogFile& log, const BatchOptions& options) {
     if (options.correct_idle_offset) correct_idle_offset(series, power.idle);
     done.record = record_of(series, phases);
     done.record.absurdities = power.absurdities;
-    done.selection = select_for_fit(series, phases, done.record, log, options);
+    done.record.why_not_fitted = log.why_not_fitted;
+    done.selection = select_for_fit(series, phases, done.record, options.needed_samples, options.keep);
     write_result(options, log.flight, series_ending, to_csv(series));
     write_result(options, log.flight, phases_ending, phases_csv(series, phases));
     return done;
@@ -155,7 +124,8 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
             if (!done.record.accepted) return done;
             auto series = read_series_csv(result_path(options, log.flight, series_ending));
             series.flight = log.flight;
-            done.selection = select_for_fit(series, phases_of(done.record), done.record, log, options);
+            done.selection = select_for_fit(series, phases_of(done.record), done.record,
+                                            options.needed_samples, options.keep);
             return done;
         }
         remove_results(options, log.flight);

@@ -102,7 +102,8 @@ std::string to_json_text(const FlightRecord& record) {
                     {"power_source", record.power_source},
                     {"phases", phases},
                     {"warnings", record.warnings},
-                    {"absurdities", record.absurdities}};
+                    {"absurdities", record.absurdities},
+                    {"why_not_fitted", record.why_not_fitted}};
     // File names need not be UTF-8, and a record must never fail for that.
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -122,6 +123,7 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
         for (const auto& phase : json.at("phases")) record.phases.push_back(recorded_phase(phase));
         record.warnings = json.at("warnings").get<std::vector<std::string>>();
         record.absurdities = json.at("absurdities").get<std::vector<std::string>>();
+        record.why_not_fitted = json.at("why_not_fitted");
         return record;
     } catch (const std::exception&) {
         return std::nullopt;  // damaged or of another version: the log is done again

@@ -39,6 +39,7 @@ struct FlightRecord {
     std::vector<RecordedPhase> phases;
     std::vector<std::string> warnings;
     std::vector<std::string> absurdities;  ///< of its power record: see PowerReport
+    std::string why_not_fitted;            ///< what its folder says: see LogFile
 };
 
 /// The record of a flight that was read and segmented.

@@ -1,0 +1,45 @@
+#include "batch/stored_flights.h"
+
+#include "flight/phase_statistics.h"
+#include "flight/series_csv.h"
+#include "rejected.h"
+#include "sample_logs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(StoredFlights, AreWhatTheBatchLeft) {
+    const auto scratch = test::scratch_dir();
+    test::copy_sample(1, scratch / "in");
+    test::copy_sample(2, scratch / "in", "<b> \"x\"");
+    write_file_atomically(scratch / "in" / "rubbish.data", "rubbish\n");
+    const auto done = test::batch(scratch / "in", scratch / "out");
+    const auto stored = read_stored_flights(scratch / "out");
+    ASSERT_EQ(stored.size(), 3U);
+    EXPECT_EQ(stored[0].record.flight, "<b> \"x\"");
+    EXPECT_EQ(stored[1].record.flight, "opterra_synthetic_01");
+    EXPECT_FALSE(stored[2].record.accepted);
+    EXPECT_THAT(stored[2].record.error, HasSubstr("rubbish.data"));
+    const auto files = test::contents(scratch / "out");
+    EXPECT_EQ(to_csv(stored[1].series), files.at("flights/opterra_synthetic_01.series.csv"));
+    EXPECT_EQ(phases_csv(stored[1].series, stored[1].phases),
+              files.at("flights/opterra_synthetic_01.phases.csv"));
+}
+
+TEST(StoredFlights, RefuseWhatIsNoBatchFolder) {
+    const auto scratch = test::scratch_dir();
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no flights/ in it"));
+    make_directories(scratch / "flights");
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no record of a flight"));
+    test::write_text(scratch / "flights" / "a.record.json", "{}");
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }),
+                HasSubstr("run flightwatt batch again"));
+}
+
+}  // namespace
+}  // namespace flightwatt
