@@ -33,6 +33,7 @@ constexpr StageLine stages[] = {
     {"simulate", "a mission file to its state of charge over time"},
     {"compare", "several missions, ranked by final state of charge"},
     {"plan", "the schedule worth most that lands a mission with its reserve"},
+    {"report", "flights, model and missions as one page, and figures for papers"},
     {"synthesize", "made-up Paparazzi logs of flights after a model"},
 };
 

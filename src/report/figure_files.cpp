@@ -1,0 +1,86 @@
+#include "report/figure_files.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace flightwatt {
+namespace {
+
+constexpr int not_there = 127;
+
+/// Runs a program of the PATH with its output on our standard error; its exit code, or `not_there`.
+int run(const std::vector<std::string>& command) {
+    std::vector<char*> arguments;
+    for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+    pid_t process = 0;
+    const int failure =
+        ::posix_spawnp(&process, arguments.front(), &actions, nullptr, arguments.data(), environ);
+    ::posix_spawn_file_actions_destroy(&actions);
+    if (failure == ENOENT) return not_there;
+    if (failure != 0) {
+        throw OutputError(fmt::format("cannot run {}: {}", command.front(), std::strerror(failure)));
+    }
+    int status = 0;
+    while (::waitpid(process, &status, 0) < 0) {
+        if (errno != EINTR) {
+            throw OutputError(fmt::format("lost sight of {}: {}", command.front(), std::strerror(errno)));
+        }
+    }
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// True if it ran, false if the program is not there.
+bool ran(const std::vector<std::string>& command) {
+    const int code = run(command);
+    if (code == not_there) return false;
+    if (code != 0) throw OutputError(fmt::format("{} failed with exit code {}", command.front(), code));
+    return true;
+}
+
+/// The specification with the light theme in it: a file that any Vega-Lite draws.
+std::string standalone(const Figure& figure, const VegaJson& theme) {
+    auto spec = figure.spec;
+    spec["config"] = theme.at("light");
+    return spec.dump(1, ' ', false, VegaJson::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
+                          const std::filesystem::path& folder) {
+    make_directories(folder);
+    const auto theme = VegaJson::parse(web.theme);
+    FigureFiles files;
+    for (const auto& section : sections) {
+        for (const auto& figure : section.figures) {
+            write_file_atomically(folder / (figure.id + ".vl.json"), standalone(figure, theme));
+            ++files.figures;
+        }
+    }
+    files.has_svg = ran({"node", (web.folder / "render.mjs").string(), folder.string()});
+    if (!files.has_svg) return files;
+    for (const auto& section : sections) {
+        for (const auto& figure : section.figures) {
+            const auto svg = (folder / (figure.id + ".svg")).string();
+            const auto pdf = (folder / (figure.id + ".pdf")).string();
+            files.has_pdf = ran({"rsvg-convert", "--format", "pdf", "--output", pdf, svg});
+            if (!files.has_pdf) return files;
+        }
+    }
+    return files;
+}
+
+}  // namespace flightwatt

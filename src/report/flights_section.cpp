@@ -1,0 +1,143 @@
+#include "report/flights_section.h"
+
+#include "base/units.h"
+#include "flight/phase_statistics.h"
+#include "report/flight_figure.h"
+#include "report/html.h"
+#include "report/phase_words.h"
+#include "report/track_figure.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace flightwatt {
+namespace {
+
+/// What the phases of a sortie add up to.
+struct SortieSums {
+    PerPhase<const PhaseSpan*> spans{};
+    PerPhase<double> mean_w;
+    double energy_wh = 0.0;
+    std::optional<double> counter_wh = 0.0;
+    std::size_t gaps = 0;
+};
+
+SortieSums sums_of(const FlightSeries& series, const Sortie& sortie) {
+    SortieSums sums;
+    for (const auto& span : sortie.phases) {
+        const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
+        sums.spans[span.phase] = &span;
+        sums.mean_w[span.phase] = statistics.mean_power_w;
+        sums.energy_wh += statistics.energy_wh;
+        sums.gaps += statistics.gaps;
+        if (sums.counter_wh && statistics.counter_energy_wh) {
+            *sums.counter_wh += *statistics.counter_energy_wh;
+        } else {
+            sums.counter_wh.reset();
+        }
+    }
+    return sums;
+}
+
+std::string closure_percent(const SortieSums& sums) {
+    if (!sums.counter_wh || *sums.counter_wh <= 0.0) return "-";
+    return fmt::format("{:+.2f}", units::percent_of(sums.energy_wh - *sums.counter_wh, *sums.counter_wh));
+}
+
+std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
+    const auto sums = sums_of(flight.series, flight.phases.sorties[sortie]);
+    std::vector<std::string> cells{flight.name, fmt::format("{}", sortie + 1)};
+    for (const auto phase : all_phases) {
+        const auto* span = sums.spans[phase];
+        cells.push_back(span == nullptr ? "-" : fmt::format("{:.0f}", span->duration_s()));
+    }
+    for (const auto phase : all_phases) {
+        cells.push_back(sums.spans[phase] == nullptr ? "-" : fmt::format("{:.1f}", sums.mean_w[phase]));
+    }
+    cells.push_back(fmt::format("{:.3f}", sums.energy_wh));
+    cells.push_back(sums.counter_wh ? fmt::format("{:.3f}", *sums.counter_wh) : "-");
+    cells.push_back(closure_percent(sums));
+    cells.push_back(fmt::format("{}", sums.gaps));
+    cells.push_back(fmt::format("{}", flight.warnings.size()));
+    cells.emplace_back(flight.left_out.empty() ? "all" : "in part");
+    return cells;
+}
+
+std::string flight_id(std::size_t index) { return fmt::format("flight-{}", index + 1); }
+
+/// One row a sortie of the flights that were not rejected.
+std::string flights_table_html(std::span<const ReportFlight> flights) {
+    TextTable table{
+        {"flight", "sortie", "take-off [s]", "cruise [s]", "landing [s]", "take-off [W]", "cruise [W]",
+         "landing [W]", "energy [Wh]", "counter [Wh]", "closure [%]", "gaps", "warnings", "fitted"},
+        {}};
+    HtmlTableOptions options{"Flights: durations, mean power, energy, closure, gaps and warnings", true, {}};
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+        if (!flights[f].rejected.empty()) continue;
+        for (std::size_t s = 0; s < flights[f].phases.sorties.size(); ++s) {
+            table.rows.push_back(cells_of(flights[f], s));
+            options.links.push_back(flight_id(f));
+        }
+    }
+    return table_html(table, options);
+}
+
+std::string excluded_html(std::span<const ReportFlight> flights) {
+    TextTable table{{"flight", "left out", "reason"}, {}};
+    for (const auto& flight : flights) {
+        if (!flight.rejected.empty()) table.rows.push_back({flight.name, "rejected", flight.rejected});
+        for (const auto& reason : flight.left_out)
+            table.rows.push_back({flight.name, "of the model", reason});
+    }
+    if (table.rows.empty()) return paragraph("Nothing was left out.");
+    return "<h3>Left out, and why</h3>\n" + table_html(table, {"What was left out, and why", false, {}});
+}
+
+double seconds_in_air(const ReportFlight& flight) {
+    double time_s = 0.0;
+    for (const auto& sortie : flight.phases.sorties) {
+        for (const auto& span : sortie.phases) time_s += span.duration_s();
+    }
+    return time_s;
+}
+
+void add_flight(Section& section, const ReportFlight& flight, const std::optional<MechanicalModel>& model,
+                std::size_t index) {
+    const auto id = flight_id(index);
+    section.html += fmt::format(
+        "<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{:.0f} s in the air</span></summary>\n", id,
+        index == 0 ? " open" : "", escaped(flight.name), seconds_in_air(flight));
+    section.html += paragraph("From " + flight.log, "soft");
+    if (!flight.warnings.empty()) {
+        section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
+    }
+    add_figure(section, flight_figure(flight, model, id + "-power"));
+    if (auto track = track_figure(flight, id + "-track")) add_figure(section, std::move(*track));
+    section.html += "</details>\n";
+}
+
+}  // namespace
+
+Section flights_section(std::span<const ReportFlight> flights, const std::optional<MechanicalModel>& model) {
+    Section section{"flights", "Flights", "", {}};
+    const auto rejected = std::count_if(flights.begin(), flights.end(),
+                                        [](const ReportFlight& flight) { return !flight.rejected.empty(); });
+    section.html +=
+        paragraph(fmt::format("{} logs, {} of them rejected. Durations, mean power and energy are those of "
+                              "the power samples between "
+                              "lift-off and touchdown; counter is the autopilot's own energy counter over "
+                              "the same time, closure how "
+                              "much the integral lies above it. A click on a column sorts.",
+                              flights.size(), rejected));
+    section.html += flights_table_html(flights);
+    section.html += excluded_html(flights);
+    section.html += "<h3>Each flight</h3>\n";
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+        if (flights[f].rejected.empty()) add_flight(section, flights[f], model, f);
+    }
+    return section;
+}
+
+}  // namespace flightwatt

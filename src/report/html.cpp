@@ -1,0 +1,106 @@
+#include "report/html.h"
+
+#include "base/number.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace flightwatt {
+namespace {
+
+bool is_number_or_dash(const std::string& cell) {
+    return cell == "-" || parse_number(cell).has_value() ||
+           (cell.starts_with('+') && parse_number(cell.substr(1)).has_value());
+}
+
+std::vector<bool> text_columns(const TextTable& table) {
+    std::vector<bool> is_text(table.header.size(), false);
+    for (const auto& row : table.rows) {
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            is_text[c] = is_text[c] || !is_number_or_dash(row[c]);
+        }
+    }
+    return is_text;
+}
+
+std::string class_of(bool is_text) { return is_text ? " class=\"text\"" : ""; }
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+    std::string html;
+    for (const char c : valid_utf8(text)) {
+        switch (c) {
+            case '<':
+                html += "&lt;";
+                break;
+            case '>':
+                html += "&gt;";
+                break;
+            case '&':
+                html += "&amp;";
+                break;
+            case '"':
+                html += "&quot;";
+                break;
+            case '\'':
+                html += "&#39;";
+                break;
+            default:
+                html += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
+        }
+    }
+    return html;
+}
+
+std::string table_html(const TextTable& table, const HtmlTableOptions& options) {
+    const auto is_text = text_columns(table);
+    auto html = fmt::format(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table{1} "
+        "aria-label=\"{0}\">\n<thead><tr>",
+        escaped(options.caption), options.sortable ? " class=\"sortable\"" : "");
+    for (std::size_t c = 0; c < table.header.size(); ++c) {
+        html += fmt::format("<th scope=\"col\"{}>{}</th>", class_of(is_text[c]), escaped(table.header[c]));
+    }
+    html += "</tr></thead>\n<tbody>\n";
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
+        html += "<tr>";
+        for (std::size_t c = 0; c < table.rows[r].size(); ++c) {
+            auto cell = escaped(table.rows[r][c]);
+            if (c == 0 && r < options.links.size() && !options.links[r].empty()) {
+                cell = fmt::format("<a href=\"#{}\">{}</a>", escaped(options.links[r]), cell);
+            }
+            html += fmt::format("<td{}>{}</td>", class_of(is_text[c]), cell);
+        }
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+std::string figure_html(const Figure& figure) {
+    const auto keys = figure.time_signal.empty() ? std::string()
+                                                 : fmt::format(" data-zoom=\"{}\" data-scale=\"{}\"",
+                                                               figure.time_signal, figure.time_scale);
+    return fmt::format(
+        "<figure>\n<div class=\"figure\" tabindex=\"0\" role=\"group\" aria-label=\"{0}\" "
+        "data-spec=\"spec-{1}\" "
+        "data-name=\"{1}\"{2}></div>\n"
+        "<script type=\"application/json\" id=\"spec-{1}\">{3}</script>\n"
+        "<figcaption>{4}</figcaption>\n</figure>\n",
+        escaped(figure.description), figure.id, keys, script_json(figure.spec), escaped(figure.caption));
+}
+
+std::string paragraph(std::string_view text, std::string_view css_class) {
+    if (css_class.empty()) return fmt::format("<p>{}</p>\n", escaped(text));
+    return fmt::format("<p class=\"{}\">{}</p>\n", css_class, escaped(text));
+}
+
+std::string list_html(const std::vector<std::string>& lines) {
+    if (lines.empty()) return "";
+    std::string html = "<ul>\n";
+    for (const auto& line : lines) html += fmt::format("<li>{}</li>\n", escaped(line));
+    return html + "</ul>\n";
+}
+
+}  // namespace flightwatt

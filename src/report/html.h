@@ -1,0 +1,33 @@
+#pragma once
+
+#include "base/text_table.h"
+#include "report/figure.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flightwatt {
+
+/// `text` as HTML text or attribute value: valid UTF-8, without markup or control characters.
+std::string escaped(std::string_view text);
+
+struct HtmlTableOptions {
+    std::string caption;  ///< said to those who do not see the table
+    bool sortable = false;
+    std::vector<std::string> links = {};  ///< of the rows' first cells; none where empty
+};
+
+/// A table; columns that are not all numbers (or '-') stand to the left.
+std::string table_html(const TextTable& table, const HtmlTableOptions& options);
+
+/// A figure with its caption and its specification, which the page's script draws.
+std::string figure_html(const Figure& figure);
+
+/// A paragraph of plain text.
+std::string paragraph(std::string_view text, std::string_view css_class = "");
+
+/// A list of plain texts; empty for none.
+std::string list_html(const std::vector<std::string>& lines);
+
+}  // namespace flightwatt

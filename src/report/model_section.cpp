@@ -1,0 +1,51 @@
+#include "report/model_section.h"
+
+#include "base/units.h"
+#include "report/html.h"
+#include "report/validation_figure.h"
+
+#include <fmt/format.h>
+
+namespace flightwatt {
+
+Section model_section(const ReportModel& model, const PublishedFigures& published, const std::string& id) {
+    Section section{id, "Mechanical model: " + valid_utf8(model.model.name), "", {}};
+    section.html += paragraph(model.origin, "soft");
+    if (!model.model.description.empty()) section.html += paragraph(model.model.description);
+    for (const auto& note : model.notes) section.html += paragraph(note, "warning");
+    add_figure(section, model_figure(model.model, model.bands, published, id + "-curves"));
+    if (model.table_one) {
+        section.html += "<h3>Table I</h3>\n";
+        section.html +=
+            table_html(*model.table_one, {"Coefficients of the model as the paper's Table I", false, {}});
+        std::string legend =
+            "Coefficients in W. xi is the angular frequency on a time axis of 28 units a phase.";
+        if (!model.bands[Phase::cruise].time_s.empty()) {
+            legend += " +- is half the 95 % interval of the mean of these flights.";
+        }
+        section.html += paragraph(legend, "soft");
+    }
+    return section;
+}
+
+Section validation_section(const std::vector<ValidatedFlight>& flights) {
+    Section section{"validation", "Validation against the baselines", "", {}};
+    section.html += paragraph(
+        "Each flight is left out in turn, the model is fitted to the others and predicts its energy from its "
+        "durations alone: beside the constant mean power of each phase, the nearest flight's power, and, "
+        "where "
+        "it was measured, cruise power after the airspeed cubed.");
+    add_figure(section, validation_figure(flights, "validation-errors"));
+    section.html +=
+        table_html(validation_table(flights), {"Scores of the models on flights left out", true, {}});
+    constexpr std::size_t few = 20;
+    if (flights.size() < few) {
+        section.html += paragraph(
+            fmt::format("Coverage over {} flights means little: each counts for {:.0f} points.",
+                        flights.size(), units::percent_of(1.0, static_cast<double>(flights.size()))),
+            "soft");
+    }
+    return section;
+}
+
+}  // namespace flightwatt

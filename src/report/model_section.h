@@ -1,0 +1,29 @@
+#pragma once
+
+#include "base/text_table.h"
+#include "mechanical/validation.h"
+#include "report/model_figure.h"
+#include "report/section.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt {
+
+/// A mechanical model and what is known of it.
+struct ReportModel {
+    MechanicalModel model;
+    std::string origin;              ///< "fitted to these flights", or the file it was read from
+    PerPhase<CurveBand> bands = {};  ///< without times: not known
+    std::optional<TextTable> table_one = {};
+    std::vector<std::string> notes = {};  ///< what a reader should know of it
+};
+
+/// The model as Fig. 2 with Table I. `id` tells several apart.
+Section model_section(const ReportModel& model, const PublishedFigures& published, const std::string& id);
+
+/// How well flights that it has not seen are predicted, beside the baselines. `flights` is not empty.
+Section validation_section(const std::vector<ValidatedFlight>& flights);
+
+}  // namespace flightwatt

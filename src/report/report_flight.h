@@ -1,0 +1,22 @@
+#pragma once
+
+#include "flight/flight_series.h"
+#include "flight/segmentation.h"
+
+#include <string>
+#include <vector>
+
+namespace flightwatt {
+
+/// One log as the report shows it.
+struct ReportFlight {
+    std::string name;
+    std::string log;       ///< where it was read from
+    std::string rejected;  ///< why it could not be used; empty if it could
+    FlightSeries series;   ///< of a log that was not rejected
+    FlightPhases phases;   ///< with the evidence at their edges
+    std::vector<std::string> warnings;
+    std::vector<std::string> left_out;  ///< what the model was not fitted to, and why
+};
+
+}  // namespace flightwatt

@@ -1,0 +1,1 @@
+flightwatt report "$SOURCE/logs" -o result.html; code=$?; ls; exit $code

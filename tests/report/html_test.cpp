@@ -1,0 +1,38 @@
+#include "report/html.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+TEST(Escaped, LeavesNoMarkup) {
+    EXPECT_EQ(escaped("<script>\"a\" & 'b'\x01</script>"),
+              "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39; &lt;/script&gt;");
+}
+
+TEST(TableHtml, PutsTextsToTheLeftAndLinksTheFirstCell) {
+    const TextTable table{{"flight", "energy [Wh]", "closure [%]", "state"},
+                          {{"<a>", "5.0", "+0.1", "all"}, {"b", "-", "-0.2", "in part"}}};
+    const auto html = table_html(table, {"Flights", true, {"flight-1", ""}});
+    EXPECT_NE(html.find("<table class=\"sortable\""), std::string::npos);
+    EXPECT_NE(html.find("<td class=\"text\"><a href=\"#flight-1\">&lt;a&gt;</a></td>"), std::string::npos);
+    EXPECT_NE(html.find("<td class=\"text\">b</td>"), std::string::npos);
+    EXPECT_NE(html.find("<td>+0.1</td>"), std::string::npos);
+    EXPECT_NE(html.find("<td>-</td>"), std::string::npos);
+    EXPECT_NE(html.find("<td class=\"text\">in part</td>"), std::string::npos);
+}
+
+TEST(FigureHtml, TellsWhatTheFigureSays) {
+    Figure figure;
+    figure.id = "power";
+    figure.caption = "A & B";
+    figure.description = "27 W \"on average\"";
+    figure.spec = {{"description", "</script>"}};
+    const auto html = figure_html(figure);
+    EXPECT_NE(html.find("aria-label=\"27 W &quot;on average&quot;\""), std::string::npos);
+    EXPECT_NE(html.find("<figcaption>A &amp; B</figcaption>"), std::string::npos);
+    EXPECT_NE(html.find("\\u003c/script>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace flightwatt

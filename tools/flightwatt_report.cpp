@@ -1,0 +1,159 @@
+// flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
+
+#include "cli/stage.h"
+#include "mission/mission.h"
+#include "report/figure_files.h"
+#include "report/missions_section.h"
+#include "report/page.h"
+#include "report_flights.h"
+
+#include <chrono>
+#include <cstdlib>
+
+#include <fmt/chrono.h>
+
+namespace {
+
+using namespace flightwatt;
+
+struct ReportInputs {
+    std::optional<std::filesystem::path> out;
+    std::vector<Mission> missions;
+};
+
+ReportInputs read_inputs(const cli::StageCall& call) {
+    ReportInputs inputs;
+    for (const auto& input : call.inputs) {
+        if (!std::filesystem::is_directory(input)) {
+            inputs.missions.push_back(read_mission(input));
+            continue;
+        }
+        if (inputs.out) {
+            throw UsageError(fmt::format("two folders are given, {} and {}: expected one of flightwatt batch",
+                                         inputs.out->string(), input));
+        }
+        inputs.out = input;
+    }
+    return inputs;
+}
+
+/// Now, or what SOURCE_DATE_EPOCH says (reproducible-builds.org).
+std::string time_of_report() {
+    std::time_t now = std::time(nullptr);
+    if (const char* given = std::getenv("SOURCE_DATE_EPOCH")) {
+        const auto seconds = parse_unsigned(given);
+        if (!seconds) throw UsageError(fmt::format("SOURCE_DATE_EPOCH is '{}', expected seconds", given));
+        now = static_cast<std::time_t>(*seconds);
+    }
+    return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
+}
+
+/// What the batch's folder has to say: flights, model and validation.
+void add_batch(const cli::StageCall& call, const std::filesystem::path& out, const PublishedFigures& figures,
+               PageHead& head, std::vector<Section>& sections) {
+    const auto options = read_fit_options(call);
+    const auto kept = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
+    std::optional<MechanicalModel> published;
+    if (const auto file = call.maybe<std::string>("published")) published = read_mechanical_model(*file);
+    const auto content = read_batch_content(out, options, {kept.begin(), kept.end()});
+    const auto model = read_batch_model(out, content, options, published);
+    head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
+    sections.push_back(flights_section(content.flights, model ? std::optional(model->model) : std::nullopt));
+    if (!model) {
+        head.notes.push_back("There is no model of these flights: the batch could not fit them.");
+        return;
+    }
+    for (const auto& note : model->notes) cli::warn(call, note);
+    sections.push_back(model_section(*model, figures, "model"));
+    if (!model->notes.empty()) return;
+    const auto most = call.get<std::size_t>("most-validated");
+    if (content.measured.size() < 2 || content.measured.size() > most) {
+        head.notes.push_back(fmt::format(
+            "The model is validated with 2 to {} flights, and there are {}; flightwatt validate does it.",
+            most, content.measured.size()));
+        return;
+    }
+    sections.push_back(validation_section(leave_one_out(content.measured, options)));
+}
+
+nlohmann::ordered_json summary_json(const PageHead& head, const std::vector<Section>& sections) {
+    nlohmann::ordered_json json{{"title", head.title}, {"notes", head.notes}, {"figures", VegaJson::array()}};
+    for (const auto& section : sections) {
+        for (const auto& figure : section.figures) {
+            json["figures"].push_back(
+                {{"id", figure.id}, {"section", section.title}, {"description", figure.description}});
+        }
+    }
+    return json;
+}
+
+/// Where figures are wanted as files.
+void write_figure_files(const cli::StageCall& call, const std::vector<Section>& sections,
+                        const WebFiles& web) {
+    const auto folder = call.maybe<std::string>("figures");
+    if (!folder) return;
+    const auto files = write_figures(sections, web, *folder);
+    cli::note(call, fmt::format("{} figures in {}: .vl.json{}{}", files.figures, *folder,
+                                files.has_svg ? ", .svg" : "", files.has_pdf ? ", .pdf" : ""));
+    if (!files.has_svg) cli::warn(call, "node is not there: no figure was rendered");
+    if (files.has_svg && !files.has_pdf) cli::warn(call, "rsvg-convert is not there: no PDF was made");
+}
+
+int report(const cli::StageCall& call) {
+    auto inputs = read_inputs(call);
+    PageHead head{"FlightWatt report", {}, {}};
+    if (const auto title = call.maybe<std::string>("title")) head.title = valid_utf8(*title);
+    head.facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}};
+    PublishedFigures published;
+    if (const auto folder = call.maybe<std::string>("digitised")) {
+        published = read_published_figures(*folder);
+        head.facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
+    } else {
+        head.facts.emplace_back("beside", "no digitised figures: none were given (--digitised)");
+    }
+    std::vector<Section> sections;
+    if (inputs.out) add_batch(call, *inputs.out, published, head, sections);
+    if (!inputs.missions.empty()) {
+        std::string names;
+        for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + mission.file;
+        head.facts.emplace_back("missions", names);
+        const auto missions = simulate_for_report(std::move(inputs.missions));
+        for (auto& section : mission_sections(missions, published)) sections.push_back(std::move(section));
+    }
+    const bool wants_page = call.output || (!call.json && !call.has("figures"));
+    if (wants_page || call.has("figures")) {
+        const auto web = read_web_files(web_folder());
+        write_figure_files(call, sections, web);
+        if (wants_page) cli::write_result(call, page_html(head, sections, web));
+    }
+    if (call.json) cli::print(json_text(summary_json(head, sections)));
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    namespace po = boost::program_options;
+    cli::StageDefinition stage;
+    stage.name = "report";
+    stage.arguments = "[OUT] [MISSION.toml...] -o report.html";
+    stage.description =
+        "Writes one HTML page, to be opened offline, of what flightwatt batch left in the folder OUT "
+        "(flights,\n"
+        "model, validation) and of missions (software, schedules, quality of service). Its figures are "
+        "Vega-Lite\n"
+        "specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node) "
+        "and\n"
+        ".pdf (where rsvg-convert is). Give the fit options that the batch was given.";
+    add_fit_options(stage.options);
+    add_keep_option(stage.options);
+    stage.options.add_options()("figures", po::value<std::string>()->value_name("DIR"),
+                                "write every figure to DIR")(
+        "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
+        "digitised", po::value<std::string>()->value_name("DIR"),
+        "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others")(
+        "title", po::value<std::string>()->value_name("TITLE"), "of the page")(
+        "most-validated", po::value<std::size_t>()->value_name("N")->default_value(30),
+        "leave flights out in turn where there are no more than N: the work grows with their square");
+    return cli::run_stage(argc, argv, stage, report);
+}

@@ -1,0 +1,120 @@
+// Draws the report's figures when they come into view, in the reader's light or dark, and sorts its tables.
+(() => {
+  const theme = JSON.parse(document.getElementById("theme").textContent);
+  const dark = window.matchMedia("(prefers-color-scheme: dark)");
+  const printing = window.matchMedia("print");
+  const views = new Map(); // element -> Vega view
+
+  const config = () => (dark.matches && !printing.matches ? theme.dark : theme.light);
+  const specOf = (element) => JSON.parse(document.getElementById(element.dataset.spec).textContent);
+
+  async function draw(element) {
+    if (element.dataset.drawing) return;
+    element.dataset.drawing = "yes";
+    const spec = fitWidth(specOf(element), element.clientWidth);
+    try {
+      views.get(element)?.finalize();
+      const result = await vegaEmbed(element, spec, {
+        mode: "vega-lite",
+        renderer: "svg",
+        config: config(),
+        actions: { export: { svg: true, png: true }, source: false, compiled: false, editor: false },
+        downloadFileName: element.dataset.name,
+        i18n: { SVG_ACTION: "Save as SVG", PNG_ACTION: "Save as PNG", CLICK_TO_VIEW_ACTIONS: "Save this figure" },
+        tooltip: { theme: dark.matches ? "dark" : "light" },
+      });
+      views.set(element, result.view);
+      element.querySelector("summary")?.setAttribute("aria-label", "Save this figure");
+      element.dataset.drawn = "yes";
+      element.dataset.width = element.clientWidth;
+    } catch (error) {
+      element.textContent = `This figure could not be drawn: ${error.message}`;
+      throw error;
+    } finally {
+      delete element.dataset.drawing;
+    }
+  }
+
+  const inView = new IntersectionObserver(
+    (entries) => {
+      for (const { isIntersecting, target } of entries) {
+        if (!isIntersecting) continue;
+        inView.unobserve(target);
+        draw(target);
+      }
+    },
+    { rootMargin: "600px" },
+  );
+  const figures = document.querySelectorAll("[data-spec]");
+  for (const element of figures) inView.observe(element); // those in closed <details> have no box: not in view
+
+  const shown = (element) => element.clientWidth > 0;
+  const redraw = () => [...views.keys()].filter(shown).forEach(draw);
+  dark.addEventListener("change", redraw);
+  let resized = 0;
+  window.addEventListener("resize", () => {
+    clearTimeout(resized);
+    resized = setTimeout(() => {
+      for (const element of views.keys()) if (shown(element) && Number(element.dataset.width) !== element.clientWidth) draw(element);
+    }, 200);
+  });
+  window.addEventListener("beforeprint", () => {
+    for (const element of figures) if (shown(element) && !views.has(element)) draw(element);
+  });
+
+  // Keyboard: + and - zoom the time axis of the figure that has the focus, the arrows move it, 0 shows all.
+  const steps = {
+    "+": (low, high) => [low + (high - low) / 4, high - (high - low) / 4],
+    "-": (low, high) => [low - (high - low) / 2, high + (high - low) / 2],
+    ArrowLeft: (low, high) => [low - (high - low) / 4, high - (high - low) / 4],
+    ArrowRight: (low, high) => [low + (high - low) / 4, high + (high - low) / 4],
+    0: () => null,
+  };
+  document.addEventListener("keydown", (event) => {
+    const view = views.get(event.target);
+    const step = steps[event.key === "=" ? "+" : event.key];
+    const signal = event.target.dataset?.zoom;
+    if (!view || !step || !signal || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    const now = view.signal(signal) || view.scale(event.target.dataset.scale).domain();
+    view.signal(signal, step(now[0], now[1])).runAsync();
+  });
+
+  // A click on a column's name sorts by it.
+  const number = (text) => Number.parseFloat(text.replace("\u2212", "-"));
+  const compare = (a, b) => {
+    const [x, y] = [number(a), number(b)];
+    if (Number.isNaN(x) || Number.isNaN(y)) return Number.isNaN(x) && Number.isNaN(y) ? a.localeCompare(b) : Number.isNaN(x) - Number.isNaN(y);
+    return x - y;
+  };
+  for (const table of document.querySelectorAll("table.sortable")) {
+    [...table.tHead.rows[0].cells].forEach((header, column) => {
+      const name = header.textContent;
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = name;
+      header.replaceChildren(button);
+      button.addEventListener("click", () => {
+        const rising = header.getAttribute("aria-sort") !== "ascending";
+        for (const other of table.tHead.rows[0].cells) other.removeAttribute("aria-sort");
+        header.setAttribute("aria-sort", rising ? "ascending" : "descending");
+        const body = table.tBodies[0];
+        const keyed = [...body.rows].map((row) => ({ row, key: row.cells[column].textContent }));
+        const isText = keyed.some(({ key }) => key !== "-" && Number.isNaN(Number(key)));
+        const order = isText ? (a, b) => a.localeCompare(b, undefined, { numeric: true }) : compare;
+        keyed.sort((a, b) => (rising ? order(a.key, b.key) : order(b.key, a.key)));
+        body.append(...keyed.map(({ row }) => row));
+      });
+    });
+  }
+
+  // A link to a flight opens it.
+  const openTarget = () => {
+    const target = location.hash ? document.getElementById(decodeURIComponent(location.hash.slice(1))) : null;
+    if (target?.tagName === "DETAILS") target.open = true;
+  };
+  window.addEventListener("hashchange", openTarget);
+  openTarget();
+
+  window.flightwatt = { views, draw, figures };
+})();
