@@ -1,0 +1,268 @@
+// The report's pages in headless Chromium: node page_test.mjs FOLDER, where FOLDER holds six.html, hostile.html and
+// three_hundred.html. Screenshots are left in FOLDER/screenshots. FLIGHTWATT_WEB is the folder with node_modules,
+// CHROMIUM the browser.
+import assert from "node:assert/strict";
+import { mkdirSync, readFileSync, statSync } from "node:fs";
+import { createRequire } from "node:module";
+import path from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+
+const require = createRequire(path.join(process.env.FLIGHTWATT_WEB, "package.json"));
+const { chromium } = require("playwright-core");
+const axe = require("axe-core");
+
+const folder = process.env.PAGES;
+const screenshots = path.join(folder, "screenshots");
+const address = (name) => pathToFileURL(path.join(folder, name)).href;
+let browser;
+
+before(async () => {
+  mkdirSync(screenshots, { recursive: true });
+  browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args: ["--no-sandbox", "--disable-gpu"] });
+});
+after(() => browser?.close());
+
+/** Opens a page and notes what it should not do. */
+async function open(name, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
+  const page = await context.newPage();
+  const faults = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && faults.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => faults.push(`exception: ${error.message}`));
+  page.on("dialog", (dialog) => (faults.push(`dialog: ${dialog.message()}`), dialog.dismiss()));
+  page.on("request", (request) => {
+    if (request.url() !== address(name) && !/^(data|blob):/.test(request.url())) faults.push(`request: ${request.url()}`);
+  });
+  await page.goto(address(name));
+  return { page, faults };
+}
+
+/** Opens every flight and draws every figure; how many there are. */
+async function drawAll(page) {
+  return page.evaluate(async () => {
+    for (const details of document.querySelectorAll("details.flight")) details.open = true;
+    const { draw, figures, views } = window.flightwatt;
+    for (const figure of figures) if (!views.has(figure)) await draw(figure);
+    await new Promise((done) => {
+      const wait = () => ([...figures].every((figure) => figure.dataset.drawn) ? done() : setTimeout(wait, 50));
+      wait();
+    });
+    return figures.length;
+  });
+}
+
+/** Figures whose drawing holds no mark that is seen. */
+const withoutMarks = (page) =>
+  page.evaluate(() =>
+    [...window.flightwatt.figures]
+      .filter((figure) => ![...figure.querySelectorAll("svg .role-mark path, svg .role-mark rect")].some((mark) => (mark.getAttribute("d") || "rect").length > 8 || mark.tagName === "rect"))
+      .map((figure) => figure.dataset.name),
+  );
+
+const domain = (page, name) => page.evaluate((figure) => window.flightwatt.views.get(document.querySelector(`[data-name="${figure}"]`)).scale("x").domain(), name);
+const width = ([low, high]) => high - low;
+
+test("six flights: every figure is drawn, nothing is said, nothing is asked of the network", async () => {
+  const { page, faults } = await open("six.html");
+  const count = await drawAll(page);
+  assert.ok(count >= 19, `${count} figures`);
+  assert.deepEqual(await withoutMarks(page), []);
+  assert.deepEqual(faults, []);
+  assert.ok(statSync(path.join(folder, "six.html")).size < 3e6);
+  await page.context().close();
+});
+
+test("hovering a curve tells its value with its unit", async () => {
+  const { page } = await open("six.html");
+  const figure = page.locator('[data-name="flight-1-power"]');
+  await figure.scrollIntoViewIfNeeded();
+  await figure.locator("svg.marks").waitFor();
+  const point = figure.locator("svg.marks .mark-symbol.role-mark path").nth(300);
+  const box = await point.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  const tooltip = page.locator("#vg-tooltip-element.visible");
+  await tooltip.waitFor();
+  assert.match(await tooltip.innerText(), /\[(m|%|W)\]\s*[\d.]+/);
+  await page.context().close();
+});
+
+test("Ctrl and wheel, and the keyboard, zoom the time axis; the wheel alone does not", async () => {
+  const { page, faults } = await open("six.html");
+  const figure = page.locator('[data-name="flight-1-power"]');
+  await figure.scrollIntoViewIfNeeded();
+  await figure.locator("svg.marks").waitFor();
+  const whole = await domain(page, "flight-1-power");
+  const box = await figure.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height * 0.75);
+  await page.mouse.wheel(0, -1);
+  await page.waitForTimeout(100);
+  assert.deepEqual(await domain(page, "flight-1-power"), whole);
+  const now = await figure.boundingBox();
+  await page.mouse.move(now.x + now.width / 2, now.y + now.height * 0.75);
+  await page.keyboard.down("Control");
+  await page.mouse.wheel(0, -300);
+  await page.keyboard.up("Control");
+  await page.waitForTimeout(200);
+  const zoomed = await domain(page, "flight-1-power");
+  assert.ok(width(zoomed) < 0.9 * width(whole), `${zoomed} of ${whole}`);
+  await figure.focus();
+  await page.keyboard.press("+");
+  await page.waitForTimeout(200);
+  const closer = await domain(page, "flight-1-power");
+  assert.ok(width(closer) < 0.6 * width(zoomed), `${closer} of ${zoomed}`);
+  await page.keyboard.press("0");
+  await page.waitForTimeout(200);
+  assert.deepEqual(await domain(page, "flight-1-power"), whole);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
+test("a click on the legend hides a series, another shows it again", async () => {
+  const { page } = await open("six.html");
+  const figure = page.locator('[data-name="schedules-soc"]');
+  await figure.scrollIntoViewIfNeeded();
+  await figure.locator("svg.marks").waitFor();
+  const lines = () => figure.locator("svg.marks .mark-line.role-mark path").evaluateAll((paths) => paths.filter((line) => line.getAttribute("d")).length);
+  const all = await lines();
+  const symbol = figure.locator("svg.marks .role-legend-symbol path").first();
+  await symbol.click({ force: true });
+  await page.waitForTimeout(200);
+  assert.equal(await lines(), all - 1);
+  await symbol.click({ force: true });
+  await page.waitForTimeout(200);
+  assert.equal(await lines(), all);
+  await page.context().close();
+});
+
+test("saving a figure gives an SVG that parses, and a PNG", async () => {
+  const { page } = await open("six.html", { acceptDownloads: true });
+  const figure = page.locator('[data-name="model-curves"]');
+  await figure.scrollIntoViewIfNeeded();
+  await figure.locator("svg.marks").waitFor();
+  await figure.locator("summary").click();
+  const save = async (label) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), figure.getByText(label).click()]);
+    return { name: download.suggestedFilename(), content: readFileSync(await download.path()) };
+  };
+  const svg = await save("Save as SVG");
+  assert.equal(svg.name, "model-curves.svg");
+  const paths = await page.evaluate((text) => {
+    const xml = new DOMParser().parseFromString(text, "image/svg+xml");
+    return xml.querySelector("parsererror") ? -1 : xml.querySelectorAll("path").length;
+  }, svg.content.toString("utf8"));
+  assert.ok(paths > 10, `${paths} paths`);
+  const png = await save("Save as PNG");
+  assert.equal(png.content.subarray(1, 4).toString(), "PNG");
+  await page.context().close();
+});
+
+test("the table of flights sorts by any column", async () => {
+  const { page } = await open("six.html");
+  const table = page.locator("#flights table.sortable");
+  const column = async () => (await table.locator("tbody tr td:nth-child(9)").allInnerTexts()).map(Number);
+  await table.locator("th:nth-child(9) button").click();
+  const rising = await column();
+  assert.deepEqual(rising, [...rising].sort((a, b) => a - b));
+  await page.keyboard.press("Enter"); // the button has the focus
+  assert.deepEqual(await column(), [...rising].reverse());
+  await page.context().close();
+});
+
+for (const scheme of ["light", "dark"]) {
+  test(`axe finds nothing serious, ${scheme}`, async () => {
+    const { page } = await open("six.html", { colorScheme: scheme });
+    await drawAll(page);
+    await page.evaluate(axe.source);
+    const { violations } = await page.evaluate(() => window.axe.run());
+    const serious = violations.filter(({ impact }) => ["serious", "critical"].includes(impact));
+    assert.deepEqual(serious.map(({ id, nodes }) => [id, nodes.length, nodes[0].html.slice(0, 200), nodes[0].failureSummary]), []);
+    await page.context().close();
+  });
+}
+
+test("names with markup, quotes, unicode and 300 characters break nothing", async () => {
+  const { page, faults } = await open("hostile.html");
+  await drawAll(page);
+  assert.deepEqual(await withoutMarks(page), []);
+  assert.deepEqual(faults, []);
+  assert.equal(await page.evaluate(() => window.hacked), undefined);
+  assert.equal(await page.locator("main script:not([type='application/json'])").count(), 0);
+  const text = await page.locator("body").innerText();
+  for (const part of ["<script>window.hacked=1</script>", "\u03b1\u03b2\u03b3", '"quoted"', "m".repeat(300)]) assert.ok(text.includes(part), part);
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  assert.ok(overflow <= 0, `${overflow} px beside the page`);
+  await page.context().close();
+});
+
+/** Milliseconds until the first figure stands, the least of several. */
+async function openingTime(name) {
+  const times = [];
+  for (let run = 0; run < 4; ++run) {
+    const begin = performance.now();
+    const { page } = await open(name);
+    await page.locator('[data-name="flight-1-power"]').scrollIntoViewIfNeeded();
+    await page.locator('[data-name="flight-1-power"][data-drawn]').waitFor();
+    times.push(performance.now() - begin);
+    await page.context().close();
+  }
+  return Math.min(...times);
+}
+
+test("three hundred flights open in less than three times the time of six, in less than 30 MB", async () => {
+  const size = statSync(path.join(folder, "three_hundred.html")).size;
+  const six = await openingTime("six.html");
+  const many = await openingTime("three_hundred.html");
+  console.log(`300 flights: ${(size / 1e6).toFixed(1)} MB; ${many.toFixed(0)} ms to the first figure, 6 flights ${six.toFixed(0)} ms`);
+  assert.ok(size < 30e6, `${size} bytes`);
+  assert.ok(many < 3 * six, `${many} ms against ${six} ms`);
+  const { page, faults } = await open("three_hundred.html");
+  assert.equal(await page.locator("details.flight").count(), 300);
+  const drawn = await page.locator("[data-drawn]").count();
+  assert.ok(drawn < 20, `${drawn} figures are drawn before they are opened`);
+  const last = page.locator("details.flight").last();
+  await last.locator("summary").first().click();
+  await last.locator("[data-drawn]").first().waitFor();
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
+const sizes = { phone: { width: 390, height: 844 }, desktop: { width: 1280, height: 900 } };
+for (const colorScheme of ["light", "dark"]) {
+  for (const [name, viewport] of Object.entries(sizes)) {
+    test(`${name} in ${colorScheme}: nothing stands beside the page`, async () => {
+      const { page, faults } = await open("six.html", { colorScheme, viewport });
+      await page.evaluate(() => document.querySelectorAll("details.flight").forEach((details, i) => (details.open = i === 0)));
+      await page.evaluate(async () => {
+        const { draw, figures, views } = window.flightwatt;
+        for (const figure of figures) if (figure.clientWidth > 0 && !views.has(figure)) await draw(figure);
+      });
+      await page.waitForTimeout(300);
+      const wide = await page.evaluate(() => ({
+        page: document.documentElement.scrollWidth - document.documentElement.clientWidth,
+        figures: [...window.flightwatt.figures].filter((figure) => figure.clientWidth > 0 && figure.scrollWidth > figure.clientWidth + 1).map((figure) => figure.dataset.name),
+      }));
+      await page.screenshot({ path: path.join(screenshots, `${name}-${colorScheme}.png`), fullPage: true });
+      assert.deepEqual(wide, { page: 0, figures: [] });
+      assert.deepEqual(faults, []);
+      await page.context().close();
+    });
+  }
+}
+
+test("print: light, whatever the screen, and all of what is open is drawn", async () => {
+  const { page, faults } = await open("six.html", { colorScheme: "dark" });
+  const pdf = await page.pdf({ format: "A4", path: path.join(screenshots, "print.pdf") });
+  assert.ok(pdf.length > 50_000, `${pdf.length} bytes`);
+  await page.emulateMedia({ media: "print" });
+  await page.setViewportSize({ width: 794, height: 1123 }); // A4 at 96 dots an inch
+  await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+  await page.waitForTimeout(1500);
+  const undrawn = await page.evaluate(() => [...window.flightwatt.figures].filter((figure) => figure.clientWidth > 0 && !figure.dataset.drawn).length);
+  assert.equal(undrawn, 0);
+  const backgrounds = await page.evaluate(() => [...document.querySelectorAll(".figure svg.marks > rect")].map((rect) => rect.getAttribute("fill")));
+  await page.screenshot({ path: path.join(screenshots, "print.png"), fullPage: true });
+  assert.deepEqual(backgrounds.filter((color) => color !== "#ffffff"), []);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
