@@ -4,6 +4,9 @@
 #include "mission/comparison.h"
 #include "mission/plan.h"
 #include "mission_json.h"
+#include "terminal_pictures.h"
+
+#include <algorithm>
 
 #include <fmt/format.h>
 
@@ -16,10 +19,32 @@ std::string ranking_json(const std::vector<flightwatt::MissionSummary>& ranking)
 }
 
 /// Runs a mission; one that is yet to be planned is planned first.
-flightwatt::MissionSummary summary_of(const flightwatt::Mission& mission) {
+flightwatt::Simulation simulation_of(const flightwatt::Mission& mission) {
     using namespace flightwatt;
-    if (!mission.plan) return simulate(mission).summary;
-    return labelled_summary(plan_mission(mission));
+    if (!mission.plan) return simulate(mission);
+    const auto planned = plan_mission(mission);
+    auto simulation = simulate(planned.flown);
+    simulation.summary = labelled_summary(planned);
+    return simulation;
+}
+
+/// The curves under their ranks, as a picture; empty where the terminal shows none.
+std::string soc_picture(const flightwatt::cli::StageCall& call,
+                        const std::vector<flightwatt::Simulation>& simulations,
+                        const std::vector<flightwatt::MissionSummary>& ranking) {
+    using namespace flightwatt;
+    const auto plot = terminal_plot(call, "state of charge [%] over time, by rank");
+    if (!plot || call.has("markdown")) return "";
+    std::vector<TerminalLine> lines;
+    for (const auto& simulation : simulations) {
+        const auto place = std::find_if(ranking.begin(), ranking.end(), [&](const MissionSummary& summary) {
+            return summary.mission == simulation.summary.mission &&
+                   summary.final_soc_percent == simulation.summary.final_soc_percent;
+        });
+        const auto rank = static_cast<std::size_t>(place - ranking.begin()) + 1;
+        if (!simulation.curve.rows.empty()) lines.push_back(soc_line(simulation.curve, rank));
+    }
+    return draw(*plot, lines);
 }
 
 int compare_missions(const flightwatt::cli::StageCall& call) {
@@ -27,12 +52,16 @@ int compare_missions(const flightwatt::cli::StageCall& call) {
     std::vector<Mission> missions;  // all read before the first is run: a bad file leaves no half answer
     missions.reserve(call.inputs.size());
     for (const auto& file : call.inputs) missions.push_back(read_mission(file, {true, std::nullopt}));
+    std::vector<Simulation> simulations;
     std::vector<MissionSummary> summaries;
-    summaries.reserve(missions.size());
-    for (const auto& mission : missions) summaries.push_back(summary_of(mission));
+    for (const auto& mission : missions) {
+        simulations.push_back(simulation_of(mission));
+        summaries.push_back(simulations.back().summary);
+    }
     const auto ranking = ranked(std::move(summaries));
     const auto table = comparison_table(ranking);
     cli::write_result(call, call.has("markdown") ? to_markdown(table) : to_text(table));
+    cli::print(soc_picture(call, simulations, ranking));
     if (call.json) cli::print(ranking_json(ranking));
     int code = cli::ok;
     for (const auto& summary : ranking) {

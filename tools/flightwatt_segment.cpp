@@ -5,6 +5,7 @@
 #include "json_text.h"
 #include "segment_explanation.h"
 #include "segment_json.h"
+#include "terminal_pictures.h"
 
 #include <fmt/format.h>
 
@@ -40,6 +41,9 @@ int segment_flight(const cli::StageCall& call) {
         cli::print(json_text(to_json(series, phases, power)));
     } else if (explain) {
         cli::print(explanation(series, phases, power));
+    }
+    if (const auto plot = terminal_plot(call, "altitude [m] over time")) {
+        cli::print(altitude_profile(*plot, series, phases));
     }
     return cli::ok;
 }

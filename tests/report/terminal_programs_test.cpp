@@ -1,0 +1,68 @@
+// compare and segment on a terminal of their own, and elsewhere.
+
+#include "base/atomic_file.h"
+#include "test_paths.h"
+
+#include <cstdlib>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// What a shell command prints; script(1) gives it a terminal. Empty if it fails.
+std::string printed(const std::string& environment, const std::string& command, bool on_terminal) {
+    const auto file = test::scratch_dir() / "printed";
+    const auto path = "PATH=" + (test::binary_dir() / "bin").string() + ":$PATH ";
+    const auto run = on_terminal ? "script -qec '" + command + "' /dev/null" : command;
+    const auto line = "cd " + test::source_dir().string() + " && " + path + environment + " " + run + " > " +
+                      file.string() + " 2>&1 < /dev/null";
+    return std::system(line.c_str()) == 0 ? read_file(file) : "";
+}
+
+constexpr auto utf8 = "LC_ALL=C.UTF-8 TERM=xterm";
+constexpr auto braille_begin = "\xE2\xA0";  // of its first half
+constexpr auto escape = "\x1b[";
+
+class OnATerminal : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (printed(utf8, "echo here", true).find("here") == std::string::npos) {
+            GTEST_SKIP() << "no pseudo-terminal here, or no script(1)";
+        }
+    }
+};
+
+TEST_F(OnATerminal, CompareDrawsTheStateOfCharge) {
+    const std::string compare = "flightwatt compare missions/paper/phased.toml missions/paper/adaptive.toml";
+    const auto picture = printed(utf8, compare, true);
+    EXPECT_THAT(picture, HasSubstr("state of charge [%] over time"));
+    EXPECT_THAT(picture, HasSubstr(braille_begin));
+    EXPECT_THAT(picture, HasSubstr(escape));
+    EXPECT_THAT(printed(std::string(utf8) + " NO_COLOR=1", compare, true), Not(HasSubstr(escape)));
+    for (const auto* plain : {"LC_ALL=C.UTF-8 TERM=dumb", "LC_ALL=C TERM=xterm"}) {
+        const auto table = printed(plain, compare, true);
+        EXPECT_THAT(table, HasSubstr("adaptive")) << plain;
+        EXPECT_THAT(table, Not(HasSubstr(braille_begin))) << plain;
+    }
+    EXPECT_THAT(printed(utf8, compare, false), Not(HasSubstr(braille_begin)));
+    EXPECT_THAT(printed(utf8, compare + " --markdown", true), Not(HasSubstr(braille_begin)));
+}
+
+TEST_F(OnATerminal, SegmentDrawsTheAltitude) {
+    const std::string segment = "flightwatt segment logs/opterra_synthetic_01.data";
+    const auto picture = printed(utf8, segment, true);
+    EXPECT_THAT(picture, HasSubstr("altitude [m] over time"));
+    EXPECT_THAT(picture, HasSubstr(braille_begin));
+    EXPECT_THAT(picture, HasSubstr("cruise 92 to 662 s"));
+    EXPECT_THAT(printed(utf8, segment, false), Not(HasSubstr(braille_begin)));
+    EXPECT_THAT(printed(utf8, segment + " --json", true), Not(HasSubstr(braille_begin)));
+}
+
+}  // namespace
+}  // namespace flightwatt
