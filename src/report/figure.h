@@ -13,7 +13,7 @@ using VegaJson = nlohmann::ordered_json;
 
 /// A figure: a Vega-Lite specification with its data, and what stands around it. The same specification is
 /// drawn by the page and rendered to a file.
-struct Figure {
+struct Figure {               // NOLINT(bugprone-exception-escape): of nlohmann's moves
     std::string id;           ///< of letters, digits and '-': a file's name
     std::string caption;      ///< under the figure, for readers
     std::string description;  ///< instead of the figure, for those who do not see it: what its data say

@@ -20,6 +20,7 @@ constexpr int not_there = 127;
 /// Runs a program of the PATH with its output on our standard error; its exit code, or `not_there`.
 int run(const std::vector<std::string>& command) {
     std::vector<char*> arguments;
+    arguments.reserve(command.size() + 1);
     for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t actions;

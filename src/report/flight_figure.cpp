@@ -179,8 +179,12 @@ VegaJson power_layer(const FigureData& data) {
     color["range"] = "measured_and_model";
     VegaJson width = curves;
     width["range"] = {1.1, 2.2};
-    encoding["color"] = category("curve", "", {{"scale", color}});
-    encoding["strokeWidth"] = {{"field", "curve"}, {"type", "ordinal"}, {"title", ""}, {"scale", width}};
+    encoding["color"] = category("curve", "", {{"scale", color}, {"legend", {{"symbolType", "stroke"}}}});
+    encoding["strokeWidth"] = {{"field", "curve"},
+                               {"type", "ordinal"},
+                               {"title", ""},
+                               {"scale", width},
+                               {"legend", {{"symbolType", "stroke"}}}};
     layer["transform"] = VegaJson::array({shown_by_legend()});
     encoding["tooltip"].insert(encoding["tooltip"].begin(), category("curve", "curve"));
     return layer;

@@ -67,7 +67,7 @@ VegaJson title_list(std::span<const SimulatedMission> missions) {
 }
 
 VegaJson color_of(std::span<const SimulatedMission> missions) {
-    const VegaJson legend{{"columns", 3}};
+    const VegaJson legend{{"columns", 3}, {"symbolType", "stroke"}};
     return category(
         "mission", "",
         {{"scale", {{"domain", title_list(missions)}, {"range", "category"}}}, {"legend", legend}});
@@ -80,7 +80,7 @@ VegaJson dash_of(std::span<const SimulatedMission> missions) {
                                            VegaJson::array({4, 1})};
     VegaJson range = VegaJson::array();
     for (std::size_t m = 0; m < missions.size(); ++m) range.push_back(patterns[m % patterns.size()]);
-    const VegaJson legend{{"columns", 3}};
+    const VegaJson legend{{"columns", 3}, {"symbolType", "stroke"}};
     return category("mission", "",
                     {{"scale", {{"domain", title_list(missions)}, {"range", range}}}, {"legend", legend}});
 }

@@ -90,8 +90,8 @@ VegaJson encoding_of(const Square& square) {
             {"y", axis("north_m", "north [m]", square.north_m)},
             {"order", {{"field", "order"}, {"type", "quantitative"}}},
             {"detail", {{"field", "piece"}}},
-            {"color", category("word", "", {{"scale", colors}})},
-            {"strokeDash", category("word", "", {{"scale", dashes}})},
+            {"color", category("word", "", {{"scale", colors}, {"legend", {{"symbolType", "stroke"}}}})},
+            {"strokeDash", category("word", "", {{"scale", dashes}, {"legend", {{"symbolType", "stroke"}}}})},
             {"tooltip",
              {category("word", "phase"), quantity("east_m", "east [m]", {{"format", ".0f"}}),
               quantity("north_m", "north [m]", {{"format", ".0f"}})}}};
