@@ -48,6 +48,13 @@ std::string time_of_report() {
     return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
 }
 
+std::uint64_t read_most_validated(const cli::StageCall& call) {
+    const auto text = call.get<std::string>("most-validated");
+    const auto number = parse_unsigned(text);
+    if (!number) throw UsageError(fmt::format("--most-validated {}: expected a whole number from 0", text));
+    return *number;
+}
+
 /// What the batch's folder has to say: flights, model and validation.
 void add_batch(const cli::StageCall& call, const std::filesystem::path& out, const PublishedFigures& figures,
                PageHead& head, std::vector<Section>& sections) {
@@ -66,7 +73,7 @@ void add_batch(const cli::StageCall& call, const std::filesystem::path& out, con
     for (const auto& note : model->notes) cli::warn(call, note);
     sections.push_back(model_section(*model, figures, "model"));
     if (!model->notes.empty()) return;
-    const auto most = call.get<std::size_t>("most-validated");
+    const auto most = read_most_validated(call);
     if (content.measured.size() < 2 || content.measured.size() > most) {
         head.notes.push_back(fmt::format(
             "The model is validated with 2 to {} flights, and there are {}; flightwatt validate does it.",
@@ -153,7 +160,7 @@ int main(int argc, char** argv) {
         "digitised", po::value<std::string>()->value_name("DIR"),
         "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others")(
         "title", po::value<std::string>()->value_name("TITLE"), "of the page")(
-        "most-validated", po::value<std::size_t>()->value_name("N")->default_value(30),
+        "most-validated", po::value<std::string>()->value_name("N")->default_value("30"),
         "leave flights out in turn where there are no more than N: the work grows with their square");
     return cli::run_stage(argc, argv, stage, report);
 }

@@ -104,11 +104,11 @@ double seconds_in_air(const ReportFlight& flight) {
 }
 
 void add_flight(Section& section, const ReportFlight& flight, const std::optional<MechanicalModel>& model,
-                std::size_t index) {
+                std::size_t index, bool is_open) {
     const auto id = flight_id(index);
     section.html += fmt::format(
         "<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{:.0f} s in the air</span></summary>\n", id,
-        index == 0 ? " open" : "", escaped(flight.name), seconds_in_air(flight));
+        is_open ? " open" : "", escaped(flight.name), seconds_in_air(flight));
     section.html += paragraph("From " + flight.log, "soft");
     if (!flight.warnings.empty()) {
         section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
@@ -135,7 +135,8 @@ Section flights_section(std::span<const ReportFlight> flights, const std::option
     section.html += excluded_html(flights);
     section.html += "<h3>Each flight</h3>\n";
     for (std::size_t f = 0; f < flights.size(); ++f) {
-        if (flights[f].rejected.empty()) add_flight(section, flights[f], model, f);
+        if (!flights[f].rejected.empty()) continue;
+        add_flight(section, flights[f], model, f, section.figures.empty());
     }
     return section;
 }

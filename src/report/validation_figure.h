@@ -10,7 +10,7 @@
 namespace flightwatt {
 
 /// How far each model's prediction of the energy of a flight that it has not seen was off: a point a flight,
-/// a tick their mean absolute error, model by model. `flights` is not empty.
+/// model by model. `flights` is not empty.
 Figure validation_figure(std::span<const ValidatedFlight> flights, const std::string& id);
 
 /// The scores behind it as a table's rows: phase, model, flights, mean absolute error, bias, coverage.

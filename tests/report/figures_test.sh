@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Renders every figure of a report without a browser: figures_test.sh BIN WEB SCRATCH. Exits with 77 (skipped) where
+# node, its modules or rsvg-convert are missing.
+set -euo pipefail
+bin=$1
+web=$2
+scratch=$3
+source=$(cd "$(dirname "$0")/../.." && pwd)
+
+skip() {
+    echo "skipped: $1 is missing; scripts/install_dependencies installs it" >&2
+    exit 77
+}
+command -v node >/dev/null || skip node
+[[ -d $web/node_modules/vega ]] || skip web/node_modules
+command -v rsvg-convert >/dev/null || skip rsvg-convert
+
+rm -rf "$scratch"
+mkdir -p "$scratch"
+"$bin/flightwatt-batch" "$source/logs/opterra_synthetic_01.data" "$source/logs/opterra_synthetic_02.data" -o "$scratch/out" >/dev/null 2>&1
+said=$("$bin/flightwatt-report" "$scratch/out" "$source"/missions/paper/*.toml --figures "$scratch/figures" 2>&1)
+echo "$said"
+[[ $said == *": .vl.json, .svg, .pdf" ]]
+
+# Every SVG parses, has marks and an axis with its unit; every PDF is one.
+python3 - "$scratch/figures" <<'PYTHON'
+import glob, os, sys
+import xml.etree.ElementTree as xml
+
+specs = sorted(glob.glob(os.path.join(sys.argv[1], "*.vl.json")))
+assert len(specs) >= 10, specs
+for spec in specs:
+    svg = xml.parse(spec.replace(".vl.json", ".svg")).getroot()
+    paths = [path for path in svg.iter("{http://www.w3.org/2000/svg}path") if len(path.get("d", "")) > 8]
+    texts = "".join(text.text or "" for text in svg.iter("{http://www.w3.org/2000/svg}text"))
+    assert len(paths) >= 3, spec
+    assert any(unit in texts for unit in ("[W]", "[m]", "[%]", "[Wh]")), (spec, texts[:200])
+    with open(spec.replace(".vl.json", ".pdf"), "rb") as pdf:
+        assert pdf.read(5) == b"%PDF-", spec
+print(f"{len(specs)} figures")
+PYTHON
+
+# Without node the specifications are written, and it is said.
+tools=$scratch/tools
+mkdir "$tools"
+said=$(PATH=$tools "$bin/flightwatt-report" "$source/missions/paper/phased.toml" --figures "$scratch/without" 2>&1)
+[[ $said == *"node is not there: no figure was rendered" ]]
+[[ -f $scratch/without/schedules-soc.vl.json && ! -e $scratch/without/schedules-soc.svg ]]
