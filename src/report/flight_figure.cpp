@@ -1,5 +1,6 @@
 #include "report/flight_figure.h"
 
+#include "flight/edge_witness.h"
 #include "flight/phase_statistics.h"
 #include "report/decimation.h"
 #include "report/phase_words.h"
@@ -22,7 +23,7 @@ constexpr auto time_title = "time in the log [s]";
 std::string explained(const PhaseEdge& edge) {
     auto text = fmt::format("altitude {:.1f} m", edge.altitude_m);
     if (edge.throttle_percent) text += fmt::format(", throttle {:.0f} %", *edge.throttle_percent);
-    if (edge.takeoff_after_s) {
+    if (edge.takeoff_after_s && std::abs(*edge.takeoff_after_s) < witness_reach_s) {
         text += fmt::format(", nearest TAKEOFF message {:.1f} s {}", std::abs(*edge.takeoff_after_s),
                             *edge.takeoff_after_s < 0.0 ? "before" : "after");
     }
@@ -40,7 +41,7 @@ std::string edge_name(const PhaseSpan& span, bool begin) {
         case Phase::cruise:
             break;
     }
-    return begin ? "start of cruise" : "end of cruise";
+    return begin ? "start of cruise" : "end of cruise, start of landing";
 }
 
 /// One row a phase: for the shading and its names.
@@ -55,17 +56,30 @@ FigureData phase_rows(const FlightPhases& phases) {
     return data;
 }
 
+struct NamedEdge {
+    double time_s = 0.0;
+    std::string name;
+    std::string evidence;
+};
+
 /// The edges, each once: a phase ends where the next one begins.
-FigureData edge_rows(const FlightPhases& phases) {
-    FigureData data({"time_s"}, {"edge", "evidence"});
+std::vector<NamedEdge> edges_of(const FlightPhases& phases) {
+    std::vector<NamedEdge> edges;
     for (const auto& sortie : phases.sorties) {
         for (std::size_t i = 0; i < sortie.phases.size(); ++i) {
             const auto& span = sortie.phases[i];
             const bool continues = i > 0 && sortie.phases[i - 1].end.time_s == span.start.time_s;
-            if (!continues) data.add({span.start.time_s}, {edge_name(span, true), explained(span.start)});
-            data.add({span.end.time_s}, {edge_name(span, false), explained(span.end)});
+            if (!continues)
+                edges.push_back({span.start.time_s, edge_name(span, true), explained(span.start)});
+            edges.push_back({span.end.time_s, edge_name(span, false), explained(span.end)});
         }
     }
+    return edges;
+}
+
+FigureData edge_rows(const FlightPhases& phases) {
+    FigureData data({"time_s"}, {"edge", "evidence"});
+    for (const auto& edge : edges_of(phases)) data.add({edge.time_s}, {edge.name, edge.evidence});
     return data;
 }
 
@@ -219,6 +233,14 @@ std::string caption_of(const ReportFlight& flight, bool has_model) {
 }
 
 }  // namespace
+
+TextTable edge_table(const FlightPhases& phases) {
+    TextTable table{{"edge", "time [s]", "evidence"}, {}};
+    for (const auto& edge : edges_of(phases)) {
+        table.rows.push_back({edge.name, fmt::format("{:.1f}", edge.time_s), edge.evidence});
+    }
+    return table;
+}
 
 Figure flight_figure(const ReportFlight& flight, const std::optional<MechanicalModel>& model,
                      const std::string& id) {

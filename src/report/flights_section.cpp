@@ -114,6 +114,8 @@ void add_flight(Section& section, const ReportFlight& flight, const std::optiona
         section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
     }
     add_figure(section, flight_figure(flight, model, id + "-power"));
+    section.html +=
+        table_html(edge_table(flight.phases), {"Where the phases end, and what was seen there", false, {}});
     if (auto track = track_figure(flight, id + "-track")) add_figure(section, std::move(*track));
     section.html += "</details>\n";
 }

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include <boost/geometry/algorithms/append.hpp>
+#include <boost/geometry/algorithms/assign.hpp>
+#include <boost/geometry/algorithms/expand.hpp>
 #include <boost/geometry/algorithms/simplify.hpp>
+#include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/linestring.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/strategies/cartesian/distance_projected_point.hpp>
@@ -30,12 +34,26 @@ struct Square {
     double half_m = 1.0;
 };
 
-Square square_around(const FlightSeries& series) {
-    const auto [west, east] = std::minmax_element(series.east_m.begin(), series.east_m.end());
-    const auto [south, north] = std::minmax_element(series.north_m.begin(), series.north_m.end());
+/// Around the flight alone: on the ground, before its first fix, an aircraft may seem to be anywhere.
+Square square_around(const ReportFlight& flight) {
+    bg::model::box<Point> box;
+    bg::assign_inverse(box);
+    const auto& series = flight.series;
+    for (const auto& sortie : flight.phases.sorties) {
+        for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+            if (series.time_s[i] < sortie.phases.front().start.time_s ||
+                series.time_s[i] > sortie.phases.back().end.time_s) {
+                continue;
+            }
+            bg::expand(box, Point(series.east_m[i], series.north_m[i]));
+        }
+    }
     constexpr double margin = 1.05;
-    return {(*west + *east) / 2.0, (*south + *north) / 2.0,
-            std::max(1.0, margin * std::max(*east - *west, *north - *south) / 2.0)};
+    const double wide_m = box.max_corner().x() - box.min_corner().x();
+    const double high_m = box.max_corner().y() - box.min_corner().y();
+    return {std::midpoint(box.min_corner().x(), box.max_corner().x()),
+            std::midpoint(box.min_corner().y(), box.max_corner().y()),
+            std::max(1.0, margin * std::max(wide_m, high_m) / 2.0)};
 }
 
 /// The track between two times in pieces: where power samples, whose clock it is on, are missing, nobody
@@ -102,7 +120,7 @@ VegaJson encoding_of(const Square& square) {
 std::optional<Figure> track_figure(const ReportFlight& flight, const std::string& id) {
     const auto& series = flight.series;
     if (series.east_m.empty() || series.north_m.empty()) return std::nullopt;
-    const auto square = square_around(series);
+    const auto square = square_around(flight);
     const auto data = track_rows(flight, square.half_m / side);
     if (data.empty()) return std::nullopt;
     Figure figure;
