@@ -25,7 +25,7 @@ ReportInputs read_inputs(const cli::StageCall& call) {
     ReportInputs inputs;
     for (const auto& input : call.inputs) {
         if (!std::filesystem::is_directory(input)) {
-            inputs.missions.push_back(read_mission(input));
+            inputs.missions.push_back(read_mission(input, {true, std::nullopt}));
             continue;
         }
         if (inputs.out) {

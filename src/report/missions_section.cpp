@@ -63,7 +63,9 @@ TextTable ranking_of(std::vector<MissionSummary> summaries) {
                                                           {"mechanical_energy_wh", "mechanical [Wh]"},
                                                           {"compute_energy_wh", "computing [Wh]"},
                                                           {"duration_s", "duration [s]"},
-                                                          {"depleted_at_s", "empty at [s]"}};
+                                                          {"depleted_at_s", "empty at [s]"},
+                                                          {"cut_off_at_s", "cut off at [s]"},
+                                                          {"utility", "utility"}};
     auto table = comparison_table(ranked(std::move(summaries)));
     for (auto& name : table.header) {
         if (const auto word = words.find(name); word != words.end()) name = word->second;
