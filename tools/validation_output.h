@@ -22,6 +22,7 @@ struct ValidatedPart {
 
 inline std::vector<ValidatedPart> validated_parts() {
     std::vector<ValidatedPart> parts;
+    parts.reserve(std::size(all_phases) + 1);
     for (const auto phase : all_phases) parts.push_back({std::string(to_string(phase)), phase});
     parts.push_back({"total", std::nullopt});
     return parts;
