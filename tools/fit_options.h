@@ -124,6 +124,17 @@ inline nlohmann::ordered_json to_json(const MechanicalModel& model) {
                  {"a0_w", fitted.fourier.a0_w},     {"cos_w", fitted.fourier.cos_w},
                  {"sin_w", fitted.fourier.sin_w},   {"rms_w", fitted.rms_w.value_or(0.0)},
                  {"samples", fitted.samples},       {"flights", fitted.flights}};
+        if (const auto& law = fitted.level_law) {
+            entry["level_law"] = {{"covariate", to_string(law->covariate)},
+                                  {"flights", law->flights},
+                                  {"mean", law->mean},
+                                  {"sd", law->sd},
+                                  {"least", law->least},
+                                  {"most", law->most},
+                                  {"mean_power_w", law->mean_power_w},
+                                  {"slope_w", law->slope_w},
+                                  {"residual_sd_w", law->residual_sd_w.value()}};
+        }
         if (fitted.range) {
             entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},
                                            {"high", fitted.range->high_rad},

@@ -6,7 +6,7 @@
 #include "flight/flight_reader.h"
 #include "flight/power_report.h"
 #include "flight/segmentation.h"
-#include "mechanical/flight_samples.h"
+#include "mechanical/measured_flight.h"
 #include "table_one_output.h"
 
 #include <algorithm>
@@ -22,8 +22,7 @@ namespace {
 
 using namespace flightwatt;
 
-FlightSelection read_selection(const cli::StageCall& call, const std::string& file,
-                               std::size_t needed_samples) {
+MeasuredFlights read_log(const cli::StageCall& call, const std::string& file, std::size_t needed_samples) {
     auto series = read_flight(file, call.maybe<std::string>("aircraft"));
     const auto phases = segment(series);
     require_sortie(series, phases, file);
@@ -31,15 +30,16 @@ FlightSelection read_selection(const cli::StageCall& call, const std::string& fi
     if (call.has("correct-idle-offset")) correct_idle_offset(series, power.idle);
     for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
     for (const auto& warning : phases.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
-    auto selection = select_samples(series, phases, needed_samples);
+    auto measured = measure_flights(series, phases, needed_samples);
     const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
     if (!power.absurdities.empty() && std::find(keep.begin(), keep.end(), series.flight) == keep.end()) {
-        leave_out_all(selection, series.flight, describe_absurdities(power.absurdities));
+        measured.flights.clear();
+        measured.left_out.push_back({series.flight, std::nullopt, describe_absurdities(power.absurdities)});
     }
-    for (const auto& left_out : selection.left_out) {
+    for (const auto& left_out : measured.left_out) {
         cli::warn(call, to_string(left_out));
     }
-    return selection;
+    return measured;
 }
 
 /// What goes beyond a plain fit.
@@ -67,14 +67,21 @@ ModelFitOptions read_options(const cli::StageCall& call) {
     const auto loss = loss_from(name);
     if (!loss) throw UsageError(fmt::format("--loss {}: expected none, huber or cauchy", name));
     options.phases.loss = *loss;
+    if (const auto covariate = call.maybe<std::string>("level-covariate")) {
+        options.level_covariate = covariate_from(*covariate);
+        if (!options.level_covariate) {
+            throw UsageError(
+                fmt::format("--level-covariate {}: expected one of {}", *covariate, covariate_names()));
+        }
+    }
     return options;
 }
 
 std::vector<FlightSamples> read_flights(const cli::StageCall& call, int order) {
     std::vector<FlightSamples> flights;
     for (const auto& file : call.inputs) {
-        auto selection = read_selection(call, file, samples_needed(order));
-        for (auto& flight : selection.flights) flights.push_back(std::move(flight));
+        auto measured = read_log(call, file, samples_needed(order));
+        for (auto& flight : measured.flights) flights.push_back(std::move(flight.samples));
     }
     return flights;
 }
@@ -153,6 +160,9 @@ int main(int argc, char** argv) {
         "intervals", "Table I with half widths of 95 % intervals; implies --errors")(
         "curves", po::value<std::string>()->value_name("FILE.csv"),
         "write the curves with their band and the flights' envelope; implies --errors")(
+        "level-covariate", po::value<std::string>()->value_name("NAME"),
+        "let the cruise level follow what 'flightwatt validate --covariate all' found to foretell it: "
+        "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]")(
         "loss", po::value<std::string>()->value_name("HOW")->default_value("none"),
         "none, huber or cauchy: how outliers count in the last refinement")(
         "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");

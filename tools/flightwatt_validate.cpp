@@ -13,7 +13,7 @@
 #include <iterator>
 
 #include <boost/algorithm/string/split.hpp>
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 namespace {
 
@@ -66,9 +66,7 @@ std::vector<Covariate> read_covariates(const cli::StageCall& call) {
     for (const auto& name : names) {
         const auto covariate = covariate_from(name);
         if (!covariate) {
-            std::vector<std::string_view> known{"all"};
-            for (const auto c : all_covariates) known.push_back(to_string(c));
-            throw UsageError(fmt::format("--covariate {}: expected {}", name, fmt::join(known, ", ")));
+            throw UsageError(fmt::format("--covariate {}: expected all, {}", name, covariate_names()));
         }
         if (std::find(covariates.begin(), covariates.end(), *covariate) == covariates.end()) {
             covariates.push_back(*covariate);
@@ -165,7 +163,8 @@ int main(int argc, char** argv) {
     stage.options.add_options()("until", po::value<double>()->value_name("S"),
                                 "validate the prediction in flight, S seconds after lift-off")(
         "covariate", po::value<std::string>()->value_name("NAME[,NAME]"),
-        "also foretell the cruise by what is known before the flight (height_m, initial_voltage_v) or in the "
+        "also foretell the cruise by what is known before the flight (height_m, initial_voltage_v, "
+        "time_to_cruise_s) or in the "
         "first "
         "60 s of the cruise (wind_m_per_s, airspeed_m_per_s, ground_speed_m_per_s, "
         "airspeed_cubed_m3_per_s3), or "

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/flight_phases.h"
+#include "mechanical/level_law.h"
 #include "mechanical/phase_uncertainty.h"
 
 #include <cstddef>
@@ -62,6 +63,7 @@ struct PhaseModel {
     std::optional<PhaseSpread> spread = {};  ///< absent too where a single flight counts
     std::optional<LevelSpread> level_spread =
         {};                                    ///< absent with fewer than 2 flights, or if published without
+    std::optional<LevelLaw> level_law = {};    ///< absent unless it was asked for
     std::optional<AirspeedLaw> airspeed = {};  ///< absent unless 2 flights or more measured their airspeed
 };
 

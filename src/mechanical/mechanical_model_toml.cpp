@@ -80,6 +80,34 @@ AirspeedLaw read_airspeed(const TomlTable& table) {
     return law;
 }
 
+LevelLaw read_level_law(const TomlTable& table) {
+    const auto name = table.string("covariate");
+    const auto covariate = covariate_from(name);
+    if (!covariate) {
+        throw InputError(table.where("covariate"), fmt::format("there is no covariate '{}'", name),
+                         fmt::format("it is one of {}", covariate_names()));
+    }
+    LevelLaw law{*covariate,
+                 count(table, "flights"),
+                 table.number("mean"),
+                 positive_number(table, "sd"),
+                 table.number("least"),
+                 table.number("most"),
+                 positive_number(table, "mean_power_w"),
+                 table.number("slope_w"),
+                 number_from_zero(table, "residual_sd_w")};
+    if (law.flights < least_flights_of_law) {
+        throw InputError(table.where("flights"), fmt::format("flights = {}: a level law needs {} or more",
+                                                             law.flights, least_flights_of_law));
+    }
+    if (!(law.least <= law.mean && law.mean <= law.most)) {
+        throw InputError(table.where("mean"), fmt::format("mean = {} is not between least = {} and most = {}",
+                                                          law.mean, law.least, law.most));
+    }
+    table.refuse_unknown_keys();
+    return law;
+}
+
 PhaseModel read_phase(const TomlTable& table) {
     PhaseModel phase;
     phase.duration_s = positive_number(table, "duration_s");
@@ -102,6 +130,7 @@ PhaseModel read_phase(const TomlTable& table) {
     if (const auto spread = table.optional_table("level_spread"))
         phase.level_spread = read_level_spread(*spread);
     if (const auto airspeed = table.optional_table("airspeed")) phase.airspeed = read_airspeed(*airspeed);
+    if (const auto law = table.optional_table("level_law")) phase.level_law = read_level_law(*law);
     table.refuse_unknown_keys();
     return phase;
 }
@@ -125,6 +154,15 @@ FlightContribution read_flight(const TomlTable& table) {
     return flight;
 }
 
+std::string level_law_toml(const LevelLaw& law) {
+    return fmt::format(
+        "level_law = {{ covariate = {}, flights = {}, mean = {}, sd = {}, least = {}, most = {}, "
+        "mean_power_w = {}, slope_w = {}, residual_sd_w = {} }}\n",
+        toml_string(to_string(law.covariate)), law.flights, toml_real(law.mean), toml_real(law.sd),
+        toml_real(law.least), toml_real(law.most), toml_real(law.mean_power_w), toml_real(law.slope_w),
+        toml_real(law.residual_sd_w.value()));
+}
+
 std::string phase_toml(Phase name, const PhaseModel& phase) {
     std::string text = fmt::format("\n[{}]\nduration_s = {}\nomega_rad_per_s = {}\n", to_string(name),
                                    toml_real(phase.duration_s), toml_real(phase.fourier.omega_rad_per_s));
@@ -144,6 +182,7 @@ std::string phase_toml(Phase name, const PhaseModel& phase) {
             spread->flights, toml_real(spread->level_sd_w), toml_real(spread->drift_sd_w),
             toml_real(spread->correlation_s));
     }
+    if (const auto& law = phase.level_law) text += level_law_toml(*law);
     if (const auto& law = phase.airspeed) {
         text +=
             fmt::format("airspeed = {{ flights = {}, coefficient_w_s3_per_m3 = {}, relative_sd = {} }}\n",

@@ -52,6 +52,19 @@ void refuse_what_is_no_number(Phase phase, const FourierModel& model) {
     }
 }
 
+/// A law with the spread that a prediction needs.
+LevelLaw wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) {
+    const auto law = level_law(flights, covariate);
+    const auto having = law ? law->flights : 0;
+    if (having >= least_flights_of_law && law->residual_sd_w) return *law;
+    throw NoAnswerError(fmt::format(
+        "the cruise level cannot follow {}: {}, expected {} flights or more that have it and differ in it",
+        to_string(covariate),
+        having == 0 ? "fewer than 2 flights tell it, or all tell the same"
+                    : fmt::format("{} flights tell it", having),
+        least_flights_of_law));
+}
+
 }  // namespace
 
 std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, Phase phase) {
@@ -74,7 +87,10 @@ FittedPhase fit_phase_model(Phase phase, std::span<const PhaseSamples> flights,
     fitted.model = average_phase(fitted.fit, fitted.weights);
     refuse_what_is_no_number(phase, fitted.model.fourier);
     fitted.model.level_spread = level_spread(fitted.model, flights);
-    if (phase == Phase::cruise) fitted.model.airspeed = airspeed_law(flights);
+    if (phase == Phase::cruise) {
+        fitted.model.airspeed = airspeed_law(flights);
+        if (options.level_covariate) fitted.model.level_law = wanted_law(flights, *options.level_covariate);
+    }
     return fitted;
 }
 

@@ -16,6 +16,7 @@ struct ModelFitOptions {
     std::string name = "fitted";  ///< of the model
     PhaseFitOptions phases = {};
     WeightOptions weights = {};
+    std::optional<Covariate> level_covariate = {};  ///< of the cruise: what its level is to follow
     PerPhase<std::optional<int>> orders = {};  ///< where a phase is to have another order than phases.order
 
     /// The order of one phase.
@@ -29,8 +30,9 @@ struct FittedPhase {
     std::vector<double> weights;  ///< of fit.flights
 };
 
-/// Fits and averages one phase (Eqs. 1, 5-7), with its spread and, for the cruise, its airspeed law. Throws
-/// what fit_phase and flight_weights throw.
+/// Fits and averages one phase (Eqs. 1, 5-7), with its spread and, for the cruise, its airspeed law and the
+/// level law that was asked for. Throws NoAnswerError for a level covariate that fewer than 3 flights have,
+/// or that does not differ between them, and what fit_phase and flight_weights throw.
 FittedPhase fit_phase_model(Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options = {});
 

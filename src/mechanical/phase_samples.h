@@ -1,28 +1,14 @@
 #pragma once
 
 #include "flight/flight_phases.h"
+#include "mechanical/covariate.h"
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace flightwatt {
-
-/// What is known of a flight before its cruise, or early in it (see covariates.h).
-enum class Covariate { height, initial_voltage, wind, airspeed, ground_speed, airspeed_cubed };
-
-inline constexpr std::size_t covariate_count = 6;
-inline constexpr std::array<Covariate, covariate_count> all_covariates{
-    Covariate::height,   Covariate::initial_voltage, Covariate::wind,
-    Covariate::airspeed, Covariate::ground_speed,    Covariate::airspeed_cubed};
-
-struct Covariates {
-    std::array<std::optional<double>, covariate_count> values{};
-    std::optional<double>& operator[](Covariate c) { return values[static_cast<std::size_t>(c)]; }
-    const std::optional<double>& operator[](Covariate c) const { return values[static_cast<std::size_t>(c)]; }
-};
 
 /// Power over one phase of one flight, on that flight's own normalised time.
 struct PhaseSamples {
@@ -33,7 +19,7 @@ struct PhaseSamples {
     double start_s = 0.0;         ///< when the phase began, on the log's own clock
     /// Mean of the cube of the airspeed measured in the phase; absent without a sensor.
     std::optional<double> airspeed_cubed_m3_per_s3 = {};
-    Covariates covariates = {};  ///< of the cruise, for a validation
+    Covariates covariates = {};  ///< of the cruise, for a level that follows one
 };
 
 /// One flight; a phase that it lacks, or that was not recorded, is absent.

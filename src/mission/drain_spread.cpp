@@ -16,6 +16,7 @@ namespace {
 
 /// Of the mean mechanical power of a phase [W], about the model's.
 double level_sd_w(const Mission& mission, Phase phase) {
+    if (phase == Phase::cruise && mission.cruise_level) return mission.cruise_level->sd_w.value();
     const double duration_s = mission.duration_s[phase];
     const auto energy = predict_before_flight(forecast_of(*mission.mechanical, phase), duration_s);
     if (!energy.uncertainty_known) {

@@ -21,6 +21,8 @@ struct Mission {
     std::string name;
     std::optional<MechanicalModel> mechanical;  ///< none: computing alone
     PhaseClock phase_clock = PhaseClock::stretched;
+    /// The cruise's mean power under the stated conditions; `mechanical` has this level then.
+    std::optional<ConstantPower> cruise_level = {};
     PerPhase<double> duration_s;  ///< as flown; 0 leaves a phase out
     Battery battery;
     ComputeModel compute;
@@ -47,6 +49,9 @@ struct MissionReading {
 ///     duration_s = { cruise = 900 }           # default: the mechanical model's
 ///     phase_clock = "stretch"                 # a phase flown longer or shorter stretches its curve;
 ///                                             # or "absolute": it runs on in its own seconds
+///     conditions = { airspeed_m_per_s = 14 }  # what the model's cruise level follows (its level_law),
+///     within
+///                                             # what its flights showed; default: their average
 ///     battery = "../pack.toml"                # or { voltage_v = 11.1, resistance_ohm = 0.05, ... }
 ///     initial_soc_percent = 100
 ///     capacity_ah = 3.0                       # default: the battery's

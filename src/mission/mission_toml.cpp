@@ -1,5 +1,6 @@
 #include "base/atomic_file.h"
 #include "compute/profile_reader.h"
+#include "mission/conditions_toml.h"
 #include "mission/mission.h"
 #include "mission/plan_settings_toml.h"
 #include "mission/schedule_toml.h"
@@ -163,7 +164,7 @@ double read_initial_soc(const TomlTable& root) {
 Mission parse_mission(std::string_view text, const std::filesystem::path& path,
                       const MissionReading& reading) {
     const auto root = parse_toml(text, path.string());
-    root.refuse_keys_except({"name", "mechanical", "duration_s", "phase_clock", "battery",
+    root.refuse_keys_except({"name", "mechanical", "duration_s", "phase_clock", "conditions", "battery",
                              "initial_soc_percent", "capacity_ah", "cutoff_voltage_v", "reserve_soc_percent",
                              "components", "schedule", "plan"});
     Mission mission;
@@ -171,6 +172,9 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& path,
     mission.name = root.optional_string("name").value_or(path.stem().string());
     mission.mechanical = read_mechanical(root);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
+    if (const auto conditions = root.optional_table("conditions")) {
+        mission.cruise_level = apply_conditions(*conditions, mission.mechanical);
+    }
     mission.duration_s = read_durations(root, mission.mechanical);
     if (reading.cruise_s) mission.duration_s[Phase::cruise] = *reading.cruise_s;
     mission.battery = read_mission_battery(root);

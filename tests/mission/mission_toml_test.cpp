@@ -1,6 +1,8 @@
 #include "mission/mission.h"
 #include "rejected.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace flightwatt {
@@ -287,6 +289,48 @@ TEST(MissionToml, RefusesAMissionThatDoesNotFitItsParts) {
     EXPECT_EQ(of(flight), "opterra.toml:1:1: has no key 'takeoff'");
     EXPECT_EQ(rejected([&] { read_mission(folder / "none.toml"); }, folder),
               "none.toml: cannot be read: No such file or directory");
+}
+
+/// The mission above on a model whose cruise follows the height: 27 W at 100 m, 2 W more 10 m higher.
+std::filesystem::path folder_with_law() {
+    auto folder = mission_folder();
+    auto model = read_mechanical_model(folder / "opterra.toml");
+    model.phases[Phase::cruise].level_law =
+        LevelLaw{Covariate::height, 4, 100.0, 10.0, 90.0, 110.0, 27.0, 2.0, 1.5};
+    write_text(folder / "law.toml", to_toml(model));
+    return folder;
+}
+
+std::string on_model(const std::string& model, const std::string& conditions) {
+    return with("mechanical = \"none\"", "mechanical = \"" + model + "\"\nconditions = " + conditions);
+}
+
+TEST(MissionToml, SetsTheCruiseLevelByTheStatedConditions) {
+    const auto folder = folder_with_law();
+    const auto mission = parse_mission(on_model("law.toml", "{ height_m = 105 }"), folder / "m.toml");
+    const auto& cruise = mission.mechanical->phases[Phase::cruise];
+    EXPECT_NEAR(energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s, 28.0, 1e-9);
+    ASSERT_TRUE(mission.cruise_level);
+    EXPECT_NEAR(mission.cruise_level->mean_w, 28.0, 1e-12);
+    EXPECT_NEAR(mission.cruise_level->sd_w.value(), 1.5 * std::sqrt(1.25 + 0.25 / 4.0), 1e-12);
+    // Without conditions: the average of the flights, as before.
+    const auto plain = parse_mission(with("\"none\"", "\"law.toml\""), folder / "m.toml");
+    EXPECT_FALSE(plain.cruise_level);
+    EXPECT_EQ(plain.mechanical->phases[Phase::cruise].fourier.a0_w,
+              read_mechanical_model(folder / "opterra.toml").phases[Phase::cruise].fourier.a0_w);
+}
+
+TEST(MissionToml, RefusesConditionsThatNothingSupports) {
+    const auto folder = folder_with_law();
+    const auto refusal = [&](const std::string& model, const std::string& conditions) {
+        return rejected([&] { parse_mission(on_model(model, conditions), folder / "m.toml"); });
+    };
+    EXPECT_NE(refusal("law.toml", "{ height_m = 150 }").find("beyond what the model's flights showed"),
+              std::string::npos);
+    EXPECT_NE(refusal("law.toml", "{ airspeed_m_per_s = 14 }").find("it follows height_m, from 90 to 110"),
+              std::string::npos);
+    EXPECT_NE(refusal("opterra.toml", "{ height_m = 100 }").find("follows no condition"), std::string::npos);
+    EXPECT_NE(refusal("none", "{ height_m = 100 }").find("no meaning"), std::string::npos);
 }
 
 }  // namespace
