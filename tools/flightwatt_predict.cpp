@@ -43,12 +43,35 @@ MechanicalModel read_spread_model(const cli::StageCall& call) {
     return model;
 }
 
-LevelSource level_source(const cli::StageCall& call) {
+/// What --level auto stands for: the level law where the model has one and the flight tells its covariate.
+LevelSource automatic_source(const cli::StageCall& call, const PhaseModel& cruise, const FlownSoFar& flown) {
+    if (!cruise.level_law) return LevelSource::curve;
+    const auto covariate = cruise.level_law->covariate;
+    if (flown.covariates[covariate]) return LevelSource::covariate;
+    cli::warn(call, fmt::format("the model's level follows {}, which this flight does not tell: expected by "
+                                "the curve",
+                                to_string(covariate)));
+    return LevelSource::curve;
+}
+
+LevelSource level_source(const cli::StageCall& call, const PhaseModel& cruise, const FlownSoFar& flown) {
     const auto name = call.get<std::string>("level");
+    if (name == "auto") return automatic_source(call, cruise, flown);
     if (name == "curve") return LevelSource::curve;
     if (name == "constant") return LevelSource::constant;
     if (name == "airspeed") return LevelSource::airspeed;
-    throw UsageError(fmt::format("--level {}: expected curve, constant or airspeed", name));
+    if (name == "covariate") return LevelSource::covariate;
+    throw UsageError(fmt::format("--level {}: expected auto, curve, constant, airspeed or covariate", name));
+}
+
+/// What a law says beyond its flights is told, not refused: the flight is as it is.
+void warn_of_reach(const cli::StageCall& call, const PhaseModel& cruise, const FlownSoFar& flown) {
+    const auto& law = cruise.level_law.value();
+    const double value = flown.covariates[law.covariate].value();
+    if (level_at(law, value).within_flights) return;
+    cli::warn(call, fmt::format("{} = {:.4g} is beyond what the model's flights showed, {:.4g} to {:.4g}{}",
+                                to_string(law.covariate), value, law.least, law.most,
+                                law.covariate == Covariate::airspeed_cubed ? "" : ": taken as the nearest"));
 }
 
 struct Prediction {
@@ -73,8 +96,11 @@ Prediction predict_flight(const cli::StageCall& call) {
     const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
     for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
     prediction.flown = flown_so_far(series, moment, sortie - 1);
-    prediction.cruise = predict_rest(forecast_of(model, Phase::cruise), prediction.flown,
-                                     prediction.remaining_s, level_source(call));
+    const auto& cruise = model.phases[Phase::cruise];
+    const auto source = level_source(call, cruise, prediction.flown);
+    prediction.cruise =
+        predict_rest(forecast_of(model, Phase::cruise), prediction.flown, prediction.remaining_s, source);
+    if (source == LevelSource::covariate) warn_of_reach(call, cruise, prediction.flown);
     prediction.landing_s = model.phases[Phase::landing].duration_s;
     prediction.landing = predict_before_flight(forecast_of(model, Phase::landing), prediction.landing_s);
     prediction.rest = sum_of(prediction.cruise.energy, prediction.landing);
@@ -147,10 +173,11 @@ int main(int argc, char** argv) {
         "until-log-time", po::value<double>()->value_name("S"),
         "the moment in the log's own seconds, instead of --until")(
         "remaining", po::value<double>()->value_name("S"), "seconds from the moment until landing begins")(
-        "level", po::value<std::string>()->value_name("HOW")->default_value("curve"),
+        "level", po::value<std::string>()->value_name("HOW")->default_value("auto"),
         "what is expected of the cruise before its own power is looked at: the model's curve, the curve's "
-        "mean "
-        "(constant), or the power that the airspeed measured so far stands for (airspeed)")(
+        "mean (constant), the power that the airspeed measured so far stands for (airspeed), or that of the "
+        "model's level law (covariate); auto is covariate for a model that was fitted with "
+        "--level-covariate, and else curve")(
         "sortie", po::value<unsigned>()->value_name("N")->default_value(1), "which sortie of the log")(
         "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
     return cli::run_stage(argc, argv, stage, predict);

@@ -5,6 +5,7 @@
 #include "flight/cut_series.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
+#include "mechanical/covariates.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,6 +87,7 @@ FlownSoFar flown_so_far(const FlightSeries& series, const Moment& moment, std::s
         integrated_energy_wh(known, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
     flown.airspeed_cubed_m3_per_s3 =
         mean_cubed_airspeed_m3_per_s3(known.airspeed_track, flown.cruise_start_s, flown.until_s);
+    flown.covariates = covariates_of(known, *sortie);
     return flown;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/flight_series.h"
+#include "mechanical/covariate.h"
 
 #include <cstddef>
 #include <optional>
@@ -15,6 +16,7 @@ struct FlownSoFar {
     double energy_wh = 0.0;  ///< measured from lift-off until now
     double cruise_energy_wh = 0.0;
     std::optional<double> airspeed_cubed_m3_per_s3;  ///< mean over the cruise so far
+    Covariates covariates;                           ///< covariates_of what was known
     double cruise_s() const { return until_s - cruise_start_s; }
 };
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace flightwatt {
 namespace {
 
@@ -15,7 +17,9 @@ struct Expectation {
     double remaining_w = 0.0;
     double level_sd_w = 0.0;
     double weight_square_sum = 1.0;
-    double freedom = 1.0;  ///< of level_sd_w
+    double freedom = 1.0;        ///< of level_sd_w
+    double shape_flown_w = 0.0;  ///< what the curve says beyond `flown_w`, where its shape is not believed
+    double shape_remaining_w = 0.0;
 };
 
 Expectation expect_by_curve(const PhaseForecast& cruise, double flown_s, double remaining_s) {
@@ -31,11 +35,24 @@ Expectation expect_constant(const PhaseForecast& cruise, double flown_s, double 
     auto expected = expect_by_curve(cruise, flown_s, remaining_s);
     const double mean_w =
         (expected.flown_w * flown_s + expected.remaining_w * remaining_s) / (flown_s + remaining_s);
+    expected.shape_flown_w = expected.flown_w - mean_w;
+    expected.shape_remaining_w = expected.remaining_w - mean_w;
     expected.flown_w = expected.remaining_w = mean_w;
     return expected;
 }
 
-Expectation expect_by_airspeed(const PhaseForecast& cruise, const FlownSoFar& flown) {
+/// A level from elsewhere, even over the time.
+Expectation expect_level(const PhaseForecast& cruise, double flown_s, double remaining_s,
+                         const LawLevel& level) {
+    auto expected = expect_constant(cruise, flown_s, remaining_s);
+    expected.flown_w = expected.remaining_w = level.power_w;
+    expected.level_sd_w = level.sd_w.value();
+    expected.weight_square_sum = level.law_variance;
+    expected.freedom = level.freedom;
+    return expected;
+}
+
+Expectation expect_by_airspeed(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s) {
     if (!cruise.model.airspeed) {
         throw NoAnswerError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
     }
@@ -43,7 +60,21 @@ Expectation expect_by_airspeed(const PhaseForecast& cruise, const FlownSoFar& fl
     const auto& law = *cruise.model.airspeed;
     const double level_w = law.coefficient_w_s3_per_m3 * *flown.airspeed_cubed_m3_per_s3;
     const auto flights = static_cast<double>(law.flights);
-    return {level_w, level_w, law.relative_sd * level_w, 1.0 / flights, flights - 1.0};
+    return expect_level(cruise, flown.cruise_s(), remaining_s,
+                        {level_w, law.relative_sd * level_w, 1.0 / flights, flights - 1.0});
+}
+
+Expectation expect_by_covariate(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s) {
+    if (!cruise.model.level_law) {
+        throw NoAnswerError("the model has no level law: it was fitted without --level-covariate");
+    }
+    const auto& law = *cruise.model.level_law;
+    const auto& value = flown.covariates[law.covariate];
+    if (!value) {
+        throw NoAnswerError(fmt::format("the flight does not tell its {}, which the model's level follows",
+                                        to_string(law.covariate)));
+    }
+    return expect_level(cruise, flown.cruise_s(), remaining_s, level_at(law, *value));
 }
 
 Expectation expect(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s,
@@ -54,9 +85,23 @@ Expectation expect(const PhaseForecast& cruise, const FlownSoFar& flown, double 
         case LevelSource::constant:
             return expect_constant(cruise, flown.cruise_s(), remaining_s);
         case LevelSource::airspeed:
-            return expect_by_airspeed(cruise, flown);
+            return expect_by_airspeed(cruise, flown, remaining_s);
+        case LevelSource::covariate:
+            return expect_by_covariate(cruise, flown, remaining_s);
     }
     throw NoAnswerError("no such source of the cruise level");
+}
+
+/// Of gain = (B^2 + C) / (B^2 + V), to first order: B^2 and the drift's variance are themselves estimated,
+/// with relative variances 2 / freedom, and the gain changes oppositely with the logarithms of both.
+double variance_of_gain(double level_w2, double level_freedom, const Drift& drift, double flown_s,
+                        double remaining_s, double drift_freedom) {
+    const double drift_w2 = variance_of_mean_w2(drift, flown_s);
+    const double flown_w2 = level_w2 + drift_w2;
+    if (!(flown_w2 > 0.0)) return 0.0;
+    const double change =
+        level_w2 * (drift_w2 - covariance_of_means_w2(drift, flown_s, remaining_s)) / (flown_w2 * flown_w2);
+    return change * change * (2.0 / level_freedom + 2.0 / drift_freedom);
 }
 
 EnergyEstimate estimate_of(const PhaseForecast& phase, double energy_wh, double duration_s) {
@@ -116,22 +161,28 @@ RestPrediction predict_rest(const PhaseForecast& cruise, const FlownSoFar& flown
     rest.remaining_mean_w = expected.remaining_w + rest.gain * (rest.flown_w - rest.expected_w);
     rest.energy.energy_wh = units::wh_from_joule(rest.remaining_mean_w * remaining_s);
 
-    // Both shares of var y - gain cov: what rests on the flights' levels, and what on their drift.
+    // The error y - gain x, by its causes: this flight's level and drift, and those of the flights that the
+    // model is an average of.
     const double kept = 1.0 - rest.gain;
-    const double wh_per_w = units::wh_from_joule(remaining_s);
-    const double level_share_w2 = kept * level_w2 + kept * kept * level_w2 * expected.weight_square_sum;
-    // The curve is an average of flights that drifted as well.
+    const double average = 1.0 + expected.weight_square_sum;
+    const double level_share_w2 = average * kept * kept * level_w2;
     const double drift_share_w2 =
-        (1.0 + expected.weight_square_sum) *
-        std::max(0.0, variance_of_mean_w2(drift, remaining_s) -
-                          rest.gain * covariance_of_means_w2(drift, flown_s, remaining_s));
-    // How much a flight drifts differs from flight to flight, so many samples are no more than their flights.
-    const double independent_stretches =
-        static_cast<double>(spread.flights) * cruise.model.duration_s / (2.0 * drift.correlation_s);
-    const double drift_freedom =
-        std::clamp(independent_stretches - 1.0, 1.0, static_cast<double>(spread.flights));
-    add_share(rest.energy, {level_share_w2 * wh_per_w * wh_per_w, expected.freedom});
-    add_share(rest.energy, {drift_share_w2 * wh_per_w * wh_per_w, drift_freedom});
+        average * std::max(0.0, variance_of_mean_w2(drift, remaining_s) -
+                                    2.0 * rest.gain * covariance_of_means_w2(drift, flown_s, remaining_s) +
+                                    rest.gain * rest.gain * variance_of_mean_w2(drift, flown_s));
+    // How much a flight drifts differs from flight to flight, so many samples are no more than their flights;
+    // and the curve, their average, takes one.
+    const double drift_freedom = static_cast<double>(spread.flights - 1);
+    const double gain_share_w2 =
+        average * flown_w2 *
+        variance_of_gain(level_w2, expected.freedom, drift, flown_s, remaining_s, drift_freedom);
+    const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
+    add_share(rest.energy, {level_share_w2 * wh2_per_w2, expected.freedom});
+    add_share(rest.energy, {drift_share_w2 * wh2_per_w2, drift_freedom});
+    // A level that is even over the time errs by the curve's shape, if there is one.
+    const double shape_w = expected.shape_remaining_w - rest.gain * expected.shape_flown_w;
+    add_share(rest.energy, {shape_w * shape_w * wh2_per_w2, drift_freedom});
+    add_share(rest.energy, {gain_share_w2 * wh2_per_w2, std::min(expected.freedom, drift_freedom)});
     return rest;
 }
 

@@ -28,7 +28,8 @@ EnergyEstimate predict_rest_before_flight(const PhaseForecast& phase, double flo
 enum class LevelSource {
     curve,     ///< the model's Fourier curve
     constant,  ///< the curve's mean, for flights whose power has no shape in common
-    airspeed   ///< the model's airspeed law at the airspeed measured so far, even over the time
+    airspeed,  ///< the model's airspeed law at the airspeed measured so far, even over the time
+    covariate  ///< the model's level law at what is known of its covariate, even over the time
 };
 
 /// The rest of a cruise in flight.
@@ -43,14 +44,20 @@ struct RestPrediction {
 /// Shrinks between model and flight. With x and y the mean power so far and in what remains, less what the
 /// model expects, variance B^2 of the flights' levels and the drift's V(T), C(u, R) within one:
 ///     var x = B^2 + V(u),  var y = B^2 + V(R),  cov = B^2 + C(u, R),  gain = cov / var x
-///     y = gain x +- t sqrt(level share + drift share), with q the sum of the squared weights,
-///     level share = (1 - gain) B^2 + (1 - gain)^2 B^2 q,  drift share = (V(R) - gain C(u, R)) (1 + q)
-/// which is var y - gain cov and what the model's own average of few flights adds. The level has n - 1
-/// degrees of freedom; the drift as many as independent stretches were seen, but not more than flights. B^2
-/// is the sample variance of the flights' mean powers, from which the drift's part in them is not subtracted:
-/// between two or three flights that difference is mostly noise and often 0, and then the interval would be
-/// far too narrow. Throws NoAnswerError if the model has no spread or, for LevelSource::airspeed, no law, or
-/// no airspeed was measured.
+///     y = gain x +- t sqrt(level share + drift share + gain share + shape share)
+/// The error y - gain x has the variance (q the sum of the squared weights: the model is itself an average)
+///     level share = (1 + q) (1 - gain)^2 B^2
+///     drift share = (1 + q) (V(R) - 2 gain C(u, R) + gain^2 V(u))
+/// whose sum is (1 + q) (var y - gain cov). They are split by what they rest on (the derivatives by B^2 and
+/// by the drift's variance), so that Welch and Satterthwaite's degrees of freedom are right: most of the
+/// error is drift where flights differ much, and a low estimate of the drift must not borrow the level's
+/// freedom. Each has n - 1. B^2 and the drift are estimated from the same few flights, so the gain is
+/// uncertain too: gain share = (1 + q) var x var gain, by the delta method. A level that is even over the
+/// time adds the shape share, the square of what the model's curve would add. B^2 is the sample variance of
+/// the flights' mean powers, from which the drift's part in them is not subtracted: between two or three
+/// flights that difference is mostly noise and often 0, and then the interval would be far too narrow. Throws
+/// NoAnswerError if the model has no spread or, for LevelSource::airspeed and covariate, no law, or the
+/// flight did not measure what it asks for.
 RestPrediction predict_rest(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s,
                             LevelSource source);
 

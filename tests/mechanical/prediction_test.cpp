@@ -4,6 +4,8 @@
 #include "base/units.h"
 #include "made_up_flights.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace flightwatt {
@@ -64,10 +66,14 @@ TEST(Prediction, ShrinksByTheVariances) {
     const auto cruise = forecast({4, 2.0, sd_w, correlation_s});
     const auto rest = predict_rest(cruise, flown(300.0, 40.0), 900.0, LevelSource::curve);
     EXPECT_NEAR(rest.gain, 0.5, 1e-4);
-    // var y - gain cov = B^2 / 2 + V / 3, the latter 1 + 1/4 times; (1 - gain)^2 B^2 / 4 for the average of
-    // few flights.
     const double hours = 900.0 / 3600.0;
-    EXPECT_NEAR(rest.energy.variance_wh2 / hours / hours, 2.0 + 1.25 * 4.0 / 3.0 + 0.25, 1e-3);
+    const double variance_w2 = rest.energy.variance_wh2 / hours / hours;
+    // 1 + 1/4 times: B^2 / 4 for the level, V / 3 + V / 4 for the drift (C is 0), and the gain's variance
+    // (B^2 V / (B^2 + V)^2)^2 (2/3 + 2/3) on the variance 8 of what was seen.
+    EXPECT_NEAR(variance_w2, 1.25 * (1.0 + 4.0 / 3.0 + 1.0 + 8.0 / 16.0 * 4.0 / 3.0), 1e-3);
+    // Each of the three rests on 4 flights.
+    EXPECT_NEAR(rest.energy.variance_square_per_freedom / std::pow(hours, 4),
+                1.25 * 1.25 * (1.0 + std::pow(7.0 / 3.0, 2) + std::pow(2.0 / 3.0, 2)) / 3.0, 2e-3);
 }
 
 TEST(Prediction, IntervalNarrowsAsTheFlightGoesOn) {
@@ -85,7 +91,12 @@ TEST(Prediction, HoldsOneLevelWhereAsked) {
     const auto cruise = forecast({4, 5.0, 1e-3, 1.0});
     const auto rest = predict_rest(cruise, flown(300.0, 40.0), 300.0, LevelSource::constant);
     EXPECT_NEAR(rest.remaining_mean_w, 40.0, 1e-3);
-    EXPECT_NEAR(rest.expected_w, energy_j(cruise.model.fourier, 600.0) / 600.0, 1e-9);
+    const double mean_w = energy_j(cruise.model.fourier, 600.0) / 600.0;
+    EXPECT_NEAR(rest.expected_w, mean_w, 1e-9);
+    // The curve, if it is right after all, differs by so much in the two halves.
+    const double shape_wh =
+        units::wh_from_joule(2.0 * (mean_w * 300.0 - energy_j(cruise.model.fourier, 300.0)));
+    EXPECT_NEAR(rest.energy.variance_wh2, shape_wh * shape_wh, 1e-4 * shape_wh * shape_wh);
 }
 
 TEST(Prediction, FollowsTheAirspeedWhereAsked) {
@@ -99,6 +110,19 @@ TEST(Prediction, FollowsTheAirspeedWhereAsked) {
     EXPECT_NEAR(rest.expected_w, 25.0, 1e-12);
     // All flights have obeyed the law exactly: it is trusted more than 300 s of power.
     EXPECT_NEAR(rest.remaining_mean_w, 25.0, 0.05);
+}
+
+TEST(Prediction, FollowsTheCovariateOfTheLevelLawWhereAsked) {
+    auto cruise = forecast({4, 5.0, 1e-3, 1.0});
+    auto flight = flown(300.0, 20.0);
+    EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::covariate), NoAnswerError);
+    cruise.model.level_law = LevelLaw{Covariate::height, 4, 100.0, 10.0, 90.0, 110.0, 30.0, 4.0, 0.0};
+    EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::covariate), NoAnswerError);
+    flight.covariates[Covariate::height] = 105.0;
+    const auto rest = predict_rest(cruise, flight, 900.0, LevelSource::covariate);
+    EXPECT_NEAR(rest.expected_w, 32.0, 1e-12);
+    // All flights have obeyed the law exactly: it is trusted more than 300 s of power.
+    EXPECT_NEAR(rest.remaining_mean_w, 32.0, 0.05);
 }
 
 TEST(Prediction, SaysWhenTheModelHasNoSpread) {
