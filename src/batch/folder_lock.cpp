@@ -20,7 +20,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
     }
     if (::flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     ::close(folder_);
-    throw OutputError(fmt::format("another batch is writing into {}; wait for it, or choose another folder",
+    throw OutputError(fmt::format("another run is writing into {}; wait for it, or choose another folder",
                                   folder.string()));
 }
 

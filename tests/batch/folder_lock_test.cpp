@@ -12,14 +12,14 @@
 namespace flightwatt {
 namespace {
 
-TEST(FolderLock, KeepsASecondBatchOut) {
+TEST(FolderLock, KeepsASecondRunOut) {
     const auto folder = test::scratch_dir();
     std::optional<FolderLock> first(folder);
     try {
         const FolderLock second(folder);
         ADD_FAILURE() << "two at once";
     } catch (const OutputError& error) {
-        EXPECT_EQ(std::string(error.what()), "another batch is writing into " + folder.string() +
+        EXPECT_EQ(std::string(error.what()), "another run is writing into " + folder.string() +
                                                  "; wait for it, or choose another folder");
     }
     first.reset();
