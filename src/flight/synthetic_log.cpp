@@ -23,6 +23,11 @@ constexpr auto aircraft_id = "7";
 /// Pack voltage at rest, by the charge taken out of it: a line through a 3-cell pack's usual values.
 double rest_voltage_v(double charge_ah, double capacity_ah) { return 12.5 - 1.4 * charge_ah / capacity_ah; }
 
+/// What the phases' power draws: it is what reaches the sensors, so P = V I with V = U - R I.
+double current_of_power_a(double power_w, double rest_v, double resistance_ohm) {
+    return 2.0 * power_w / (rest_v + std::sqrt(rest_v * rest_v - 4.0 * resistance_ohm * power_w));
+}
+
 /// Sensors and counters, stepped through the flight.
 class Simulation {
   public:
@@ -34,15 +39,16 @@ class Simulation {
         moment.time_s = time_s;
         moment.state = state_at(flight, time_s);
         const double rest_v = rest_voltage_v(charge_ah_, sensors_.pack_capacity_ah);
-        const double true_current_a = moment.state.power_w / rest_v;
-        moment.voltage_v = rest_v - sensors_.pack_resistance_ohm * true_current_a;
-        // The phases' power is what reaches the sensors: voltage times current.
-        const double current_a = moment.state.power_w / moment.voltage_v;
-        charge_ah_ += (current_a + idle_a(moment)) * tick_s / units::seconds_per_hour;
-        energy_wh_ += (current_a + idle_a(moment)) * moment.voltage_v * tick_s / units::seconds_per_hour;
+        const double current_a = moment.state.power_w > 0.0 ? current_of_power_a(moment.state.power_w, rest_v,
+                                                                                 sensors_.pack_resistance_ohm)
+                                                            : sensors_.idle_current_a;
+        moment.voltage_v = rest_v - sensors_.pack_resistance_ohm * current_a;
+        // Reported is the charge that the voltage follows from: what has been drawn until now.
         moment.charge_ah = charge_ah_;
         moment.energy_wh = energy_wh_;
-        const double noisy_a = current_a + idle_a(moment) + sensors_.current_noise_a * normal_(random_);
+        charge_ah_ += current_a * tick_s / units::seconds_per_hour;
+        energy_wh_ += current_a * moment.voltage_v * tick_s / units::seconds_per_hour;
+        const double noisy_a = current_a + sensors_.current_noise_a * normal_(random_);
         moment.current_a = std::round(noisy_a / sensors_.current_step_a) * sensors_.current_step_a;
         moment.altitude_m = moment.state.estimated_altitude_m + sensors_.altitude_noise_m * normal_(random_);
         moment.flight_time_s = std::max(0.0, time_s - flight.lift_off_s);
@@ -50,10 +56,6 @@ class Simulation {
     }
 
   private:
-    double idle_a(const Moment& moment) const {
-        return moment.state.power_w > 0.0 ? 0.0 : sensors_.idle_current_a;
-    }
-
     const SyntheticSensors& sensors_;
     std::mt19937_64& random_;
     std::normal_distribution<double> normal_{0.0, 1.0};

@@ -142,17 +142,19 @@ TEST(Identification, SaysWhereNoRcPairIsSeen) {
 }
 
 TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
-    // 12.5 V falling by 1.4 V over 3.2 Ah behind 0.06 ohm. The log's current is power by terminal voltage and
-    // its drop that of power by open-circuit voltage, so the resistance that is seen is up to 2 % off.
+    // 12.5 V falling by 1.4 V over 3.2 Ah behind 0.06 ohm, and no RC pair.
     std::vector<DischargeRecord> records;
     for (const auto* name : {"01", "02", "03", "04", "05", "06"}) {
         records.push_back(discharge_record(
             read_flight(test::source_dir() / "logs" / (std::string("opterra_synthetic_") + name + ".data"))));
     }
     const auto found = identify_battery(records, {3.2, {}, ""});
-    EXPECT_NEAR(found.fit.resistance_ohm + found.fit.rc_resistance_ohm, 0.06, 0.02 * 0.06);
-    EXPECT_LT(found.fit.rc_resistance_ohm, 0.001);
-    EXPECT_NEAR(found.fit.open_circuit_v.front(), 12.5, 0.003);
+    EXPECT_LE(found.errors.resistance_ohm.low, 0.06);
+    EXPECT_GE(found.errors.resistance_ohm.high, 0.06);
+    EXPECT_LT(found.errors.resistance_ohm.high - found.errors.resistance_ohm.low, 0.01 * 0.06);
+    EXPECT_EQ(found.errors.rc_resistance_ohm.low, 0.0);
+    EXPECT_LT(found.errors.rc_resistance_ohm.high, 0.0001);
+    EXPECT_NEAR(found.fit.open_circuit_v.front(), 12.5, 0.001);
     const double slope = (found.fit.open_circuit_v.front() - found.fit.open_circuit_v.back()) /
                          (found.fit.knots_ah.back() - found.fit.knots_ah.front());
     EXPECT_NEAR(slope, 1.4 / 3.2, 0.01 * 1.4 / 3.2);
