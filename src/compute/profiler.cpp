@@ -4,10 +4,12 @@
 #include "compute/spread_nodes.h"
 
 #include <algorithm>
+#include <chrono>
 #include <numeric>
 #include <set>
 
 #include <fmt/format.h>
+#include <poll.h>
 
 namespace flightwatt {
 namespace {
@@ -71,9 +73,28 @@ void do_run(ProfileRun& run, const ProfileSpecification& specification, const Pr
     write_layer1(run, options.folder);
 }
 
+/// A meter takes its time to start, which is none of the first run's. Throws NoAnswerError for one that says
+/// nothing.
+void await_meter(PowerSampler& sampler, const ProfilerOptions& options) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::seconds patience(30);
+    if (sampler.file() < 0) return;  // a sensor, which answers when asked
+    for (const auto end = Clock::now() + patience; Clock::now() < end;) {
+        pollfd files[2] = {{options.signals, POLLIN, 0}, {sampler.file(), POLLIN, 0}};
+        ::poll(files, 2, 100);
+        if (files[0].revents != 0) throw Interrupted(options.caught());
+        if (!sampler.read().empty()) return;
+    }
+    throw NoAnswerError(
+        fmt::format("the sampler '{}' printed nothing for {} s", sampler.source, patience.count()));
+}
+
 void do_runs(std::vector<ProfileRun>& runs, const ProfileSpecification& specification,
              const ProfilerOptions& options, PowerSampler& sampler) {
     std::size_t done = 0;
+    if (std::any_of(runs.begin(), runs.end(), [](const auto& run) { return !run.is_done; })) {
+        await_meter(sampler, options);
+    }
     for (auto& run : runs) {
         if (!run.is_done) {
             do_run(run, specification, options, sampler);

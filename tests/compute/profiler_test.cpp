@@ -179,7 +179,7 @@ while True:
         std::ifstream account(folder / ("account." + share));
         std::vector<std::pair<double, double>> used;
         for (double time = 0.0, cpu = 0.0; account >> time >> cpu;) used.emplace_back(time, cpu);
-        ASSERT_GT(used.size(), 20U);
+        ASSERT_GT(used.size(), 10U);
         // Its clock starts when Python has; its last line is of the slot in which it was ended.
         const auto start = std::pair(used.front().first + samples.time_s.front(), 0.0);
         const auto first = *std::lower_bound(used.begin(), used.end() - 1, start);
