@@ -45,10 +45,12 @@ std::string describe(const MissionPlan& plan, const Mission& mission) {
     const double utility = *plan.summary.utility;
     const double gap =
         plan.plan.bound > 0.0 ? units::percent_of(plan.plan.bound - utility, plan.plan.bound) : 0.0;
-    auto text = fmt::format(
-        "{}: utility {:.6g}, at most {:.6g} is possible (gap {:.4f} %); {:.4f} % left, reserve {:.4f} %",
-        mission.name, utility, plan.plan.bound, std::max(gap, 0.0), *plan.summary.final_soc_percent,
-        mission.reserve_soc_percent);
+    const auto bound =
+        plan.plan.bound_is_proven
+            ? fmt::format("at most {:.6g} is possible (gap {:.4f} %)", plan.plan.bound, std::max(gap, 0.0))
+            : "how much is possible is not known, as the battery is charged in flight";
+    auto text = fmt::format("{}: utility {:.6g}, {}; {:.4f} % left, reserve {:.4f} %", mission.name, utility,
+                            bound, *plan.summary.final_soc_percent, mission.reserve_soc_percent);
     if (plan.margin_percent > 0.0) text += fmt::format(" and {:.4f} points of margin", plan.margin_percent);
     return text;
 }
@@ -92,15 +94,16 @@ int answer(const cli::StageCall& call, const Mission& mission, const std::string
     json["final_soc_percent"] = most.final_soc_percent;
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
     json["residual_percent"] = most.residual_percent;
-    json["limited_by"] = most.power_is_the_limit ? "power" : "charge";
+    json["limited_by"] = most.power_is_the_limit ? "power" : most.cut_off_is_the_limit ? "cut-off" : "charge";
     cli::write_result(call, fmt::format("{:.6f} {}\n", most.value, unit));
     if (call.json) {
         cli::print(json_text(json));
     } else {
-        cli::note(call, fmt::format(
-                            "{}: then {:.6f} % are left, {:+.1e} points from the reserve{}", mission.name,
-                            most.final_soc_percent, most.residual_percent,
-                            most.power_is_the_limit ? "; beyond, the battery cannot deliver the power" : ""));
+        cli::note(call, fmt::format("{}: then {:.6f} % are left, {:+.1e} points from the reserve{}",
+                                    mission.name, most.final_soc_percent, most.residual_percent,
+                                    most.power_is_the_limit ? "; beyond, the battery cannot deliver the power"
+                                    : most.cut_off_is_the_limit ? "; beyond, the battery is cut off"
+                                                                : ""));
     }
     return cli::ok;
 }

@@ -14,7 +14,7 @@ inline nlohmann::ordered_json to_json(const MissionPlan& plan, const Mission& mi
     json["mission"] = mission.name;
     json["feasible"] = feasible;
     json["utility"] = feasible ? nlohmann::ordered_json(*plan.summary.utility) : nullptr;
-    json["bound"] = feasible ? nlohmann::ordered_json(plan.plan.bound) : nullptr;
+    json["bound"] = feasible && plan.plan.bound_is_proven ? nlohmann::ordered_json(plan.plan.bound) : nullptr;
     json["final_soc_percent"] =
         plan.summary.final_soc_percent ? nlohmann::ordered_json(*plan.summary.final_soc_percent) : nullptr;
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
@@ -29,6 +29,7 @@ inline nlohmann::ordered_json to_json(const Shortfall& shortfall) {
     nlohmann::ordered_json json;
     json["short_percent"] = shortfall.short_percent;
     json["short_wh"] = shortfall.short_wh;
+    json["cut_off_at_s"] = or_null(shortfall.cut_off_at_s);
     json["longest_cruise_s"] = or_null(shortfall.cruise_s);
     json["least_fixed_spare_percent"] = or_null(shortfall.fixed_spare_percent);
     json["largest_reserve_soc_percent"] = or_null(shortfall.reserve_soc_percent);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,15 @@ double interpolated(const OpenCircuitVoltage& curve, double soc_percent) {
 }
 
 }  // namespace
+
+double full_energy_wh(const Battery& battery) {
+    if (!battery.thevenin) return battery.capacity_ah * battery.voltage_v;
+    const auto& [soc_percent, voltage_v] = battery.thevenin->open_circuit;
+    double percent_v = 0.0;
+    for (std::size_t i = 1; i < soc_percent.size(); ++i)
+        percent_v += (soc_percent[i] - soc_percent[i - 1]) * std::midpoint(voltage_v[i - 1], voltage_v[i]);
+    return battery.capacity_ah * percent_v / (soc_percent.back() - soc_percent.front());
+}
 
 double open_circuit_voltage_v(const Battery& battery, double soc_percent) {
     return battery.thevenin ? interpolated(battery.thevenin->open_circuit, soc_percent) : battery.voltage_v;

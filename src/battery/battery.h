@@ -56,6 +56,9 @@ struct BatteryState {
     double rc_voltage_v = 0.0;  ///< across the RC pair; 0 at rest
 };
 
+/// [Wh] of a full battery at rest: capacity times the mean of the open-circuit voltage over its charge.
+double full_energy_wh(const Battery& battery);
+
 /// [V] at rest.
 double open_circuit_voltage_v(const Battery& battery, double soc_percent);
 

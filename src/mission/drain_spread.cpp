@@ -12,10 +12,11 @@
 #include <fmt/format.h>
 
 namespace flightwatt {
-namespace {
-
-/// Of the mean mechanical power of a phase [W], about the model's.
 double level_sd_w(const Mission& mission, Phase phase) {
+    if (!mission.mechanical) {
+        throw InputError({mission.file}, "mechanical = \"none\": there are no flights that differ",
+                         "a chance needs a mechanical model of two flights or more");
+    }
     if (phase == Phase::cruise && mission.cruise_level) return mission.cruise_level->sd_w.value();
     const double duration_s = mission.duration_s[phase];
     const auto energy = predict_before_flight(forecast_of(*mission.mechanical, phase), duration_s);
@@ -29,6 +30,8 @@ double level_sd_w(const Mission& mission, Phase phase) {
     return units::joule_from_wh(std::sqrt(energy.variance_wh2)) / duration_s;
 }
 
+namespace {
+
 double phase_drain_percent(const Mission& mission, const Configuration& configuration, Phase phase) {
     const auto table = make_drain_table(mission, {configuration});
     return drain_percent(table, {0, phase, 0.0, mission.duration_s[phase]});
@@ -37,10 +40,6 @@ double phase_drain_percent(const Mission& mission, const Configuration& configur
 }  // namespace
 
 double drain_sd_percent(const Mission& mission, const std::vector<Configuration>& configurations) {
-    if (!mission.mechanical) {
-        throw InputError({mission.file}, "mechanical = \"none\": there are no flights that differ",
-                         "a chance needs a mechanical model of two flights or more");
-    }
     const auto hungriest =
         std::max_element(configurations.begin(), configurations.end(), [&](const auto& a, const auto& b) {
             return power_w(mission.compute, a) < power_w(mission.compute, b);

@@ -6,6 +6,11 @@
 
 namespace flightwatt {
 
+/// Standard deviation [W] of a phase's mean mechanical power about the model's, of a flight to come: the
+/// predictive one of mechanical/prediction.h. Throws InputError where there is no mechanical model, or one
+/// that does not say how flights differ.
+double level_sd_w(const Mission& mission, Phase phase);
+
 /// Standard deviation [points] of what a mission drains, from how the flights' mean powers differ: of each
 /// phase, the drain of one standard deviation more mechanical power for as long as it is flown, beside the
 /// configuration that draws most; the phases' variances add. The deviation of a flight from a model of few

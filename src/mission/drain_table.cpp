@@ -13,15 +13,33 @@ namespace flightwatt {
 namespace {
 
 constexpr double wanted_error_percent = 1e-8;
+constexpr double wanted_error_along_source_percent = 1e-6;  // straight lines between the course's points
 constexpr std::size_t fewest_cells = 16;
 constexpr std::size_t first_cells_at_most = 4096;
 constexpr std::size_t most_cells = 65536;
 
 /// The load of one configuration in one phase.
 struct PhaseLoad {
-    const Battery& battery;
+    Battery battery;              ///< the paper's
+    const SourceVoltage* source;  ///< none: the battery's own
+    double cutoff_voltage_v;
+    double phase_begins_s;
     const std::optional<FourierModel>& mechanical;
     double compute_w;
+
+    /// Its RC voltage takes the battery's constant source to where the course is.
+    BatteryState state(double time_s) const {
+        if (!source) return {};
+        return {100.0, battery.voltage_v - voltage_v(*source, phase_begins_s + time_s)};
+    }
+    bool is_deliverable(double time_s) const {
+        const auto now = state(time_s);
+        const double demand_w = power_w(time_s);
+        if (demand_w > power_limit_w(battery, now)) return false;
+        return cutoff_voltage_v == 0.0 ||
+               terminal_voltage_v(battery, now, internal_current_a(battery, demand_w, now)) >=
+                   cutoff_voltage_v;
+    }
 
     double power_w(double time_s) const {
         return (mechanical ? flightwatt::power_w(*mechanical, time_s) : 0.0) + compute_w;
@@ -30,13 +48,14 @@ struct PhaseLoad {
         return (mechanical ? flightwatt::energy_j(*mechanical, time_s) : 0.0) + compute_w * time_s;
     }
     double percent_per_s(double time_s) const {
+        const auto now = state(time_s);
         const double current_a =
-            internal_current_a(battery, std::min(power_w(time_s), power_limit_w(battery)));
+            internal_current_a(battery, std::min(power_w(time_s), power_limit_w(battery, now)), now);
         return units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
     }
     /// The drain from one time to another.
     double percent(double from_s, double to_s) const {
-        if (battery.resistance_ohm == 0.0) {
+        if (battery.resistance_ohm == 0.0 && !source) {
             const double charge_as = (energy_j(to_s) - energy_j(from_s)) / battery.voltage_v;
             return units::percent_of(charge_as, units::coulomb_from_ah(battery.capacity_ah));
         }
@@ -71,7 +90,6 @@ PhaseDrain tabulate(const PhaseLoad& load, double duration_s, std::size_t cells,
     drain.cells_per_s = static_cast<double>(cells) / duration_s;
     drain.nodes.resize(cells + 1);
     drain.undeliverable_cells.assign(cells + 1, 0);
-    const double limit_w = power_limit_w(load.battery);
     const auto time_s = [&](double k) { return k / drain.cells_per_s; };
     drain.nodes[0].percent_per_s = load.percent_per_s(0.0);
     error_percent = 0.0;
@@ -87,7 +105,7 @@ PhaseDrain tabulate(const PhaseLoad& load, double duration_s, std::size_t cells,
         const double interpolated = at_cell(drain, k, 0.5) - drain.nodes[k].drained_percent;
         error_percent = std::max(error_percent, std::abs(interpolated - first));
         const bool beyond =
-            std::max({load.power_w(begin_s), load.power_w(middle_s), load.power_w(end_s)}) > limit_w;
+            !load.is_deliverable(begin_s) || !load.is_deliverable(middle_s) || !load.is_deliverable(end_s);
         drain.undeliverable_cells[k + 1] = drain.undeliverable_cells[k] + (beyond ? 1 : 0);
     }
     error_percent += quadrature_error_percent;
@@ -99,7 +117,8 @@ PhaseDrain tabulate(const PhaseLoad& load, double duration_s, double& error_perc
     auto cells =
         std::clamp(static_cast<std::size_t>(std::ceil(duration_s)), fewest_cells, first_cells_at_most);
     auto drain = tabulate(load, duration_s, cells, error_percent);
-    while (error_percent > wanted_error_percent && cells < most_cells && drain.deliverable) {
+    const double wanted_percent = load.source ? wanted_error_along_source_percent : wanted_error_percent;
+    while (error_percent > wanted_percent && cells < most_cells && drain.deliverable) {
         cells *= 2;
         drain = tabulate(load, duration_s, cells, error_percent);
     }
@@ -117,13 +136,23 @@ bool is_undeliverable(const PhaseDrain& drain, double from_s, double to_s) {
            drain.undeliverable_cells[std::min(first, cells - 1)];
 }
 
-}  // namespace
+/// The paper's battery with the source that the mission's has at the beginning.
+Battery with_constant_source(const Mission& mission) {
+    auto battery = mission.battery;
+    battery.voltage_v = open_circuit_voltage_v(battery, mission.initial_soc_percent);
+    battery.thevenin.reset();
+    return battery;
+}
 
-DrainTable make_drain_table(const Mission& mission, std::vector<Configuration> configurations) {
+DrainTable tabulate_all(const Mission& mission, std::vector<Configuration> configurations,
+                        const SourceVoltage* source) {
     DrainTable table;
     table.initial_soc_percent = mission.initial_soc_percent;
+    table.depends_on_state = mission.battery.thevenin.has_value();
     table.configurations = std::move(configurations);
     table.drains.resize(table.configurations.size());
+    const auto battery = with_constant_source(mission);
+    double phase_begins_s = 0.0;
     for (const auto phase : all_phases) {
         const double duration_s = mission.duration_s[phase];
         if (duration_s == 0.0) continue;
@@ -132,8 +161,9 @@ DrainTable make_drain_table(const Mission& mission, std::vector<Configuration> c
             mechanical = flown_model(mission.mechanical->phases[phase], duration_s, mission.phase_clock);
         }
         for (std::size_t c = 0; c < table.configurations.size(); ++c) {
-            const PhaseLoad load{mission.battery, mechanical,
-                                 power_w(mission.compute, table.configurations[c])};
+            const PhaseLoad load{
+                battery,        source,     mission.cutoff_voltage_v,
+                phase_begins_s, mechanical, power_w(mission.compute, table.configurations[c])};
             double error_percent = 0.0;
             auto& drain = table.drains[c][phase];
             drain = tabulate(load, duration_s, error_percent);
@@ -142,8 +172,20 @@ DrainTable make_drain_table(const Mission& mission, std::vector<Configuration> c
                 table.charges || std::any_of(drain.nodes.begin(), drain.nodes.end(),
                                              [](const auto& node) { return node.percent_per_s < 0.0; });
         }
+        phase_begins_s += duration_s;
     }
     return table;
+}
+
+}  // namespace
+
+DrainTable make_drain_table(const Mission& mission, std::vector<Configuration> configurations) {
+    return tabulate_all(mission, std::move(configurations), nullptr);
+}
+
+DrainTable make_drain_table(const Mission& mission, std::vector<Configuration> configurations,
+                            const SourceVoltage& source) {
+    return tabulate_all(mission, std::move(configurations), &source);
 }
 
 std::vector<Configuration> configurations_of(const std::vector<Stretch>& schedule) {
@@ -175,7 +217,7 @@ double drain_percent(const DrainTable& table, const TabledStretch& stretch) {
 }
 
 std::optional<double> soc_after(const DrainTable& table, std::span<const TabledStretch> schedule) {
-    if (table.charges) return std::nullopt;
+    if (table.charges || table.depends_on_state) return std::nullopt;
     double soc_percent = table.initial_soc_percent;
     for (const auto& stretch : schedule) soc_percent -= drain_percent(table, stretch);
     if (!std::isfinite(soc_percent)) return std::nullopt;

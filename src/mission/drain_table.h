@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mission/mission.h"
+#include "mission/source_voltage.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +27,8 @@ struct PhaseDrain {
 };
 
 /// Cumulative drain of every configuration over every phase of a mission. Where the internal current depends
-/// on the power alone (Eq. 10), what any schedule drains is a sum of differences of its entries.
+/// on the power alone (Eq. 10), what any schedule drains is a sum of differences of its entries; with a
+/// battery whose source follows its charge, that holds along one course of the source's voltage only.
 struct DrainTable {
     std::vector<Configuration> configurations;
     std::vector<PerPhase<PhaseDrain>> drains;  ///< one a configuration
@@ -34,6 +36,8 @@ struct DrainTable {
     /// Some configuration charges the battery at some time: what a full battery then refuses depends on the
     /// state of charge, and differences do not add up.
     bool charges = false;
+    /// The battery's source follows its charge: entries hold along one course, sums do not tell the end.
+    bool depends_on_state = false;
     /// The greatest error of a looked-up value that was seen halfway between nodes, and of the quadrature.
     double error_percent = 0.0;
 };
@@ -48,8 +52,14 @@ struct TabledStretch {
 
 /// Tabulates the mission's phases for the configurations; its schedule is not looked at. Without resistance
 /// entries are the closed integral of Eq. 1; with it, Gauss quadrature. Cells are halved until the error is
-/// under 1e-8 points (or there are 2^16 of them).
+/// under 1e-8 points (or there are 2^16 of them). What the cut-off voltage forbids counts as undeliverable.
+/// For a battery whose source follows its charge, along its voltage at the beginning, which drains no more
+/// than the truth if nothing charges.
 DrainTable make_drain_table(const Mission& mission, std::vector<Configuration> configurations);
+
+/// The same along a given course of the source's voltage, with an error under 1e-6 points.
+DrainTable make_drain_table(const Mission& mission, std::vector<Configuration> configurations,
+                            const SourceVoltage& source);
 
 /// The mission's schedule in terms of a table that holds its configurations. Throws std::invalid_argument for
 /// one that the table does not hold.
@@ -62,7 +72,8 @@ std::vector<Configuration> configurations_of(const std::vector<Stretch>& schedul
 double drain_percent(const DrainTable& table, const TabledStretch& stretch);
 
 /// State of charge after a whole schedule from the table's initial one, as if the battery went on below
-/// empty: negative where it is short. None where the table does not hold: it charges, or cannot be delivered.
+/// empty: negative where it is short. None where the table does not hold: it charges, depends on the state,
+/// or cannot be delivered.
 std::optional<double> soc_after(const DrainTable& table, std::span<const TabledStretch> schedule);
 
 /// The differences themselves, where many schedules share their slots: what every configuration drains in
@@ -78,8 +89,8 @@ struct SlotDrains {
 SlotDrains make_slot_drains(const DrainTable& table, std::span<const TabledStretch> slots);
 
 /// As of a schedule, which runs in each slot one of the configurations; minus infinity where that cannot be
-/// delivered. Not for a table that charges. Throws std::invalid_argument for another number of choices than
-/// slots.
+/// delivered. Not for a table that charges or depends on the state. Throws std::invalid_argument for another
+/// number of choices than slots.
 double soc_after(const SlotDrains& drains, std::span<const std::uint16_t> choices);
 
 }  // namespace flightwatt

@@ -37,7 +37,9 @@ MostThatLands answer(double value, const Mission& at, const Mission& beyond) {
     most.value = value;
     most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
     most.residual_percent = most.final_soc_percent - at.reserve_soc_percent;
-    most.power_is_the_limit = simulate(beyond).summary.undeliverable.has_value();
+    const auto further = simulate(beyond).summary;
+    most.power_is_the_limit = further.undeliverable.has_value();
+    most.cut_off_is_the_limit = further.cut_off_at_s.has_value();
     return most;
 }
 
@@ -74,12 +76,16 @@ double short_enough_s(const MissionOfCruise& mission_of, double too_long_s) {
 }  // namespace
 
 double spare_percent(const Mission& mission) {
-    const auto table = make_drain_table(mission, configurations_of(mission.schedule));
-    if (const auto soc = soc_after(table, tabled(mission.schedule, table)))
-        return *soc - mission.reserve_soc_percent;
+    if (!mission.battery.thevenin) {
+        const auto table = make_drain_table(mission, configurations_of(mission.schedule));
+        if (const auto soc = soc_after(table, tabled(mission.schedule, table)))
+            return *soc - mission.reserve_soc_percent;
+    }
     const auto summary = simulate(mission).summary;
     if (summary.feasible) return *summary.final_soc_percent - mission.reserve_soc_percent;
-    const double ended_s = summary.undeliverable ? summary.undeliverable->time_s : *summary.depleted_at_s;
+    const double ended_s = summary.undeliverable   ? summary.undeliverable->time_s
+                           : summary.depleted_at_s ? *summary.depleted_at_s
+                                                   : *summary.cut_off_at_s;
     return -mission.reserve_soc_percent -
            units::percent_of(summary.duration_s - ended_s, summary.duration_s) - 1e-9;
 }
@@ -120,6 +126,8 @@ MostThatLands largest_payload(const Mission& mission) {
     const auto bare = with_least_schedule(mission);
     const auto spare_of = [&](double payload_w) { return spare_percent(with_payload(bare, payload_w)); };
     if (const double spare = spare_of(0.0); spare < 0.0) {
+        if (const auto summary = simulate(bare).summary; !summary.feasible)
+            throw NoAnswerError("without any payload already: " + describe(summary));
         throw NoAnswerError(fmt::format(
             "without any payload the mission misses its reserve by {:.4g} points already", -spare));
     }
@@ -135,6 +143,29 @@ MostThatLands largest_payload(const Mission& mission) {
     const double payload_w = last_good(spare_of, good_w, bad_w);
     return answer(payload_w, with_payload(bare, payload_w),
                   with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
+}
+
+std::optional<double> least_capacity_ah(const Mission& mission) {
+    constexpr double most_times = 1000.0;
+    const auto bare = with_least_schedule(mission);
+    const auto spare_of = [&](double capacity_ah) {
+        auto other = bare;
+        other.battery.capacity_ah = capacity_ah;
+        return spare_percent(other);
+    };
+    double good_ah = mission.battery.capacity_ah;
+    double bad_ah = good_ah;
+    while (spare_of(good_ah) < 0.0) {
+        bad_ah = good_ah;
+        good_ah *= 2.0;
+        if (good_ah > most_times * mission.battery.capacity_ah) return std::nullopt;
+    }
+    while (spare_of(bad_ah) >= 0.0) {
+        good_ah = bad_ah;
+        bad_ah /= 2.0;
+        if (bad_ah * most_times < mission.battery.capacity_ah) return good_ah;
+    }
+    return last_good(spare_of, good_ah, bad_ah);
 }
 
 }  // namespace flightwatt

@@ -3,6 +3,7 @@
 #include "mission/mission.h"
 
 #include <functional>
+#include <optional>
 
 namespace flightwatt {
 
@@ -15,8 +16,9 @@ struct MostThatLands {
     double value = 0.0;
     double final_soc_percent = 0.0;  ///< then, simulated
     double residual_percent = 0.0;   ///< that, less the reserve
-    bool power_is_the_limit =
-        false;  ///< beyond, the battery could not deliver the power, whatever its charge
+    /// Beyond, the battery could not deliver the power, whatever its charge.
+    bool power_is_the_limit = false;
+    bool cut_off_is_the_limit = false;  ///< beyond, its voltage would fall below the cut-off
 };
 
 /// The longest cruise [s] with the mission's schedule, or if it is yet to be planned with the one that drains
@@ -29,6 +31,10 @@ MostThatLands largest_payload(const Mission& mission);
 
 /// The mission, with the schedule that drains least if it has none, and a constant load besides.
 Mission with_payload(const Mission& mission, double payload_w);
+
+/// The least capacity [Ah] with which the mission lands with its reserve, its battery otherwise as it is,
+/// with the mission's own schedule or the one that drains least. None if no capacity is enough.
+std::optional<double> least_capacity_ah(const Mission& mission);
 
 /// State of charge at the end less the reserve [points]: by tables where they hold, else simulated. Negative
 /// if the reserve is not kept, and the more so the earlier the battery ends.

@@ -1,7 +1,8 @@
 #include "mission/plan.h"
 
-#include "base/units.h"
 #include "mission/drain_spread.h"
+#include "mission/flown_schedule.h"
+#include "mission/simulated_plan.h"
 
 #include <algorithm>
 
@@ -53,21 +54,6 @@ std::vector<Stretch> schedule_of(const Planner& planner, const std::vector<Missi
     return schedule;
 }
 
-/// How far below `wanted_percent` a mission ends, counting what it demanded when the battery was empty.
-double missing_percent(const Mission& mission, const MissionSummary& summary, double wanted_percent) {
-    const double undelivered_wh = summary.energy_wh - summary.delivered_energy_wh;
-    const double full_wh = mission.battery.capacity_ah * mission.battery.voltage_v;
-    return wanted_percent - summary.final_soc_percent.value_or(0.0) +
-           units::percent_of(undelivered_wh, full_wh);
-}
-
-Mission with_schedule(const Mission& mission, std::vector<Stretch> schedule) {
-    auto flown = mission;
-    flown.schedule = std::move(schedule);
-    flown.plan.reset();
-    return flown;
-}
-
 }  // namespace
 
 Plan plan_rest(const Mission& mission, const Planner& planner, const PlanStart& start,
@@ -91,19 +77,12 @@ Plan plan_rest(const Mission& mission, const Planner& planner, const PlanStart& 
     return plan;
 }
 
-Mission with_least_schedule(const Mission& mission) {
-    if (!mission.plan) return mission;
-    const auto weakest = weakest_configuration(mission);
-    std::vector<Stretch> schedule;
-    for (const auto& slot : slots_of(mission)) {
-        schedule.push_back({slot.phase, slot.from_s, slot.to_s, slot.fixed.value_or(weakest)});
-    }
-    return with_schedule(mission, std::move(schedule));
-}
-
 MissionPlan plan_mission(const Mission& mission, const std::optional<double>& probability) {
-    const auto planner = make_planner(mission);
+    if (mission.battery.thevenin || mission.cutoff_voltage_v > 0.0)
+        return plan_by_simulation(mission, probability);
     MissionPlan result;
+    result.planner = make_planner(mission);
+    const auto& planner = result.planner;
     if (probability)
         result.margin_percent = margin_percent(mission, planner.drains.configurations, *probability);
     const PlanStart start{0.0, mission.initial_soc_percent, std::nullopt, 0.0};
@@ -130,7 +109,8 @@ MissionSummary labelled_summary(const MissionPlan& plan) {
     constexpr double as_good_as_optimal = 1e-3;
     auto summary = plan.summary;
     const double utility = summary.utility.value_or(0.0);
-    const bool optimal = plan.plan.bound - utility <= as_good_as_optimal * plan.plan.bound;
+    const bool optimal =
+        plan.plan.bound_is_proven && plan.plan.bound - utility <= as_good_as_optimal * plan.plan.bound;
     summary.feasible = summary.feasible && plan.plan.feasible;
     summary.schedule = !plan.plan.feasible ? "no plan keeps the reserve" : optimal ? "optimal" : "planned";
     return summary;

@@ -24,6 +24,7 @@ struct Plan {
     std::vector<Stretch> schedule;  ///< from the start to the mission's end; if infeasible, what drains least
     double utility = 0.0;           ///< mean worth a second of the rest of the mission
     double bound = 0.0;             ///< no schedule that keeps the reserve is worth more; 0 if infeasible
+    bool bound_is_proven = true;    ///< false: what charges a battery whose source follows its charge
     double final_soc_percent = 0.0;  ///< as if the battery went on below empty
 };
 
@@ -38,17 +39,15 @@ struct MissionPlan {
     Mission flown;                ///< the mission with the plan's schedule, no longer to be planned
     MissionSummary summary;       ///< of that, simulated
     double margin_percent = 0.0;  ///< kept above the reserve for the sake of the probability
+    Planner planner;              ///< whose table holds along the plan: for plans made anew in flight
 };
 
 /// Plans a mission and simulates the result; where that ends below the reserve (by rounding, or because a
 /// full battery refused charge, which tables do not know), plans anew with more to spare. The tables drain no
 /// more than the simulation, so the bound holds nevertheless. With `probability`, the reserve is kept
-/// with that chance: see drain_spread.h. Infeasible plans are returned as such.
+/// with that chance: see drain_spread.h. Infeasible plans are returned as such. Batteries whose source
+/// follows their charge, and those that may be cut off: see simulated_plan.h.
 MissionPlan plan_mission(const Mission& mission, const std::optional<double>& probability = std::nullopt);
-
-/// The mission with the schedule that drains least: the configuration that draws least wherever nothing is
-/// fixed (which any dwell time allows). A mission that has a schedule stays as it is.
-Mission with_least_schedule(const Mission& mission);
 
 /// What the flown mission comes to, labelled as optimal (its bound is within 0.1 %) or planned.
 MissionSummary labelled_summary(const MissionPlan& plan);

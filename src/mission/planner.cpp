@@ -1,5 +1,7 @@
 #include "mission/planner.h"
 
+#include "mission/flown_schedule.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -121,7 +123,19 @@ Planner make_planner(const Mission& mission) {
         configurations.push_back(run);
         planner.worth_per_s.push_back(worth(mission.utilities, run));
     }
+    if (mission.battery.thevenin) {
+        if (auto highest = source_voltage_of(with_least_schedule(mission))) {
+            for (auto& voltage_v : highest->voltage_v) voltage_v += highest->error_v;
+            planner.drains = make_drain_table(mission, std::move(configurations), *highest);
+            return planner;
+        }
+    }
     planner.drains = make_drain_table(mission, std::move(configurations));
+    return planner;
+}
+
+Planner along(const Mission& mission, Planner planner, const SourceVoltage& source) {
+    planner.drains = make_drain_table(mission, std::move(planner.drains.configurations), source);
     return planner;
 }
 
@@ -171,6 +185,16 @@ std::vector<MissionSlot> slots_of(const Mission& mission, double time_s) {
         fill_until(duration_s);
     }
     return slots;
+}
+
+Mission with_least_schedule(const Mission& mission) {
+    if (!mission.plan) return mission;
+    const auto weakest = weakest_configuration(mission);
+    std::vector<Stretch> schedule;
+    for (const auto& slot : slots_of(mission)) {
+        schedule.push_back({slot.phase, slot.from_s, slot.to_s, slot.fixed.value_or(weakest)});
+    }
+    return with_schedule(mission, std::move(schedule));
 }
 
 }  // namespace flightwatt

@@ -20,7 +20,18 @@ struct Planner {
 /// The configurations that the mission's [plan] allows, without those that draw more than another one that is
 /// worth as much, and those that its fixed stretches run. Throws InputError if the mission states no utility,
 /// or has more than a million combinations.
+///
+/// Of a battery whose source follows its charge, the table is along the voltage that the schedule keeps which
+/// drains least, raised by the course's error. Where nothing charges, every other schedule is below it at any
+/// time, as less power leaves more charge and a smaller RC voltage: so none drains less than this table says.
 Planner make_planner(const Mission& mission);
+
+/// The same choices, with what they drain along a course of the source's voltage.
+Planner along(const Mission& mission, Planner planner, const SourceVoltage& source);
+
+/// The mission with the schedule that drains least: the configuration that draws least wherever nothing is
+/// fixed (which any dwell time allows). A mission that has a schedule stays as it is.
+Mission with_least_schedule(const Mission& mission);
 
 /// The configuration that the mission's [plan] allows and that draws least.
 Configuration weakest_configuration(const Mission& mission);

@@ -26,6 +26,7 @@ struct Stretch {
     double from_s = 0.0;  ///< since the phase began
     double to_s = 0.0;
     Configuration run;
+    bool operator==(const Stretch&) const = default;
 };
 
 /// Ends nearer than this are one: percentages of a phase meet seconds only up to rounding.

@@ -38,12 +38,18 @@ Shortfall shortfall_of(const Mission& mission, const MissionPlan& plan, const Mi
     const double wanted = mission.reserve_soc_percent + plan.margin_percent;
     const double least_drain = mission.initial_soc_percent - plan.plan.final_soc_percent;
     shortfall.short_percent = wanted - plan.plan.final_soc_percent;
-    shortfall.short_wh =
-        units::part_of(mission.battery.capacity_ah * mission.battery.voltage_v, shortfall.short_percent);
+    shortfall.short_wh = units::part_of(full_energy_wh(mission.battery), shortfall.short_percent);
+    shortfall.cut_off_at_s = plan.summary.cut_off_at_s;
     shortfall.cruise_s = cruise_that_lands(mission_of, plan.margin_percent);
     shortfall.fixed_spare_percent = spare_without_fixed(mission, plan.margin_percent);
     const double possible = plan.plan.final_soc_percent - plan.margin_percent;
-    if (possible >= 0.0) shortfall.reserve_soc_percent = possible;
+    if (possible >= 0.0 && plan.summary.feasible) shortfall.reserve_soc_percent = possible;
+    if (mission.battery.thevenin || mission.cutoff_voltage_v > 0.0) {
+        auto with_margin = mission;
+        with_margin.reserve_soc_percent = wanted;
+        shortfall.capacity_ah = least_capacity_ah(with_margin);
+        return shortfall;
+    }
     // Drain and margin are parts of the capacity; the reserve stays what it is.
     const double usable = mission.initial_soc_percent - mission.reserve_soc_percent;
     if (usable > 0.0) {
@@ -72,8 +78,9 @@ std::string describe(const Mission& mission, const Shortfall& shortfall) {
                                        mission.battery.capacity_ah));
     }
     auto text = fmt::format(
-        "no schedule lands with the reserve: the one that drains least is short by {:.2f} points "
+        "no schedule lands with the reserve: the one that drains least is {}short by {:.2f} points "
         "({:.3f} Wh)",
+        shortfall.cut_off_at_s ? fmt::format("cut off at {:.1f} s, ", *shortfall.cut_off_at_s) : "",
         shortfall.short_percent, shortfall.short_wh);
     if (!remedies.empty()) text += fmt::format("; any one of these would do: {}", fmt::join(remedies, ", "));
     return text;

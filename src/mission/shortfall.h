@@ -12,7 +12,8 @@ namespace flightwatt {
 /// measure on its own; a measure that alone is not enough is none.
 struct Shortfall {
     double short_percent = 0.0;                 ///< of the schedule that drains least
-    double short_wh = 0.0;                      ///< the same, at the battery's voltage
+    double short_wh = 0.0;                      ///< the same, as a part of what a full battery holds
+    std::optional<double> cut_off_at_s;         ///< short is then also what is demanded after the cut-off
     std::optional<double> cruise_s;             ///< the longest that lands
     std::optional<double> fixed_spare_percent;  ///< over the reserve, with the least where quality is fixed
     std::optional<double> reserve_soc_percent;  ///< the greatest that can be kept
