@@ -142,7 +142,9 @@ int main(int argc, char** argv) {
         "[[schedule]]\n"
         "says beside [plan] is fixed. --longest-cruise and --largest-payload take the mission's own "
         "schedule, or the\n"
-        "one that drains least.";
+        "one that drains least. On a battery whose voltage falls with its charge (model = \"thevenin\"), "
+        "plans are\n"
+        "simulated and made anew until they land; the bound is then that of the highest voltage possible.";
     stage.max_inputs = 1;
     stage.options.add_options()("probability", po::value<double>()->value_name("P"),
                                 "keep the reserve with this chance, as flights differ (0.95)")(

@@ -88,6 +88,11 @@ PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
         throw InputError(naming.where, fmt::format("{} names its parameters itself", table.file),
                          "leave `parameters` out");
     }
+    if (header.cells.front().text == "time_s") {
+        throw InputError({table.file, header.line, header.cells.front().column},
+                         "is a recording of power over time (layer 1), expected a profile of configurations",
+                         "take layer 2, which `flightwatt profile` writes as DIR/COMPONENT.csv");
+    }
     const auto count = parameter_count(table);
     table.rows.erase(table.rows.begin());
     std::vector<std::size_t> columns;

@@ -24,6 +24,13 @@ TEST(ProfileReader, ReadsOurOwnCsv) {
     EXPECT_EQ(power_w(profile, {1.5, 48.0}), 6.75);
 }
 
+TEST(ProfileReader, RefusesPowerOverTime) {
+    const auto file = write_text(test::scratch_dir() / "load.csv", "time_s,power_w\n0,5\n0.1,5.2\n");
+    EXPECT_EQ(rejected([&] { read_power_profile(file); }, file.parent_path()),
+              "load.csv:1:1: is a recording of power over time (layer 1), expected a profile of "
+              "configurations; take layer 2, which `flightwatt profile` writes as DIR/COMPONENT.csv");
+}
+
 TEST(ProfileReader, ReadsPowprofilerLayerTwo) {
     const auto file =
         write_text(scratch_dir() / "p.csv", "201,200,100,130\n32,1,5,999\n32,2,6,999\n64,1,7,9\n64,2,9,9");
