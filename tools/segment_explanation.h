@@ -15,10 +15,12 @@ namespace flightwatt {
 
 inline std::string witness_text(const ExplainedEdge& edge) {
     std::string text;
-    for (const auto& witness : edge.witnesses) {
-        text += fmt::format("{}{} at {:.1f} s ({:+.1f} s)", text.empty() ? "" : "; ", witness.what,
-                            witness.time_s, witness.after_s);
-    }
+    const auto add = [&](const EdgeWitness& event, const char* how) {
+        text += fmt::format("{}{}{} at {:.1f} s ({:+.1f} s)", text.empty() ? "" : "; ", how, event.what,
+                            event.time_s, event.after_s);
+    };
+    for (const auto& witness : edge.witnesses) add(witness, "");
+    for (const auto& event : edge.nearby) add(event, "nearby: ");
     return text.empty() ? "-" : text;
 }
 

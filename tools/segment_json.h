@@ -43,16 +43,16 @@ inline Json to_json(const FlightSeries& series, const PhaseSpan& span) {
 }
 
 inline Json to_json(const ExplainedEdge& explained) {
-    Json witnesses = Json::array();
-    for (const auto& witness : explained.witnesses) {
-        witnesses.push_back(
-            {{"what", witness.what}, {"time_s", witness.time_s}, {"after_s", witness.after_s}});
-    }
-    return {{"edge", to_string(explained.kind)},
-            {"time_s", explained.edge.time_s},
-            {"height_percent", explained.height_percent},
-            {"witnesses", witnesses},
-            {"verdict", explained.verdict}};
+    const auto events_json = [](const std::vector<EdgeWitness>& events) {
+        Json json = Json::array();
+        for (const auto& event : events) {
+            json.push_back({{"what", event.what}, {"time_s", event.time_s}, {"after_s", event.after_s}});
+        }
+        return json;
+    };
+    return {{"edge", to_string(explained.kind)},          {"time_s", explained.edge.time_s},
+            {"height_percent", explained.height_percent}, {"witnesses", events_json(explained.witnesses)},
+            {"nearby", events_json(explained.nearby)},    {"verdict", explained.verdict}};
 }
 
 inline Json to_json(const FlightSeries& series, const Sortie& sortie) {

@@ -57,7 +57,7 @@ bool name_contains(const std::map<int, std::string>& names, int block, std::stri
     return lower.find(word) != std::string::npos;
 }
 
-std::vector<EdgeWitness> witnesses_of(const FlightSeries& series, EdgeKind kind, double edge_s) {
+std::vector<EdgeWitness> events_of(const FlightSeries& series, EdgeKind kind, double edge_s) {
     const auto& known = series.witnesses;
     std::vector<EdgeWitness> witnesses;
     const auto modes = changes_of(known.mode);
@@ -105,6 +105,9 @@ std::vector<EdgeWitness> witnesses_of(const FlightSeries& series, EdgeKind kind,
     return witnesses;
 }
 
+/// Whether what events_of finds happens at the edge itself, and not somewhere about it.
+bool marks_edge(EdgeKind kind) { return kind == EdgeKind::lift_off || kind == EdgeKind::landing_start; }
+
 }  // namespace
 
 std::string_view to_string(EdgeKind kind) {
@@ -129,7 +132,7 @@ std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sorti
         explained.edge = edge;
         explained.height_percent =
             units::percent_per_whole * (edge.altitude_m - sortie.ground_altitude_m) / sortie.height_m;
-        explained.witnesses = witnesses_of(series, kind, edge.time_s);
+        (marks_edge(kind) ? explained.witnesses : explained.nearby) = events_of(series, kind, edge.time_s);
         if (explained.witnesses.empty()) {
             explained.verdict = "no witness";
         } else {

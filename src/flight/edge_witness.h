@@ -25,9 +25,10 @@ struct EdgeWitness {
 struct ExplainedEdge {
     EdgeKind kind = EdgeKind::lift_off;
     PhaseEdge edge;
-    double height_percent = 0.0;  ///< of the flight's own height, above the ground before it
-    std::vector<EdgeWitness> witnesses;
-    std::string verdict;  ///< "agrees", "differs by 12 s" or "no witness"
+    double height_percent = 0.0;         ///< of the flight's own height, above the ground before it
+    std::vector<EdgeWitness> witnesses;  ///< events that mark this edge
+    std::vector<EdgeWitness> nearby;     ///< events about it that mark another moment
+    std::string verdict;                 ///< "agrees", "differs by 12 s" or "no witness"
 };
 
 /// A witness this near to an edge agrees with it.
@@ -36,8 +37,10 @@ inline constexpr double agreement_s = 5.0;
 inline constexpr double witness_reach_s = 60.0;
 
 /// The edges that the log shows of a sortie, in order. Witnesses are: of lift-off TAKEOFF messages; of the
-/// end of take-off the block that follows a block called take-off and the change to AUTO2; of the landing's
-/// start a block called landing and the change from AUTO2; of touchdown the change to MANUAL.
+/// landing's start a block called landing and the change from AUTO2. Nothing that the autopilot says marks
+/// the other two edges, so they have no witness and their events are only listed: the block called take-off
+/// is left and AUTO2 begins where the flight plan or the pilot says, at a fraction of the height flown; and
+/// the pilot takes the switch to MANUAL when the aircraft has long come to rest.
 std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sortie& sortie);
 
 }  // namespace flightwatt

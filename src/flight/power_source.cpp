@@ -63,22 +63,25 @@ bool contradicts_product(const MessageTable& table, const Column& power) {
     return compared >= 10 && 2 * apart > compared;
 }
 
+/// A quantity summed over devices.
+struct DeviceSum {
+    Track track;
+    std::size_t devices = 0;
+};
+
 /// Sum over the devices (motors, circuits) that a message reports one at a time, on the clock of the device
 /// that reports most, as long as all of them report.
-MeasuredPower summed_power(const MessageTable& table, std::initializer_list<const char*> id_fields) {
-    const auto* power = first_column(table, {"power"}, units::Quantity::watt);
-    const auto [voltage, current] = voltage_and_current(table);
-    if (power == nullptr && (voltage == nullptr || current == nullptr)) return {};
-    const auto watts = power != nullptr ? power->values : products(voltage->values, current->values);
+DeviceSum sum_over_devices(const MessageTable& table, std::initializer_list<const char*> id_fields,
+                           const std::vector<double>& column_values) {
     std::map<std::vector<double>, std::pair<std::vector<double>, std::vector<double>>> rows;
-    for (std::size_t i = 0; i < watts.size(); ++i) {
+    for (std::size_t i = 0; i < column_values.size(); ++i) {
         std::vector<double> id;
         for (const auto* field : id_fields) {
             if (const auto* column = table.column(field)) id.push_back(column->values[i]);
         }
         auto& [times, values] = rows[id];
         times.push_back(table.time_s[i]);
-        values.push_back(watts[i]);
+        values.push_back(column_values[i]);
     }
     std::vector<Track> devices;
     for (const auto& [id, row] : rows) {
@@ -88,14 +91,26 @@ MeasuredPower summed_power(const MessageTable& table, std::initializer_list<cons
     if (devices.empty()) return {};
     std::stable_sort(devices.begin(), devices.end(),
                      [](const Track& a, const Track& b) { return a.time_s.size() > b.time_s.size(); });
-    MeasuredPower sum{devices.front(),
-                      fmt::format("{}, summed over {} devices", table.message, devices.size())};
+    DeviceSum sum{devices.front(), devices.size()};
     for (std::size_t d = 1; d < devices.size(); ++d) {
-        const auto more = resample(devices[d], sum.power_w.time_s);
-        for (std::size_t i = 0; i < more.size(); ++i) sum.power_w.value[i] += more[i];
+        const auto more = resample(devices[d], sum.track.time_s);
+        for (std::size_t i = 0; i < more.size(); ++i) sum.track.value[i] += more[i];
     }
     return sum;
 }
+
+MeasuredPower summed_power(const MessageTable& table, std::initializer_list<const char*> id_fields) {
+    const auto* power = first_column(table, {"power"}, units::Quantity::watt);
+    const auto [voltage, current] = voltage_and_current(table);
+    if (power == nullptr && (voltage == nullptr || current == nullptr)) return {};
+    auto sum = sum_over_devices(
+        table, id_fields, power != nullptr ? power->values : products(voltage->values, current->values));
+    if (sum.devices == 0) return {};
+    return {std::move(sum.track), fmt::format("{}, summed over {} devices", table.message, sum.devices)};
+}
+
+constexpr std::initializer_list<const char*> esc_ids{"node_id", "motor_id"};
+constexpr std::initializer_list<const char*> power_device_ids{"node_id", "circuit"};
 
 bool measures_something(const Track& power) {
     return power.time_s.size() >= 2 &&
@@ -135,12 +150,26 @@ MeasuredPower choose_power(const SenderLog& sender, std::vector<std::string>& pa
         if (!voltage_and_current(*bat).known()) passed_over.emplace_back("BAT has no current");
     }
     if (const auto* esc = sender.table("ESC")) {
-        if (take(summed_power(*esc, {"node_id", "motor_id"}), chosen, passed_over)) return chosen;
+        if (take(summed_power(*esc, esc_ids), chosen, passed_over)) return chosen;
     }
     if (const auto* device = sender.table("POWER_DEVICE")) {
-        if (take(summed_power(*device, {"node_id", "circuit"}), chosen, passed_over)) return chosen;
+        if (take(summed_power(*device, power_device_ids), chosen, passed_over)) return chosen;
     }
     return {};
+}
+
+MeasuredCurrent summed_current(const SenderLog& sender) {
+    const auto sum_of = [](const MessageTable* table, std::initializer_list<const char*> id_fields) {
+        const auto* current = table == nullptr ? nullptr : voltage_and_current(*table).current;
+        if (current == nullptr) return MeasuredCurrent{};
+        auto sum = sum_over_devices(*table, id_fields, current->values);
+        if (sum.devices == 0) return MeasuredCurrent{};
+        return MeasuredCurrent{
+            std::move(sum.track),
+            fmt::format("{}.{}, summed over {} devices", table->message, current->field, sum.devices)};
+    };
+    auto current = sum_of(sender.table("ESC"), esc_ids);
+    return current.source.empty() ? sum_of(sender.table("POWER_DEVICE"), power_device_ids) : current;
 }
 
 }  // namespace flightwatt

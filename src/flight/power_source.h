@@ -19,4 +19,14 @@ struct MeasuredPower {
 /// track if there is none; `passed_over` says what was looked at and why it was not taken.
 MeasuredPower choose_power(const SenderLog& sender, std::vector<std::string>& passed_over);
 
+/// Measured current over time, and where it came from.
+struct MeasuredCurrent {
+    Track current_a;
+    std::string source;
+};
+
+/// The current of an aircraft whose ESCs or else power devices report it one at a time: their sum. Empty if
+/// neither does.
+MeasuredCurrent summed_current(const SenderLog& sender);
+
 }  // namespace flightwatt

@@ -122,6 +122,18 @@ void add_channel(FlightSeries& series, std::vector<double> FlightSeries::*channe
     series.sources[name] = found.source;
 }
 
+/// The pack's current, or else the sum of what its consumers report.
+FoundTrack current_of(const SenderLog& sender) {
+    auto found = choose_track(sender,
+                              {{"ENERGY", "current", Quantity::ampere},
+                               {"ENERGY", "amp", Quantity::ampere},
+                               {"BAT", "amps", Quantity::ampere}},
+                              Merge::mean);
+    if (!found.track.empty()) return found;
+    auto sum = summed_current(sender);
+    return {std::move(sum.current_a), std::move(sum.source)};
+}
+
 void add_channels(FlightSeries& series, const SenderLog& sender) {
     const auto altitude = altitude_of(sender);
     series.altitude_track = altitude.track;
@@ -135,12 +147,7 @@ void add_channels(FlightSeries& series, const SenderLog& sender) {
                               {"ESC", "bat_volts", Quantity::volt},
                               {"POWER_DEVICE", "voltage", Quantity::volt}},
                              Merge::mean));
-    add_channel(series, &FlightSeries::current_a, "current_a",
-                choose_track(sender,
-                             {{"ENERGY", "current", Quantity::ampere},
-                              {"ENERGY", "amp", Quantity::ampere},
-                              {"BAT", "amps", Quantity::ampere}},
-                             Merge::mean));
+    add_channel(series, &FlightSeries::current_a, "current_a", current_of(sender));
     add_channel(series, &FlightSeries::charge_ah, "charge_ah",
                 choose_track(sender,
                              {{"ENERGY", "charge", Quantity::ampere_hour},

@@ -37,13 +37,23 @@ TEST(EdgeWitness, GivesAVerdictOnEveryEdge) {
     series.witnesses.mode = {{0, 110, 703}, {0, 2, 1}};
     const auto sortie = sortie_at(100, 130, 702, 760);
     EXPECT_THAT(verdicts(series, sortie),
-                testing::ElementsAre("agrees", "differs by 10 s", "agrees", "no witness"));
+                testing::ElementsAre("agrees", "no witness", "agrees", "no witness"));
     const auto edges = explain_edges(series, sortie);
     EXPECT_EQ(edges[0].witnesses.size(), 1u);
     EXPECT_EQ(edges[0].witnesses[0].after_s, -2.0);
-    EXPECT_EQ(edges[1].witnesses[0].what, "block Take-off -> Standby");
-    EXPECT_EQ(edges[1].witnesses[1].what, "mode 0 -> 2");
+    EXPECT_EQ(edges[1].nearby[0].what, "block Take-off -> Standby");
+    EXPECT_EQ(edges[1].nearby[1].what, "mode 0 -> 2");
+    EXPECT_TRUE(edges[1].witnesses.empty());
     EXPECT_EQ(edges[2].witnesses[0].what, "block Standby -> Land Right");
+    EXPECT_TRUE(edges[2].nearby.empty());
+}
+
+TEST(EdgeWitness, SaysHowFarApartTheyAre) {
+    FlightSeries series;
+    series.witnesses.takeoff_s = {80.0};
+    series.witnesses.mode = {{0, 110, 720}, {0, 2, 1}};
+    EXPECT_THAT(verdicts(series, sortie_at(100, 130, 702, 760)),
+                testing::ElementsAre("differs by 20 s", "no witness", "differs by 18 s", "no witness"));
 }
 
 TEST(EdgeWitness, HasNoneInASeriesWithoutMessagesAndNoEdgeThatTheLogCuts) {

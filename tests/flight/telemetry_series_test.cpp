@@ -88,6 +88,9 @@ TEST(TelemetrySeries, SumsMotorsAndDevices) {
     EXPECT_THAT(esc.power_source, HasSubstr("summed over 2 devices"));
     const auto device = series_of("1 20 POWER_DEVICE 1 0 2. 12.\n2 20 POWER_DEVICE 1 0 3. 12.\n");
     EXPECT_THAT(device.power_w, ElementsAre(24, 36));
+    EXPECT_THAT(esc.current_a, ElementsAre(3, 5));
+    EXPECT_EQ(esc.sources.at("current_a"), "ESC.amps, summed over 2 devices");
+    EXPECT_THAT(device.current_a, ElementsAre(2, 3));
 }
 
 TEST(TelemetrySeries, UsesAltitudeThatVaries) {
