@@ -63,9 +63,24 @@ void read_stretch(const TomlTable& table, double duration_s, ScheduleEntry& entr
     }
 }
 
+/// Before a parameter is missed: the key that is there, and wrong, is what the user has to find.
+void refuse_unknown_parameters(const TomlTable& given, const std::string& component,
+                               const PowerProfile& profile) {
+    const auto& known = profile.parameters;
+    for (const auto& key : given.keys()) {
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        const auto near = nearest_word(key, known);
+        throw InputError(given.where(key), fmt::format("{} has no parameter '{}'", component, key),
+                         !near.empty()   ? fmt::format("did you mean '{}'?", near)
+                         : known.empty() ? "it has none"
+                                         : fmt::format("its parameters are {}", fmt::join(known, ", ")));
+    }
+}
+
 RunningComponent read_running(const TomlTable& run, const std::string& name, std::size_t index,
                               const PowerProfile& profile) {
     const auto given = run.table(name);
+    refuse_unknown_parameters(given, name, profile);
     RunningComponent running{index, {}};
     for (std::size_t i = 0; i < profile.parameters.size(); ++i) {
         const auto& parameter = profile.parameters[i];
@@ -73,7 +88,6 @@ RunningComponent read_running(const TomlTable& run, const std::string& name, std
         require_in_range(profile, i, value, given.where(parameter));
         running.qos.push_back(value);
     }
-    given.refuse_unknown_keys();
     return running;
 }
 

@@ -203,9 +203,12 @@ const BadMission bad_missions[] = {
      "m.toml:16:23: fps = 31 is outside of the profiled range 10 .. 30 of detection.csv; choose a value "
      "within it, or "
      "profile the component there"},
-    {"fps = 30", "fpm = 30", "m.toml:16:23: has no key 'fps'; 'fpm' is here; was that meant?"},
+    {"fps = 30", "fpm = 30", "m.toml:16:23: detection has no parameter 'fpm'; did you mean 'fps'?"},
+    {"fps = 30", "quality = 30",
+     "m.toml:16:23: detection has no parameter 'quality'; its parameters are fps"},
     {"fps = 30", "", "m.toml:16:21: has no key 'fps'"},
-    {"fps = 30", "fps = 30, size = 608", "m.toml:16:33: unknown key 'size'; known keys: fps"},
+    {"fps = 30", "fps = 30, size = 608",
+     "m.toml:16:33: detection has no parameter 'size'; its parameters are fps"},
     {"fps = 30", "fps = \"30\"", "m.toml:16:29: 'fps' is a TOML string, expected a finite number"},
     {"detection = { fps = 30 }", "detektion = { fps = 30 }",
      "m.toml:16:9: there is no component 'detektion'; did you mean 'detection'?"},
