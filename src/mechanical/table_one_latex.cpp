@@ -52,7 +52,14 @@ std::string row_name(std::string_view name) {
     return coefficient ? fmt::format("${}_{{{}}}$", name[0], name.substr(1)) : escaped(name);
 }
 
-std::string heading_cell(std::string_view heading) { return is_half_width(heading) ? "" : escaped(heading); }
+/// A heading of two words on two lines: numbers are narrower than "take-off regenerated".
+std::string heading_cell(std::string_view heading) {
+    if (is_half_width(heading)) return "";
+    const auto space = heading.rfind(' ');
+    if (space == std::string_view::npos) return escaped(heading);
+    return fmt::format("\\shortstack[r]{{{}\\\\{}}}", escaped(heading.substr(0, space)),
+                       escaped(heading.substr(space + 1)));
+}
 
 }  // namespace
 
@@ -62,6 +69,10 @@ std::string to_latex(const TextTable& table) {
     std::string text = "\\begin{table}\n\\centering\n\\caption{Constants for the mechanical energy model";
     if (intervals) text += " ($\\pm$: half widths of the 95\\,\\% intervals)";
     text += "}\n\\label{tab:mechanical-energy-model}\n";
+    // Beside published constants, or with intervals, the columns are wider than a page's text.
+    constexpr std::size_t columns_that_fit = 4;
+    const bool scaled = table.header.size() > columns_that_fit;
+    if (scaled) text = "% needs \\usepackage{graphicx}\n" + text + "\\resizebox{\\linewidth}{!}{%\n";
     text += fmt::format("\\begin{{tabular}}{{l{}}}\n\\hline\n", std::string(table.header.size() - 1, 'r'));
     for (std::size_t column = 1; column < table.header.size(); ++column) {
         text += " & " + heading_cell(table.header[column]);
@@ -74,7 +85,7 @@ std::string to_latex(const TextTable& table) {
         }
         text += " \\\\\n";
     }
-    return text + "\\hline\n\\end{tabular}\n\\end{table}\n";
+    return text + "\\hline\n\\end{tabular}" + (scaled ? "}" : "") + "\n\\end{table}\n";
 }
 
 }  // namespace flightwatt

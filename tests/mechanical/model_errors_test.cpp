@@ -160,5 +160,15 @@ TEST(TableOneLatex, LeavesNothingThatTexReadsOtherwise) {
     EXPECT_EQ(std::count(text.begin(), text.end(), '$') % 2, 0);
 }
 
+TEST(TableOneLatex, ScalesATableThatIsWiderThanAPage) {
+    const auto wide =
+        to_latex({{"coefficient", "a published", "a regenerated", "b published", "b regenerated"},
+                  {{"a0", "1", "2", "3", "4"}}});
+    EXPECT_THAT(wide, testing::StartsWith("% needs \\usepackage{graphicx}\n\\begin{table}"));
+    EXPECT_THAT(wide, testing::HasSubstr("\\resizebox{\\linewidth}{!}{%\n\\begin{tabular}{lrrrr}"));
+    EXPECT_THAT(wide, testing::HasSubstr(" & \\shortstack[r]{a\\\\published} & "));
+    EXPECT_THAT(wide, testing::EndsWith("\\end{tabular}}\n\\end{table}\n"));
+}
+
 }  // namespace
 }  // namespace flightwatt
