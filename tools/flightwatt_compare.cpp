@@ -2,8 +2,10 @@
 
 #include "cli/stage.h"
 #include "mission/comparison.h"
-#include "mission/plan.h"
+#include "mission/disturbance_toml.h"
+#include "mission/flyable.h"
 #include "mission_json.h"
+#include "sampling_output.h"
 #include "terminal_pictures.h"
 
 #include <algorithm>
@@ -12,27 +14,29 @@
 
 namespace {
 
-std::string ranking_json(const std::vector<flightwatt::MissionSummary>& ranking) {
+using namespace flightwatt;
+
+std::string ranking_json(const std::vector<MissionSummary>& ranking) {
     auto list = nlohmann::ordered_json::array();
     for (const auto& summary : ranking) list.push_back(to_json(summary));
-    return flightwatt::json_text(list);
+    return json_text(list);
 }
 
 /// Runs a mission; one that is yet to be planned is planned first.
-flightwatt::Simulation simulation_of(const flightwatt::Mission& mission) {
-    using namespace flightwatt;
-    if (!mission.plan) return simulate(mission);
-    const auto planned = plan_mission(mission);
-    auto simulation = simulate(planned.flown);
-    simulation.summary = labelled_summary(planned);
+Simulation simulation_of(const cli::StageCall& call, const Mission& mission,
+                         const std::optional<SamplingOptions>& sampling) {
+    std::vector<Disturbance> disturbances;
+    if (const auto file = call.maybe<std::string>("disturb"))
+        disturbances = read_disturbances(*file, mission.duration_s);
+    const auto flyable = make_flyable(mission);
+    auto simulation = fly(flyable, {}, disturbances).simulation;
+    if (sampling) simulation.summary.samples = sample_flights(flyable, disturbances, *sampling);
     return simulation;
 }
 
 /// The curves under their ranks, as a picture; empty where the terminal shows none.
-std::string soc_picture(const flightwatt::cli::StageCall& call,
-                        const std::vector<flightwatt::Simulation>& simulations,
-                        const std::vector<flightwatt::MissionSummary>& ranking) {
-    using namespace flightwatt;
+std::string soc_picture(const cli::StageCall& call, const std::vector<Simulation>& simulations,
+                        const std::vector<MissionSummary>& ranking) {
     const auto plot = terminal_plot(call, "state of charge [%] over time, by rank");
     if (!plot || call.has("markdown")) return "";
     std::vector<TerminalLine> lines;
@@ -47,26 +51,12 @@ std::string soc_picture(const flightwatt::cli::StageCall& call,
     return draw(*plot, lines);
 }
 
-int compare_missions(const flightwatt::cli::StageCall& call) {
-    using namespace flightwatt;
-    std::vector<Mission> missions;  // all read before the first is run: a bad file leaves no half answer
-    missions.reserve(call.inputs.size());
-    for (const auto& file : call.inputs) missions.push_back(read_mission(file, {true, std::nullopt}));
-    std::vector<Simulation> simulations;
-    std::vector<MissionSummary> summaries;
-    for (const auto& mission : missions) {
-        simulations.push_back(simulation_of(mission));
-        summaries.push_back(simulations.back().summary);
-    }
-    const auto ranking = ranked(std::move(summaries));
-    const auto table = comparison_table(ranking);
-    cli::write_result(call, call.has("markdown") ? to_markdown(table) : to_text(table));
-    cli::print(soc_picture(call, simulations, ranking));
-    if (call.json) cli::print(ranking_json(ranking));
+/// What the table does not say.
+int explain(const cli::StageCall& call, const std::vector<MissionSummary>& ranking) {
     int code = cli::ok;
     for (const auto& summary : ranking) {
-        const bool without_plan = !summary.schedule.empty() && !summary.feasible;
-        if (!summary.undeliverable && !without_plan) continue;
+        if (summary.samples && !call.json) cli::note(call, describe(*summary.samples));
+        if (!summary.undeliverable && !summary.lacks_plan) continue;
         cli::warn(call,
                   summary.undeliverable
                       ? describe(summary)
@@ -78,18 +68,42 @@ int compare_missions(const flightwatt::cli::StageCall& call) {
     return code;
 }
 
+int compare_missions(const cli::StageCall& call) {
+    const auto sampling = sampling_options(call, false);
+    std::vector<Mission> missions;  // all read before the first is run: a bad file leaves no half answer
+    missions.reserve(call.inputs.size());
+    for (const auto& file : call.inputs) missions.push_back(read_mission(file, {true, std::nullopt}));
+    std::vector<Simulation> simulations;
+    std::vector<MissionSummary> summaries;
+    for (const auto& mission : missions) {
+        simulations.push_back(simulation_of(call, mission, sampling));
+        summaries.push_back(simulations.back().summary);
+    }
+    const auto ranking = ranked(std::move(summaries));
+    const auto table = comparison_table(ranking);
+    cli::write_result(call, call.has("markdown") ? to_markdown(table) : to_text(table));
+    cli::print(soc_picture(call, simulations, ranking));
+    if (call.json) cli::print(ranking_json(ranking));
+    return explain(call, ranking);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    flightwatt::cli::StageDefinition stage;
+    namespace po = boost::program_options;
+    cli::StageDefinition stage;
     stage.name = "compare";
     stage.arguments = "MISSION.toml...";
     stage.description =
         "Runs several missions and ranks them by final state of charge; of those that run empty, the one "
         "that\n"
-        "lasts longer comes first. A mission without a schedule is planned first. --json lists the summaries "
+        "lasts longer comes first. A mission without a schedule is planned first, one with an adaptive "
+        "policy "
         "in\n"
-        "that order.";
-    stage.options.add_options()("markdown", "write the table as Markdown");
-    return flightwatt::cli::run_stage(argc, argv, stage, compare_missions);
+        "flight. --json lists the summaries in that order.";
+    stage.options.add_options()("markdown", "write the table as Markdown")(
+        "disturb", po::value<std::string>()->value_name("FILE"),
+        "let the disturbances of FILE happen to all (missions/disturbances/)");
+    add_sampling_options(stage);
+    return cli::run_stage(argc, argv, stage, compare_missions);
 }

@@ -1,23 +1,63 @@
 // A mission file to its state of charge over time.
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/stage.h"
-#include "mission/simulation.h"
+#include "mission/disturbance_toml.h"
+#include "mission/flyable.h"
+#include "mission/planned_mission_toml.h"
 #include "mission_json.h"
+#include "sampling_output.h"
+
+#include <filesystem>
 
 namespace {
 
-int simulate_mission(const flightwatt::cli::StageCall& call) {
-    using namespace flightwatt;
+using namespace flightwatt;
+
+std::vector<Disturbance> disturbances(const cli::StageCall& call, const Mission& mission) {
+    const auto file = call.maybe<std::string>("disturb");
+    return file ? read_disturbances(*file, mission.duration_s) : std::vector<Disturbance>();
+}
+
+/// The mission with the schedule that was flown, wherever it came from.
+void write_schedule(const cli::StageCall& call, const std::string& text, const FlownMission& flight) {
+    const auto file = call.maybe<std::string>("schedule-out");
+    if (!file) return;
+    const std::filesystem::path path = call.inputs.front();
+    const auto folder = std::filesystem::absolute(*file).parent_path();
+    const auto heading = fmt::format("# {}\n", cli::one_line(describe(flight.simulation.summary)));
+    write_file_atomically(*file, heading + planned_mission_toml(text, path, flight.flown, folder));
+}
+
+/// Draws flights if they were asked for.
+void sample(const cli::StageCall& call, const Flyable& flyable, const std::vector<Disturbance>& disturbed_by,
+            MissionSummary& summary) {
+    const auto options = sampling_options(call, call.has("samples-csv"));
+    if (!options) return;
+    summary.samples = sample_flights(flyable, disturbed_by, *options);
+    if (const auto file = call.maybe<std::string>("samples-csv"))
+        write_file_atomically(*file, to_csv(summary.samples->bands));
+}
+
+int simulate_mission(const cli::StageCall& call) {
+    const auto text = read_file(call.inputs.front());
+    const auto mission = parse_mission(text, call.inputs.front());
+    const auto disturbed_by = disturbances(call, mission);
+    const auto flyable = make_flyable(mission);
     SimulationSteps steps;
     steps.output_s = call.get<double>("step");
-    const auto result = simulate(read_mission(call.inputs.front()), steps);
-    if (result.summary.undeliverable) throw NoAnswerError(describe(result.summary));
-    cli::write_result(call, to_csv(result.curve));
+    auto flight = fly(flyable, steps, disturbed_by);
+    auto& summary = flight.simulation.summary;
+    if (summary.undeliverable) throw NoAnswerError(describe(summary));
+    sample(call, flyable, disturbed_by, summary);
+    write_schedule(call, text, flight);
+    cli::write_result(call, to_csv(flight.simulation.curve));
     if (call.json) {
-        cli::print(json_text(to_json(result.summary)));
+        cli::print(json_text(to_json(summary)));
     } else {
-        cli::note(call, describe(result.summary));
+        cli::note(call, describe(summary));
+        if (summary.samples) cli::note(call, describe(*summary.samples));
     }
     return cli::ok;
 }
@@ -25,7 +65,8 @@ int simulate_mission(const flightwatt::cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    flightwatt::cli::StageDefinition stage;
+    namespace po = boost::program_options;
+    cli::StageDefinition stage;
     stage.name = "simulate";
     stage.arguments = "MISSION.toml";
     stage.description =
@@ -36,10 +77,20 @@ int main(int argc, char** argv) {
         "voltage.\n"
         "What ended the flight and what was left is told besides; --json: final_soc_percent, energy_wh "
         "(demanded),\n"
-        "delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_reserve, utility.";
+        "delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_reserve, utility.\n"
+        "A mission with [policy] kind = \"adaptive\" is planned anew in flight. --samples draws flights and "
+        "reports\n"
+        "their final state of charge; the CSV stays that of the mission as it is stated.";
     stage.max_inputs = 1;
+    stage.options.add_options()("step", po::value<double>()->default_value(1.0, "1")->value_name("S"),
+                                "seconds between rows; jumps of power have rows besides")(
+        "disturb", po::value<std::string>()->value_name("FILE"),
+        "let the disturbances of FILE happen (missions/disturbances/)")(
+        "schedule-out", po::value<std::string>()->value_name("FILE"),
+        "write the mission with the schedule that was flown to FILE");
+    add_sampling_options(stage);
     stage.options.add_options()(
-        "step", boost::program_options::value<double>()->default_value(1.0, "1")->value_name("S"),
-        "seconds between rows; jumps of power have rows besides");
-    return flightwatt::cli::run_stage(argc, argv, stage, simulate_mission);
+        "samples-csv", po::value<std::string>()->value_name("FILE"),
+        "with --samples: write the state of charge over time that 5, 50 and 95 % of the flights are below");
+    return cli::run_stage(argc, argv, stage, simulate_mission);
 }

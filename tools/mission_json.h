@@ -4,8 +4,27 @@
 #include "mission/simulation.h"
 
 #include <optional>
+#include <string>
 
 namespace flightwatt {
+
+inline void add_to_json(const SampledFlights& flights, nlohmann::ordered_json& json) {
+    json["probability_below_reserve"] = flights.probability_below_reserve;
+    json["probability_below_reserve_standard_error"] = flights.probability_below_reserve_standard_error;
+    json["probability_below_reserve_low"] = flights.probability_below_reserve_95.low;
+    json["probability_below_reserve_high"] = flights.probability_below_reserve_95.high;
+    json["probability_depleted"] = flights.probability_depleted;
+    json["probability_gave_out"] = flights.probability_gave_out;
+    json["samples"] = flights.samples;
+    json["seed"] = flights.seed;
+    json["final_soc_mean_percent"] = flights.final_soc_mean_percent;
+    json["final_soc_sd_percent"] = flights.final_soc_sd_percent;
+    auto& quantiles = json["final_soc_quantiles_percent"];
+    for (std::size_t i = 0; i < shown_quantiles_percent.size(); ++i)
+        quantiles[std::to_string(shown_quantiles_percent[i])] = flights.final_soc_quantiles_percent[i];
+    json["drawn"] = flights.drawn;
+    json["not_drawn"] = flights.not_drawn;
+}
 
 /// The summary as simulate and compare print it; null stands for "never".
 inline nlohmann::ordered_json to_json(const MissionSummary& summary) {
@@ -27,6 +46,12 @@ inline nlohmann::ordered_json to_json(const MissionSummary& summary) {
     json["reserve_soc_percent"] = summary.reserve_soc_percent;
     json["keeps_reserve"] = summary.keeps_reserve;
     if (summary.utility) json["utility"] = *summary.utility;
+    if (const auto& decisions = summary.decisions) {
+        json["decisions"] = decisions->made;
+        json["decisions_without_plan"] = decisions->without_plan;
+        json["learned_mechanical_factor"] = decisions->mechanical_factor;
+    }
+    if (summary.samples) add_to_json(*summary.samples, json);
     return json;
 }
 

@@ -45,6 +45,9 @@ TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
     const bool has_utility = std::any_of(ranked.begin(), ranked.end(),
                                          [](const auto& summary) { return summary.utility.has_value(); });
     if (has_utility) table.header.emplace_back("utility");
+    const bool sampled = std::any_of(ranked.begin(), ranked.end(),
+                                     [](const auto& summary) { return summary.samples.has_value(); });
+    if (sampled) table.header.emplace_back("probability_below_reserve");
     for (std::size_t i = 0; i < ranked.size(); ++i) {
         const auto& summary = ranked[i];
         const auto name = summary.schedule.empty()
@@ -56,6 +59,10 @@ TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
                               cell(summary.depleted_at_s, 1)});
         if (cut_off) table.rows.back().push_back(cell(summary.cut_off_at_s, 1));
         if (has_utility) table.rows.back().push_back(cell(summary.utility, 3));
+        if (sampled) {
+            table.rows.back().push_back(summary.samples ? cell(summary.samples->probability_below_reserve, 4)
+                                                        : "-");
+        }
     }
     return table;
 }

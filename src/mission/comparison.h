@@ -11,7 +11,8 @@ namespace flightwatt {
 /// power it cannot deliver last. Equals keep their order.
 std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries);
 
-/// A row for each mission; "-" where there is no number. Utility has a column if any mission states one.
+/// A row for each mission; "-" where there is no number. Utility has a column if any mission states one, and
+/// the probability to land below the reserve if flights were drawn.
 TextTable comparison_table(const std::vector<MissionSummary>& ranked);
 
 }  // namespace flightwatt

@@ -15,6 +15,7 @@ struct Demand {
     double to_s = 0.0;
     std::optional<FourierModel> mechanical;  ///< in the phase's own time
     double compute_w = 0.0;
+    double soc_drop_percent = 0.0;  ///< [points] that the battery loses at once as this begins
 };
 
 /// The demands of a mission, in order and without gaps: each begins exactly where the one before ends.

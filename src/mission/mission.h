@@ -3,8 +3,10 @@
 #include "battery/battery.h"
 #include "compute/compute_model.h"
 #include "mechanical/mechanical_model.h"
+#include "mission/adaptive_policy.h"
 #include "mission/plan_settings.h"
 #include "mission/schedule.h"
+#include "mission/uncertainty.h"
 #include "mission/utility.h"
 
 #include <filesystem>
@@ -31,9 +33,11 @@ struct Mission {
     /// what is fixed beforehand.
     std::vector<Stretch> schedule;
     double initial_soc_percent = 100.0;
-    double cutoff_voltage_v = 0.0;     ///< the battery is cut off below it; 0: never
-    double reserve_soc_percent = 0.0;  ///< what should be left at the end
-    std::optional<PlanSettings> plan;  ///< the schedule is yet to be planned
+    double cutoff_voltage_v = 0.0;           ///< the battery is cut off below it; 0: never
+    double reserve_soc_percent = 0.0;        ///< what should be left at the end
+    std::optional<PlanSettings> plan;        ///< the schedule is yet to be planned
+    std::optional<AdaptivePolicy> adaptive;  ///< and that in flight, again and again
+    Uncertainty uncertainty;
 };
 
 /// What else than the file decides how a mission is read.
@@ -63,12 +67,14 @@ struct MissionReading {
 ///     utility = { parameter = "fps" }         # of a component: what its quality is worth, see
 ///                                             # mission/utility_toml.h
 ///     [plan]                                  # see mission/plan_settings_toml.h
+///     [policy]                                # see mission/adaptive_policy_toml.h
+///     [uncertainty]                           # see mission/uncertainty_toml.h
 ///     [[schedule]]                            # see mission/schedule_toml.h
 ///
 /// A mission with [plan], or with components and no [[schedule]], is yet to be planned: its [[schedule]] is
-/// what is fixed. It is refused unless `reading` accepts it. Paths are relative to the mission file. Throws
-/// InputError, placed in the file that is wrong, for a missing file, a key missing, unknown or out of range,
-/// and whatever schedules and models refuse.
+/// what is fixed. It is refused unless `reading` accepts it, or its policy plans in flight. Paths are
+/// relative to the mission file. Throws InputError, placed in the file that is wrong, for a missing file, a
+/// key missing, unknown or out of range, and whatever schedules and models refuse.
 Mission read_mission(const std::filesystem::path& path, const MissionReading& reading = {});
 
 /// The same from text; `path` names it and is where relative paths start.

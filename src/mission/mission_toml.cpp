@@ -1,9 +1,11 @@
 #include "base/atomic_file.h"
 #include "compute/profile_reader.h"
+#include "mission/adaptive_policy_toml.h"
 #include "mission/conditions_toml.h"
 #include "mission/mission.h"
 #include "mission/plan_settings_toml.h"
 #include "mission/schedule_toml.h"
+#include "mission/uncertainty_toml.h"
 #include "mission/utility_toml.h"
 
 #include <fmt/format.h>
@@ -126,18 +128,21 @@ void read_components(const TomlTable& root, Mission& mission) {
 void read_mission_schedule(const TomlTable& root, const MissionReading& reading, Mission& mission) {
     auto entries = read_schedule(root, mission.compute, mission.duration_s);
     const bool lacks_schedule = entries.empty() && !mission.compute.components.empty();
-    if (lacks_schedule && !root.has("plan") && !reading.may_lack_schedule) {
+    const bool may_lack_schedule = reading.may_lack_schedule || mission.adaptive;
+    if (lacks_schedule && !root.has("plan") && !may_lack_schedule) {
         throw InputError(root.where("components"), "there are components and no [[schedule]] that runs them",
                          "add [[schedule]] with otherwise = true and run = { ... }, or let `flightwatt plan` "
                          "make a schedule");
     }
-    if (root.has("plan") && !reading.may_lack_schedule) {
+    if (root.has("plan") && !may_lack_schedule) {
         throw InputError(root.where("plan"), "this mission has no complete schedule: it is yet to be planned",
                          "`flightwatt plan` makes one; without [plan], [[schedule]] is taken as complete");
     }
-    if (lacks_schedule || root.has("plan")) {
+    if (lacks_schedule || root.has("plan") || mission.adaptive) {
         mission.plan = read_plan_settings(root, mission.compute);
         mission.schedule = lay_out_fixed(entries, mission.duration_s);
+        if (mission.adaptive && mission.adaptive->decide_every_s == 0.0)
+            mission.adaptive->decide_every_s = mission.plan->slot_s;
         return;
     }
     if (entries.empty()) {
@@ -166,7 +171,7 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& path,
     const auto root = parse_toml(text, path.string());
     root.refuse_keys_except({"name", "mechanical", "duration_s", "phase_clock", "conditions", "battery",
                              "initial_soc_percent", "capacity_ah", "cutoff_voltage_v", "reserve_soc_percent",
-                             "components", "schedule", "plan"});
+                             "components", "schedule", "plan", "policy", "uncertainty"});
     Mission mission;
     mission.file = path.string();
     mission.name = root.optional_string("name").value_or(path.stem().string());
@@ -183,7 +188,9 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& path,
     mission.cutoff_voltage_v = optional_between(root, "cutoff_voltage_v", 0.0, 1e6, true).value_or(0.0);
     mission.reserve_soc_percent =
         optional_between(root, "reserve_soc_percent", 0.0, 100.0, true).value_or(0.0);
+    mission.adaptive = read_adaptive_policy(root);
     read_mission_schedule(root, reading, mission);
+    mission.uncertainty = read_uncertainty(root, mission.compute, mission.mechanical.has_value());
     return mission;
 }
 

@@ -31,8 +31,14 @@ SlotChoiceProblem problem_of(const Mission& mission, const Planner& planner, con
     for (const auto& slot : slots) {
         ChoiceSlot choices{slot.to_s - slot.from_s, std::nullopt, {}};
         if (slot.fixed) choices.fixed = choice_of(planner, *slot.fixed).value();
+        double more_percent = 0.0;
+        if (start.mechanical_factor != 1.0) {
+            more_percent = (start.mechanical_factor - 1.0) *
+                           drain_percent(planner.mechanical_drains, {0, slot.phase, slot.from_s, slot.to_s});
+        }
         for (std::size_t c = 0; c < planner.worth_per_s.size(); ++c) {
-            choices.drain.push_back(drain_percent(planner.drains, {c, slot.phase, slot.from_s, slot.to_s}));
+            choices.drain.push_back(drain_percent(planner.drains, {c, slot.phase, slot.from_s, slot.to_s}) +
+                                    more_percent);
         }
         problem.slots.push_back(std::move(choices));
     }

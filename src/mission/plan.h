@@ -15,6 +15,7 @@ struct PlanStart {
     double soc_percent = 100.0;
     std::optional<Configuration> running;  ///< for the dwell time; ignored if it is none of the planner's
     double running_for_s = 0.0;
+    double mechanical_factor = 1.0;  ///< of what mechanical power drains, to what the model foresees
 };
 
 /// A schedule for the rest of a mission, by the planner's tables.

@@ -61,6 +61,7 @@ std::string planned_mission_toml(std::string_view text, const std::filesystem::p
     auto root = toml::parse(text, path.string());
     root.erase("plan");
     root.erase("schedule");
+    root.erase("policy");  // the schedule is decided
     const auto from = std::filesystem::absolute(path).parent_path();
     const auto to = std::filesystem::absolute(folder);
     for (const std::string_view key : {"mechanical", "battery"}) move_path(root, key, from, to);

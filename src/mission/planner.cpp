@@ -131,6 +131,7 @@ Planner make_planner(const Mission& mission) {
         }
     }
     planner.drains = make_drain_table(mission, std::move(configurations));
+    planner.mechanical_drains = make_drain_table(mission, {{}});
     return planner;
 }
 

@@ -15,6 +15,7 @@ struct Planner {
     DrainTable drains;                ///< its configurations are the choices
     std::vector<double> worth_per_s;  ///< of each of them
     std::size_t free_choices = 0;     ///< the first so many may be chosen; the others are only fixed
+    DrainTable mechanical_drains;     ///< of one configuration, in which nothing runs
 };
 
 /// The configurations that the mission's [plan] allows, without those that draw more than another one that is

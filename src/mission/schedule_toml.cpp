@@ -28,24 +28,19 @@ double percent_in(const TomlTable& entry, std::string_view key) {
     return *value;
 }
 
-/// The value of from, to or middle in seconds.
-double time_in_phase_s(const TomlTable& entry, std::string_view key, double duration_s) {
-    return entry.is_number(key) ? entry.number(key) : units::part_of(duration_s, percent_in(entry, key));
-}
-
 void read_stretch(const TomlTable& table, double duration_s, ScheduleEntry& entry) {
     const bool has_from = table.has("from");
     const bool has_to = table.has("to");
     const bool has_middle = table.has("middle");
     entry.whole_phase = !has_from && !has_to && !has_middle;
-    entry.from_s = has_from ? time_in_phase_s(table, "from", duration_s) : 0.0;
-    entry.to_s = has_to ? time_in_phase_s(table, "to", duration_s) : duration_s;
+    entry.from_s = has_from ? read_time_s(table, "from", duration_s) : 0.0;
+    entry.to_s = has_to ? read_time_s(table, "to", duration_s) : duration_s;
     if (has_middle) {
         if (has_from || has_to) {
             throw InputError(table.where("middle"), "`middle` stands with `from` or `to`",
                              "use one way of saying when");
         }
-        const double length_s = time_in_phase_s(table, "middle", duration_s);
+        const double length_s = read_time_s(table, "middle", duration_s);
         entry.from_s = (duration_s - length_s) / 2.0;
         entry.to_s = (duration_s + length_s) / 2.0;
     }
@@ -149,6 +144,10 @@ ScheduleEntry read_entry(const TomlTable& table, const ComputeModel& compute,
 }
 
 }  // namespace
+
+double read_time_s(const TomlTable& entry, std::string_view key, double duration_s) {
+    return entry.is_number(key) ? entry.number(key) : units::part_of(duration_s, percent_in(entry, key));
+}
 
 std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const ComputeModel& compute,
                                          const PerPhase<double>& duration_s) {

@@ -3,6 +3,7 @@
 #include "base/toml_reader.h"
 #include "mission/schedule.h"
 
+#include <string_view>
 #include <vector>
 
 namespace flightwatt {
@@ -20,5 +21,8 @@ namespace flightwatt {
 /// profile's range, and a stretch that is empty or not within its phase.
 std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const ComputeModel& compute,
                                          const PerPhase<double>& duration_s);
+
+/// The time at `key`: seconds, or percent ("40 %") of `duration_s`. Throws InputError for what is neither.
+double read_time_s(const TomlTable& entry, std::string_view key, double duration_s);
 
 }  // namespace flightwatt

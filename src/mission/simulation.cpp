@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 #include "mission/demand.h"
+#include "mission/flown_charge.h"
 #include "mission/mission_utility.h"
 
 #include <algorithm>
@@ -72,6 +73,10 @@ Discharge run_demand(const Mission& mission, const Demand& demand, const Simulat
     const DischargeOptions options{steps.integration_s, mission.cutoff_voltage_v};
     const auto load = [&](double time_s) { return power_w(demand, time_s); };
     const auto times = output_times(demand, steps.output_s);
+    if (demand.soc_drop_percent > 0.0 && !state.ended_at_s()) {
+        add_row(curve, battery, demand, times.front(), state);
+        state = after_drop(state, demand);
+    }
     add_row(curve, battery, demand, times.front(), state);
     for (std::size_t i = 1; i < times.size(); ++i) {
         if (!state.ended_at_s()) {
@@ -128,8 +133,11 @@ MissionSummary summarize(const Mission& mission, const std::vector<Demand>& dema
 
 }  // namespace
 
-Simulation simulate(const Mission& mission, const SimulationSteps& steps) {
-    const auto demands = demands_of(mission);
+Simulation simulate(const Mission& planned, const SimulationSteps& steps,
+                    const std::vector<Disturbance>& disturbances) {
+    auto mission = planned;
+    mission.battery = disturbed(planned.battery, disturbances);
+    const auto demands = disturbed(demands_of(mission), disturbances);
     if (demands.empty() || mission.plan) throw std::invalid_argument("simulate: the mission has no schedule");
     require_output_step(steps.output_s, demands.back().to_s);
     SocCurve curve;
@@ -155,6 +163,12 @@ std::string describe(const MissionSummary& summary) {
                           summary.duration_s, *summary.final_soc_percent);
     } else if (!summary.keeps_reserve) {
         end += fmt::format(", less than the reserve of {:.6g} %", summary.reserve_soc_percent);
+    }
+    if (summary.decisions && summary.decisions->without_plan > 0) {
+        end += fmt::format(
+            " (at {} of {} decisions no plan kept the reserve with its margin, and what drains "
+            "least was run)",
+            summary.decisions->without_plan, summary.decisions->made);
     }
     return fmt::format("{}: {}; {:.3f} Wh, {:.3f} mechanical and {:.3f} computing", summary.mission, end,
                        summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh);

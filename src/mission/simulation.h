@@ -1,7 +1,10 @@
 #pragma once
 
 #include "battery/discharge.h"
+#include "mission/decisions.h"
+#include "mission/disturbance.h"
 #include "mission/mission.h"
+#include "mission/sampled_soc.h"
 
 #include <optional>
 #include <string>
@@ -48,6 +51,9 @@ struct MissionSummary {
     bool feasible = false;  ///< the battery lasts: empty at the very end counts, any earlier does not
     double reserve_soc_percent = 0.0;  ///< what the mission asks to be left
     bool keeps_reserve = false;        ///< feasible, and the reserve is left
+    bool lacks_plan = false;           ///< no plan keeps the reserve: flown was what drains least
+    std::optional<Decisions> decisions = std::nullopt;     ///< of an adaptive policy
+    std::optional<SampledFlights> samples = std::nullopt;  ///< if flights were drawn
 };
 
 struct Simulation {
@@ -62,10 +68,12 @@ struct SimulationSteps {
 
 /// Runs a mission: mechanical and computing power, added, drain the battery (Eqs. 8-10). Energies are exact
 /// integrals; state of charge is integrated numerically and empties once: power that flows back later does
-/// not revive it, and neither does the voltage that recovers after a cut-off. Throws UsageError for an output
+/// not revive it, and neither does the voltage that recovers after a cut-off. `disturbances` happen in its
+/// course. Throws UsageError for an output
 /// step that is not positive or makes too many rows, and std::invalid_argument for a mission without a
 /// schedule.
-Simulation simulate(const Mission& mission, const SimulationSteps& steps = {});
+Simulation simulate(const Mission& mission, const SimulationSteps& steps = {},
+                    const std::vector<Disturbance>& disturbances = {});
 
 /// One line for people: what is left, or when and why the battery failed.
 std::string describe(const MissionSummary& summary);
