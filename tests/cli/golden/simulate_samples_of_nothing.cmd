@@ -1,0 +1,1 @@
+cd "$SOURCE" && flightwatt simulate missions/paper/phased.toml --samples 10
