@@ -1,6 +1,6 @@
 #include "report/simulated_mission.h"
 
-#include "mission/plan.h"
+#include "mission/flyable.h"
 #include "report/figure.h"
 
 #include <algorithm>
@@ -21,15 +21,8 @@ std::vector<SimulatedMission> simulate_for_report(std::vector<Mission> missions)
         steps.output_s = std::accumulate(durations_s.begin(), durations_s.end(), 0.0) / rows;
         auto title = valid_utf8(mission.name);
         if (const int times = ++seen[title]; times > 1) title += fmt::format(" ({})", times);
-        if (!mission.plan) {
-            auto simulation = simulate(mission, steps);
-            simulated.push_back({std::move(mission), std::move(simulation), std::move(title)});
-            continue;
-        }
-        auto planned = plan_mission(mission);
-        auto simulation = simulate(planned.flown, steps);
-        simulation.summary = labelled_summary(planned);
-        simulated.push_back({std::move(planned.flown), std::move(simulation), std::move(title)});
+        auto [flown, simulation] = fly(make_flyable(mission), steps);
+        simulated.push_back({std::move(flown), std::move(simulation), std::move(title)});
     }
     return simulated;
 }
