@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "generated_flights.h"
 #include "made_up_flights.h"
-#include "mechanical/flight_spread.h"
 #include "mechanical/validation_score.h"
 
 #include <gmock/gmock.h>
@@ -12,40 +12,10 @@
 namespace flightwatt {
 namespace {
 
+using test::generated;
+using test::measured;
 using test::published_model;
 using testing::ElementsAre;
-
-/// A flight recorded off its true curves; with `until_s`, seen in flight so long after its cruise began.
-MeasuredFlight measured(const std::string& name, const PerPhase<PhaseModel>& truth, std::mt19937& random,
-                        std::optional<double> until_s = std::nullopt) {
-    MeasuredFlight flight;
-    flight.samples.flight = name;
-    for (const auto phase : all_phases) {
-        const auto& curve = truth[phase];
-        flight.samples.phases[phase] = test::record(curve, {curve.duration_s, 1.1, 0.2, 0.1}, random, name);
-        flight.energy_wh[phase] = units::wh_from_joule(energy_j(curve.fourier, curve.duration_s));
-    }
-    if (until_s) {
-        flight.flown = FlownSoFar{};
-        flight.flown->until_s = *until_s;
-        flight.flown->cruise_energy_wh =
-            units::wh_from_joule(energy_j(truth[Phase::cruise].fourier, *until_s));
-    }
-    return flight;
-}
-
-/// Flights about the published model. The library draws them in opposite pairs; one of each pair is taken, so
-/// that they are independent.
-std::vector<MeasuredFlight> generated(std::size_t count, unsigned seed,
-                                      std::optional<double> until_s = std::nullopt) {
-    const auto drawn = draw_flights(published_model(), 2 * count, seed);
-    std::mt19937 random(seed);
-    std::vector<MeasuredFlight> flights;
-    for (std::size_t i = 0; i < drawn.size() && flights.size() < count; i += 2) {
-        flights.push_back(measured("flight" + std::to_string(i), drawn[i], random, until_s));
-    }
-    return flights;
-}
 
 TEST(Validation, PredictsFlightsThatAreAllAlikeExactly) {
     std::mt19937 random(1);

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "base/units.h"
+#include "mechanical/made_up_flights.h"
+#include "mechanical/flight_spread.h"
+#include "mechanical/validation.h"
+
+#include <cstddef>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace flightwatt::test {
+
+/// A flight recorded off its true curves; with `until_s`, seen in flight so long after its cruise began.
+inline MeasuredFlight measured(const std::string& name, const PerPhase<PhaseModel>& truth,
+                               std::mt19937& random, std::optional<double> until_s = std::nullopt) {
+    MeasuredFlight flight;
+    flight.samples.flight = name;
+    for (const auto phase : all_phases) {
+        const auto& curve = truth[phase];
+        flight.samples.phases[phase] = record(curve, {curve.duration_s, 1.1, 0.2, 0.1}, random, name);
+        flight.energy_wh[phase] = units::wh_from_joule(energy_j(curve.fourier, curve.duration_s));
+    }
+    if (until_s) {
+        flight.flown = FlownSoFar{};
+        flight.flown->until_s = *until_s;
+        flight.flown->cruise_energy_wh =
+            units::wh_from_joule(energy_j(truth[Phase::cruise].fourier, *until_s));
+    }
+    return flight;
+}
+
+/// Flights about the published model. The library draws them in opposite pairs; one of each pair is taken, so
+/// that they are independent.
+inline std::vector<MeasuredFlight> generated(std::size_t count, unsigned seed,
+                                             std::optional<double> until_s = std::nullopt) {
+    const auto drawn = draw_flights(published_model(), 2 * count, seed);
+    std::mt19937 random(seed);
+    std::vector<MeasuredFlight> flights;
+    for (std::size_t i = 0; i < drawn.size() && flights.size() < count; i += 2) {
+        flights.push_back(measured("flight" + std::to_string(i), drawn[i], random, until_s));
+    }
+    return flights;
+}
+
+}  // namespace flightwatt::test
