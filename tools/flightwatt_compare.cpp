@@ -3,6 +3,7 @@
 #include "cli/stage.h"
 #include "mission/comparison.h"
 #include "mission/disturbance_toml.h"
+#include "mission/flight_draws.h"
 #include "mission/flyable.h"
 #include "mission_json.h"
 #include "sampling_output.h"
@@ -16,9 +17,12 @@ namespace {
 
 using namespace flightwatt;
 
-std::string ranking_json(const std::vector<MissionSummary>& ranking) {
+std::string ranking_json(const std::vector<MissionSummary>& ranking, bool sampled) {
     auto list = nlohmann::ordered_json::array();
-    for (const auto& summary : ranking) list.push_back(to_json(summary));
+    for (const auto& summary : ranking) {
+        list.push_back(to_json(summary));
+        if (sampled && !summary.samples) list.back()["probability_below_reserve"] = nullptr;
+    }
     return json_text(list);
 }
 
@@ -30,7 +34,9 @@ Simulation simulation_of(const cli::StageCall& call, const Mission& mission,
         disturbances = read_disturbances(*file, mission.duration_s);
     const auto flyable = make_flyable(mission);
     auto simulation = fly(flyable, {}, disturbances).simulation;
-    if (sampling) simulation.summary.samples = sample_flights(flyable, disturbances, *sampling);
+    if (sampling && has_spread(flyable.mission)) {
+        simulation.summary.samples = sample_flights(flyable, disturbances, *sampling);
+    }
     return simulation;
 }
 
@@ -52,9 +58,14 @@ std::string soc_picture(const cli::StageCall& call, const std::vector<Simulation
 }
 
 /// What the table does not say.
-int explain(const cli::StageCall& call, const std::vector<MissionSummary>& ranking) {
+int explain(const cli::StageCall& call, const std::vector<MissionSummary>& ranking, bool sampled) {
     int code = cli::ok;
     for (const auto& summary : ranking) {
+        if (sampled && !summary.samples) {
+            cli::note(call, fmt::format("{}: no flights drawn: neither its models nor [uncertainty] say how "
+                                        "they differ",
+                                        summary.mission));
+        }
         if (summary.samples && !call.json) cli::note(call, describe(*summary.samples));
         if (!summary.undeliverable && !summary.lacks_plan) continue;
         cli::warn(call,
@@ -79,12 +90,15 @@ int compare_missions(const cli::StageCall& call) {
         simulations.push_back(simulation_of(call, mission, sampling));
         summaries.push_back(simulations.back().summary);
     }
+    if (sampling && std::none_of(missions.begin(), missions.end(), has_spread)) {
+        spreads_of(missions.front());  // says what is missing
+    }
     const auto ranking = ranked(std::move(summaries));
     const auto table = comparison_table(ranking);
     cli::write_result(call, call.has("markdown") ? to_markdown(table) : to_text(table));
     cli::print(soc_picture(call, simulations, ranking));
-    if (call.json) cli::print(ranking_json(ranking));
-    return explain(call, ranking);
+    if (call.json) cli::print(ranking_json(ranking, sampling.has_value()));
+    return explain(call, ranking, sampling.has_value());
 }
 
 }  // namespace

@@ -12,11 +12,21 @@
 #include <fmt/format.h>
 
 namespace flightwatt {
+
+std::optional<double> stated_level_sd_w(const Mission& mission, Phase phase) {
+    const auto percent = mission.uncertainty.level_sd_percent[phase];
+    if (!percent || !mission.mechanical) return std::nullopt;
+    const double duration_s = mission.duration_s[phase];
+    const auto model = flown_model(mission.mechanical->phases[phase], duration_s, mission.phase_clock);
+    return units::part_of(std::abs(energy_j(model, duration_s) / duration_s), *percent);
+}
+
 double level_sd_w(const Mission& mission, Phase phase) {
     if (!mission.mechanical) {
         throw InputError({mission.file}, "mechanical = \"none\": there are no flights that differ",
                          "a chance needs a mechanical model of two flights or more");
     }
+    if (const auto stated_w = stated_level_sd_w(mission, phase)) return *stated_w;
     if (phase == Phase::cruise && mission.cruise_level) return mission.cruise_level->sd_w.value();
     const double duration_s = mission.duration_s[phase];
     const auto energy = predict_before_flight(forecast_of(*mission.mechanical, phase), duration_s);
@@ -25,7 +35,8 @@ double level_sd_w(const Mission& mission, Phase phase) {
             {mission.file},
             fmt::format("the mechanical model does not say how flights differ: [{}] has no spread",
                         to_string(phase)),
-            "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
+            "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
+            "[uncertainty] with level_sd_percent");
     }
     return units::joule_from_wh(std::sqrt(energy.variance_wh2)) / duration_s;
 }

@@ -2,9 +2,13 @@
 
 #include "mission/mission.h"
 
+#include <optional>
 #include <vector>
 
 namespace flightwatt {
+
+/// What the mission's own [uncertainty] states of that [W], if it does.
+std::optional<double> stated_level_sd_w(const Mission& mission, Phase phase);
 
 /// Standard deviation [W] of a phase's mean mechanical power about the model's, of a flight to come: the
 /// predictive one of mechanical/prediction.h. Throws InputError where there is no mechanical model, or one

@@ -4,6 +4,7 @@
 #include "mechanical/moments.h"
 #include "mechanical/prediction.h"
 #include "mission/disturbance.h"
+#include "mission/drain_spread.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,21 +25,17 @@ void note_source(FlightSpreads& spreads, bool is_drawn, const std::string& sourc
     (is_drawn ? spreads.drawn : spreads.not_drawn).push_back(fmt::format("{} ({})", source, basis));
 }
 
-double mean_w(const Mission& mission, Phase phase) {
-    const double duration_s = mission.duration_s[phase];
-    return energy_j(flown_model(mission.mechanical->phases[phase], duration_s, mission.phase_clock),
-                    duration_s) /
-           duration_s;
-}
-
 void find_level(const Mission& mission, Phase phase, FlightSpreads& spreads) {
     const auto source = fmt::format("{} level", to_string(phase));
     auto& sd_w = spreads.level_sd_w[phase];
     const auto& model = mission.mechanical->phases[phase];
     std::string basis = "the model has no spread: fit two flights or more";
-    if (const auto percent = mission.uncertainty.level_sd_percent[phase]) {
-        sd_w = units::part_of(std::abs(mean_w(mission, phase)), *percent);
+    if (const auto stated_w = stated_level_sd_w(mission, phase)) {
+        sd_w = *stated_w;
         basis = fmt::format("sd {:.4g} W, stated", sd_w);
+    } else if (phase == Phase::cruise && mission.cruise_level) {
+        sd_w = mission.cruise_level->sd_w.value();
+        basis = fmt::format("sd {:.4g} W, of the flights about what the conditions say", sd_w);
     } else if (const auto& spread = model.level_spread) {
         sd_w =
             spread->level_sd_w * std::sqrt(1.0 + forecast_of(*mission.mechanical, phase).weight_square_sum);
@@ -187,9 +184,7 @@ void draw_compute(const Uncertainty& stated, Normals& normal, ComputeModel& comp
     }
 }
 
-}  // namespace
-
-FlightSpreads spreads_of(const Mission& mission) {
+FlightSpreads find_spreads(const Mission& mission) {
     FlightSpreads spreads;
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
@@ -198,6 +193,15 @@ FlightSpreads spreads_of(const Mission& mission) {
     }
     find_compute(mission, spreads);
     find_battery(mission, spreads);
+    return spreads;
+}
+
+}  // namespace
+
+bool has_spread(const Mission& mission) { return !find_spreads(mission).drawn.empty(); }
+
+FlightSpreads spreads_of(const Mission& mission) {
+    auto spreads = find_spreads(mission);
     if (!spreads.drawn.empty()) return spreads;
     throw InputError({mission.file},
                      "there is nothing to draw flights from: neither the mechanical model, nor the profiles, "

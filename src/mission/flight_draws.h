@@ -25,6 +25,9 @@ struct FlightSpreads {
 /// Throws InputError, which says what is missing and how to get it, where there is nothing to draw from.
 FlightSpreads spreads_of(const Mission& mission);
 
+/// Whether there is something to draw from.
+bool has_spread(const Mission& mission);
+
 /// The mission as flight number `index` flies it: all normal, independent of each other, and of `seed` and
 /// `index` alone. Levels move a phase's whole curve; a component's nodes move together, unless they have
 /// standard errors of their own; an interval that is not symmetric has a deviation for each side; a time

@@ -196,6 +196,7 @@ TEST(Plan, SaysThatItIsInfeasible) {
 
 TEST(Plan, KeepsAMarginForFlightsThatDiffer) {
     auto mission = paper_with_reserve(2.0);
+    mission.uncertainty.level_sd_percent = {};
     EXPECT_THROW(plan_mission(mission, 0.95), InputError);
     for (const auto phase : all_phases) {
         mission.mechanical->phases[phase].flights = 5;

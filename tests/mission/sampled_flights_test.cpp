@@ -108,6 +108,7 @@ TEST(SampledFlights, LetAnAdaptivePolicyAnswerEachFlight) {
 
 TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
     auto mission = paper("phased");
+    mission.uncertainty.level_sd_percent = {};
     EXPECT_NE(test::rejected([&] { spreads_of(mission); }).find("there is nothing to draw flights from"),
               std::string::npos);
     mission.uncertainty.compute_sd_percent[0] = 2.0;
@@ -119,6 +120,7 @@ TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
 
 TEST(FlightDraws, TakeWhatTheModelsKnow) {
     auto mission = paper("phased");
+    mission.uncertainty.level_sd_percent = {};
     auto& cruise = mission.mechanical->phases[Phase::cruise];
     cruise.level_spread = LevelSpread{3, 1.0, 0.0, 1.0};
     cruise.flights = 3;

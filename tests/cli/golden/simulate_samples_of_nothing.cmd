@@ -1,1 +1,1 @@
-cd "$SOURCE" && flightwatt simulate missions/paper/phased.toml --samples 10
+cd "$SOURCE" && flightwatt simulate missions/paper/computing-only.toml --samples 10
