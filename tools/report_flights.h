@@ -4,6 +4,7 @@
 #include "batch/left_overs.h"
 #include "batch/stored_flights.h"
 #include "fit_options.h"
+#include "flight/power_report.h"
 #include "mechanical/measured_flight.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/phase_curve.h"
@@ -11,6 +12,7 @@
 #include "report/model_section.h"
 #include "table_one_output.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -47,11 +49,21 @@ inline BatchContent read_batch_content(const std::filesystem::path& out, const M
             }
             std::move(selection.flights.begin(), selection.flights.end(),
                       std::back_inserter(content.samples));
+            for (const auto& [time_s, text] : record.verdicts) flight.verdicts.push_back({time_s, text});
+            if (!keep.contains(record.flight)) {
+                flight.unusable_power = !record.why_not_fitted.empty() ? record.why_not_fitted
+                                        : record.absurdities.empty()
+                                            ? ""
+                                            : describe_absurdities(record.absurdities);
+            }
             flight.series = std::move(series);
             flight.phases = std::move(phases);
         }
         content.flights.push_back(std::move(flight));
     }
+    // Readers look at the first ones first.
+    std::stable_partition(content.flights.begin(), content.flights.end(),
+                          [](const ReportFlight& flight) { return flight.unusable_power.empty(); });
     return content;
 }
 

@@ -1,7 +1,9 @@
 #include "batch/flight_record.h"
 
 #include "flight/airspeed.h"
+#include "flight/edge_witness.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace flightwatt {
@@ -52,6 +54,14 @@ RecordedPhase recorded_phase(const Json& json) {
     return phase;
 }
 
+/// What the best witness of an edge says.
+std::string verdict_text(const ExplainedEdge& explained) {
+    if (explained.witnesses.empty()) return explained.verdict;
+    const auto& best = explained.witnesses.front();
+    return fmt::format("{}{} {} ({:+.1f} s)", explained.verdict,
+                       explained.verdict == "agrees" ? " with" : " from", best.what, best.after_s);
+}
+
 }  // namespace
 
 FlightRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
@@ -60,9 +70,13 @@ FlightRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
     record.accepted = true;
     record.aircraft_id = series.aircraft_id;
     record.power_source = series.power_source;
+    record.current_origin = series.current_origin;
     record.warnings = series.warnings;
     record.warnings.insert(record.warnings.end(), phases.warnings.begin(), phases.warnings.end());
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
+        for (const auto& edge : explain_edges(series, phases.sorties[s])) {
+            record.verdicts.push_back({edge.edge.time_s, verdict_text(edge)});
+        }
         for (const auto& span : phases.sorties[s].phases) {
             record.phases.push_back(
                 {s + 1, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s, span.end.gap_s,
@@ -92,6 +106,10 @@ FlightPhases phases_of(const FlightRecord& record) {
 std::string to_json_text(const FlightRecord& record) {
     Json phases = Json::array();
     for (const auto& phase : record.phases) phases.push_back(phase_json(phase));
+    Json verdicts = Json::array();
+    for (const auto& [time_s, verdict] : record.verdicts) {
+        verdicts.push_back({{"time_s", time_s}, {"verdict", verdict}});
+    }
     const Json json{{"flight", record.flight},
                     {"log", record.log},
                     {"fingerprint", record.fingerprint},
@@ -100,7 +118,9 @@ std::string to_json_text(const FlightRecord& record) {
                     {"error", record.error},
                     {"aircraft_id", record.aircraft_id},
                     {"power_source", record.power_source},
+                    {"current_origin", record.current_origin},
                     {"phases", phases},
+                    {"verdicts", verdicts},
                     {"warnings", record.warnings},
                     {"absurdities", record.absurdities},
                     {"why_not_fitted", record.why_not_fitted}};
@@ -120,7 +140,11 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
         record.error = json.at("error");
         record.aircraft_id = json.at("aircraft_id");
         record.power_source = json.at("power_source");
+        record.current_origin = json.at("current_origin");
         for (const auto& phase : json.at("phases")) record.phases.push_back(recorded_phase(phase));
+        for (const auto& edge : json.at("verdicts")) {
+            record.verdicts.push_back({edge.at("time_s"), edge.at("verdict")});
+        }
         record.warnings = json.at("warnings").get<std::vector<std::string>>();
         record.absurdities = json.at("absurdities").get<std::vector<std::string>>();
         record.why_not_fitted = json.at("why_not_fitted");

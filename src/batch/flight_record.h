@@ -26,6 +26,12 @@ struct RecordedPhase {
     std::optional<double> airspeed_cubed_m3_per_s3 = {};
 };
 
+/// What the autopilot says of an edge of a phase.
+struct RecordedVerdict {
+    double time_s = 0.0;  ///< of the edge
+    std::string text;     ///< "agrees with TAKEOFF (-0.4 s)", "no witness"
+};
+
 /// What became of one log: enough to go on without reading it again.
 struct FlightRecord {
     std::string flight;
@@ -36,7 +42,9 @@ struct FlightRecord {
     std::string error;  ///< why it was rejected
     std::string aircraft_id;
     std::string power_source;
+    std::string current_origin;  ///< see FlightSeries
     std::vector<RecordedPhase> phases;
+    std::vector<RecordedVerdict> verdicts;  ///< of the edges that the log shows
     std::vector<std::string> warnings;
     std::vector<std::string> absurdities;  ///< of its power record: see PowerReport
     std::string why_not_fitted;            ///< what its folder says: see LogFile

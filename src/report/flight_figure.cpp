@@ -60,26 +60,49 @@ struct NamedEdge {
     double time_s = 0.0;
     std::string name;
     std::string evidence;
+    std::string verdict;
 };
 
+/// An incomplete phase begins or ends there because the log does.
+bool is_end_of_log(const FlightSeries& series, double time_s) {
+    constexpr double near_s = 2.0;  // altitude and power have clocks of their own
+    return time_s - series.time_s.front() < near_s || series.time_s.back() - time_s < near_s;
+}
+
+/// What the autopilot says of the edge, if that was recorded.
+std::string verdict_at(const ReportFlight& flight, double time_s) {
+    constexpr double same_edge_s = 2e-3;  // edges are rounded to the millisecond
+    for (const auto& verdict : flight.verdicts) {
+        if (std::abs(verdict.time_s - time_s) < same_edge_s) return verdict.text;
+    }
+    return "-";
+}
+
 /// The edges, each once: a phase ends where the next one begins.
-std::vector<NamedEdge> edges_of(const FlightPhases& phases) {
+std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
     std::vector<NamedEdge> edges;
-    for (const auto& sortie : phases.sorties) {
+    for (const auto& sortie : flight.phases.sorties) {
         for (std::size_t i = 0; i < sortie.phases.size(); ++i) {
             const auto& span = sortie.phases[i];
             const bool continues = i > 0 && sortie.phases[i - 1].end.time_s == span.start.time_s;
-            if (!continues)
-                edges.push_back({span.start.time_s, edge_name(span, true), explained(span.start)});
-            edges.push_back({span.end.time_s, edge_name(span, false), explained(span.end)});
+            const auto add = [&](const PhaseEdge& edge, bool begin) {
+                const bool cut = !span.complete && is_end_of_log(flight.series, edge.time_s);
+                edges.push_back({edge.time_s,
+                                 cut ? (begin ? "the log begins" : "the log ends") : edge_name(span, begin),
+                                 explained(edge), verdict_at(flight, edge.time_s)});
+            };
+            if (!continues) add(span.start, true);
+            add(span.end, false);
         }
     }
     return edges;
 }
 
-FigureData edge_rows(const FlightPhases& phases) {
-    FigureData data({"time_s"}, {"edge", "evidence"});
-    for (const auto& edge : edges_of(phases)) data.add({edge.time_s}, {edge.name, edge.evidence});
+FigureData edge_rows(const ReportFlight& flight) {
+    FigureData data({"time_s"}, {"edge", "evidence", "verdict"});
+    for (const auto& edge : edges_of(flight)) {
+        data.add({edge.time_s}, {edge.name, edge.evidence, edge.verdict});
+    }
     return data;
 }
 
@@ -139,7 +162,7 @@ VegaJson phase_layers(const FigureData& phases, const FigureData& edges, bool wi
                        {{"x", quantity("time_s", time_title)},
                         {"tooltip",
                          {category("edge", "edge"), quantity("time_s", "time [s]", {{"format", ".1f"}}),
-                          category("evidence", "evidence")}}}}});
+                          category("evidence", "evidence"), category("verdict", "the autopilot")}}}}});
     if (with_names) {
         layers.push_back(
             {{"data", phases.reference("phases")},
@@ -234,10 +257,10 @@ std::string caption_of(const ReportFlight& flight, bool has_model) {
 
 }  // namespace
 
-TextTable edge_table(const FlightPhases& phases) {
-    TextTable table{{"edge", "time [s]", "evidence"}, {}};
-    for (const auto& edge : edges_of(phases)) {
-        table.rows.push_back({edge.name, fmt::format("{:.1f}", edge.time_s), edge.evidence});
+TextTable edge_table(const ReportFlight& flight) {
+    TextTable table{{"edge", "time [s]", "evidence", "the autopilot"}, {}};
+    for (const auto& edge : edges_of(flight)) {
+        table.rows.push_back({edge.name, fmt::format("{:.1f}", edge.time_s), edge.evidence, edge.verdict});
     }
     return table;
 }
@@ -246,7 +269,7 @@ Figure flight_figure(const ReportFlight& flight, const std::optional<MechanicalM
                      const std::string& id) {
     Figure figure{id, caption_of(flight, model.has_value()), description_of(flight), "zoom_time_s", "x", {}};
     const auto phases = phase_rows(flight.phases);
-    const auto edges = edge_rows(flight.phases);
+    const auto edges = edge_rows(flight);
     const auto& series = flight.series;
     VegaJson panels = VegaJson::array();
     const auto add_channel = [&](const std::vector<double>& values, const std::string& column,

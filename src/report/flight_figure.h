@@ -9,8 +9,8 @@
 
 namespace flightwatt {
 
-/// The edges of a flight's phases with what was seen there, each once.
-TextTable edge_table(const FlightPhases& phases);
+/// The edges of a flight's phases with what was seen there and what the autopilot says of them, each once.
+TextTable edge_table(const ReportFlight& flight);
 
 /// Altitude, throttle and power of a flight on one time axis, its phases shaded, their edges explained, and
 /// the model over the power: each phase's curve stretched to the time flown. The flight was not rejected.

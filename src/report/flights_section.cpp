@@ -61,7 +61,7 @@ std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie
     cells.push_back(closure_percent(sums));
     cells.push_back(fmt::format("{}", sums.gaps));
     cells.push_back(fmt::format("{}", flight.warnings.size()));
-    cells.emplace_back(flight.left_out.empty() ? "all" : "in part");
+    cells.emplace_back(flight.left_out.empty() ? "all" : flight.unusable_power.empty() ? "in part" : "no");
     return cells;
 }
 
@@ -88,8 +88,11 @@ std::string excluded_html(std::span<const ReportFlight> flights) {
     TextTable table{{"flight", "left out", "reason"}, {}};
     for (const auto& flight : flights) {
         if (!flight.rejected.empty()) table.rows.push_back({flight.name, "rejected", flight.rejected});
-        for (const auto& reason : flight.left_out)
-            table.rows.push_back({flight.name, "of the model", reason});
+        for (const auto& reason : flight.left_out) {
+            const auto name = flight.name + ": ";
+            table.rows.push_back({flight.name, "of the model",
+                                  reason.starts_with(name) ? reason.substr(name.size()) : reason});
+        }
     }
     if (table.rows.empty()) return paragraph("Nothing was left out.");
     return "<h3>Left out, and why</h3>\n" + table_html(table, {"What was left out, and why", false, {}});
@@ -115,7 +118,7 @@ void add_flight(Section& section, const ReportFlight& flight, const std::optiona
     }
     add_figure(section, flight_figure(flight, model, id + "-power"));
     section.html +=
-        table_html(edge_table(flight.phases), {"Where the phases end, and what was seen there", false, {}});
+        table_html(edge_table(flight), {"Where the phases end, and what was seen there", false, {}});
     if (auto track = track_figure(flight, id + "-track")) add_figure(section, std::move(*track));
     section.html += "</details>\n";
 }

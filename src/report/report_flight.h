@@ -8,6 +8,12 @@
 
 namespace flightwatt {
 
+/// What the autopilot says of an edge of a phase.
+struct EdgeVerdict {
+    double time_s = 0.0;
+    std::string text;
+};
+
 /// One log as the report shows it.
 struct ReportFlight {
     std::string name;
@@ -17,6 +23,8 @@ struct ReportFlight {
     FlightPhases phases;   ///< with the evidence at their edges
     std::vector<std::string> warnings;
     std::vector<std::string> left_out;  ///< what the model was not fitted to, and why
+    std::vector<EdgeVerdict> verdicts = {};
+    std::string unusable_power = {};  ///< why its power record is used for nothing; empty if it is
 };
 
 }  // namespace flightwatt

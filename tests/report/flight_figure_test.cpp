@@ -46,6 +46,19 @@ TEST(FlightFigure, HasEveryChannelAndExplainsItsEdges) {
         << figure.description;
 }
 
+TEST(FlightFigure, SaysWhatTheAutopilotSaidOfEdgesAndWhereTheLogEnds) {
+    auto flight = sample_flight();
+    auto& landing = flight.phases.sorties.front().phases.back();
+    flight.verdicts = {{landing.start.time_s, "agrees with block Survey -> Land (+0.1 s)"}};
+    landing.complete = false;
+    landing.end.time_s = flight.series.time_s.back();
+    const auto table = edge_table(flight);
+    ASSERT_EQ(table.rows.size(), 4U);
+    EXPECT_EQ(table.rows[2].back(), "agrees with block Survey -> Land (+0.1 s)");
+    EXPECT_EQ(table.rows[3].front(), "the log ends");
+    EXPECT_EQ(table.rows[3].back(), "-");
+}
+
 TEST(FlightFigure, DrawsNoChannelThatTheLogLacks) {
     auto flight = sample_flight();
     flight.series.throttle_percent.clear();
