@@ -18,10 +18,12 @@ namespace {
 constexpr std::string_view power_column = "power_w";
 constexpr std::string_view ignored_column = "_";
 constexpr std::string_view error_column = "standard_error_w";
+constexpr std::string_view source_column = "source";
+constexpr std::string_view interpolated = "interpolated";
 /// What may follow power_w in a profile of ours: on what it rests.
 constexpr std::string_view evidence_columns[] = {error_column, "total_power_w", "above_idle_power_w",
                                                  "duration_s", "energy_j",      "samples",
-                                                 "repeats",    "source"};
+                                                 "repeats",    source_column};
 
 void refuse_bad_names(const std::vector<std::string>& parameters, const Location& where) {
     std::set<std::string_view> seen;
@@ -108,6 +110,13 @@ PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             if (table.rows[i].cells[column].text.empty()) continue;  // of a single sample
             nodes[i].standard_error_w = cell_number(table, table.rows[i], column);
+        }
+    }
+    const auto sources = std::find(table.columns.begin(), table.columns.end(), source_column);
+    if (sources != table.columns.end()) {
+        const auto column = static_cast<std::size_t>(sources - table.columns.begin());
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            nodes[i].is_measured = table.rows[i].cells[column].text != interpolated;
         }
     }
     return make_power_profile(table.file, parameters, std::move(nodes));

@@ -1,6 +1,7 @@
 #include "report/profile_figure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 
@@ -9,6 +10,8 @@
 
 namespace flightwatt {
 namespace {
+
+constexpr double wide_95 = 1.96;
 
 /// Every node's QoS: the last parameter runs fastest, as in PowerProfile.
 std::vector<double> qos_of_node(const PowerProfile& profile, std::size_t node) {
@@ -29,12 +32,39 @@ std::string line_name(const PowerProfile& profile, const std::vector<double>& qo
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+bool is_measured(const PowerProfile& profile, std::size_t node) {
+    return profile.is_measured.empty() || profile.is_measured[node];
+}
+
+bool all_measured(const PowerProfile& profile) {
+    return std::all_of(profile.is_measured.begin(), profile.is_measured.end(),
+                       [](bool measured) { return measured; });
+}
+
+/// The nodes: interpolated ones are hollow where there are any.
+VegaJson points_layer(const PowerProfile& profile) {
+    VegaJson layer{{"mark", {{"type", "point"}, {"style", "measured"}, {"size", 45}, {"opacity", 1}}},
+                   {"encoding", VegaJson::object()}};
+    if (all_measured(profile)) {
+        layer["mark"]["filled"] = true;
+        return layer;
+    }
+    const VegaJson shapes{{"domain", {"measured", "interpolated"}}, {"range", {"circle", "cross"}}};
+    layer["encoding"]["shape"] = category("origin", "", {{"scale", shapes}});
+    return layer;
+}
+
 VegaJson panel_of(const Component& component) {
     const auto& profile = component.profile;
-    FigureData data({"qos", "power_w"}, {"line"});
+    FigureData data({"qos", "power_w", "error_w", "low_w", "high_w"}, {"line", "origin"});
+    const auto& errors_w = profile.standard_error_w;
     for (std::size_t node = 0; node < profile.power_w.size(); ++node) {
         const auto qos = qos_of_node(profile, node);
-        data.add({qos.empty() ? 0.0 : qos.front(), profile.power_w[node]}, {line_name(profile, qos)});
+        const double power_w = profile.power_w[node];
+        const double error_w = errors_w.empty() ? std::nan("") : errors_w[node];
+        data.add({qos.empty() ? 0.0 : qos.front(), power_w, error_w, power_w - wide_95 * error_w,
+                  power_w + wide_95 * error_w},
+                 {line_name(profile, qos), is_measured(profile, node) ? "measured" : "interpolated"});
     }
     const auto title = profile.parameters.empty() ? "no parameter" : valid_utf8(profile.parameters.front());
     VegaJson encoding{
@@ -45,12 +75,21 @@ VegaJson panel_of(const Component& component) {
         encoding["color"] = category("line", "", {{"sort", nullptr}});
         encoding["tooltip"].push_back(category("line", "also"));
     }
+    VegaJson layers = VegaJson::array({{{"mark", {{"type", "line"}, {"style", "measured"}}}}});
+    if (!errors_w.empty()) {
+        encoding["tooltip"].push_back(quantity("error_w", "standard error [W]", {{"format", ".3f"}}));
+        layers.push_back(
+            {{"mark", {{"type", "rule"}, {"style", "measured"}, {"strokeWidth", 1.4}}},
+             {"encoding", {{"y", quantity("low_w", "power [W]")}, {"y2", {{"field", "high_w"}}}}}});
+    }
+    if (!all_measured(profile)) encoding["tooltip"].push_back(category("origin", "node"));
+    layers.push_back(points_layer(profile));
     return {{"title", valid_utf8(component.name)},
             {"width", 280},
             {"height", 190},
             {"data", data.json()},
-            {"mark", {{"type", "line"}, {"style", "measured"}, {"point", {{"size", 45}, {"filled", true}}}}},
-            {"encoding", encoding}};
+            {"encoding", encoding},
+            {"layer", layers}};
 }
 
 std::string described(const ComputeModel& compute) {
@@ -63,15 +102,32 @@ std::string described(const ComputeModel& compute) {
     return text;
 }
 
+std::string caption_of(const ComputeModel& compute) {
+    const auto any = [&](const auto& holds) {
+        return std::any_of(compute.components.begin(), compute.components.end(),
+                           [&](const Component& component) { return holds(component.profile); });
+    };
+    const bool interpolated = any([](const auto& profile) { return !all_measured(profile); });
+    std::string text =
+        interpolated ? "Circles were measured, crosses found between them;" : "Points were profiled,";
+    text += " lines are interpolated between them, and nothing is extrapolated.";
+    if (any([](const auto& profile) { return !profile.standard_error_w.empty(); })) {
+        text += " Bars are 95 % intervals, of the standard errors that the profile has.";
+    }
+    if (any([](const auto& profile) { return profile.standard_error_w.empty(); })) {
+        text += " A component without bars has a profile without standard errors.";
+    }
+    return text +
+           " The powers of the components that run add up; a component that runs on top of another is "
+           "profiled as what it adds.";
+}
+
 }  // namespace
 
 Figure profile_figure(const ComputeModel& compute, const std::string& id) {
     Figure figure;
     figure.id = id;
-    figure.caption =
-        "Points were profiled, lines are interpolated between them, and nothing is extrapolated. The powers "
-        "of the components that run add up; a component that runs on top of another is profiled as what it "
-        "adds.";
+    figure.caption = caption_of(compute);
     figure.description = described(compute);
     figure.spec = new_spec(figure);
     figure.spec["columns"] = 2;

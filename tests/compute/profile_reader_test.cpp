@@ -111,6 +111,7 @@ TEST(ProfileReader, KeepsTheEvidenceBehindPower) {
     EXPECT_EQ(profile.parameters, std::vector<std::string>{"fps"});
     EXPECT_EQ(profile.power_w, (std::vector<double>{2.0, 4.0}));
     EXPECT_EQ(profile.standard_error_w, (std::vector<double>{0.1, 0.3}));
+    EXPECT_EQ(profile.is_measured, (std::vector<bool>{true, false}));
     EXPECT_EQ(rejected([&] { read_power_profile(write_text(folder / "q.csv", "fps,power_w,key\n1,2,3\n")); },
                        folder),
               "q.csv:1:13: the column 'key' follows power_w; parameters stand before it, after it only what "
