@@ -2,12 +2,14 @@
 
 #include "cli/stage.h"
 #include "mission/mission.h"
+#include "report/battery_section.h"
 #include "report/figure_files.h"
 #include "report/missions_section.h"
 #include "report/page.h"
 #include "report_flights.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 
 #include <fmt/chrono.h>
@@ -48,24 +50,26 @@ std::string time_of_report() {
     return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
 }
 
-std::uint64_t read_most_validated(const cli::StageCall& call) {
-    const auto text = call.get<std::string>("most-validated");
+std::uint64_t read_most(const cli::StageCall& call, const std::string& option) {
+    const auto text = call.get<std::string>(option);
     const auto number = parse_unsigned(text);
-    if (!number) throw UsageError(fmt::format("--most-validated {}: expected a whole number from 0", text));
+    if (!number) throw UsageError(fmt::format("--{} {}: expected a whole number from 0", option, text));
     return *number;
 }
 
-/// What the batch's folder has to say: flights, model and validation.
-void add_batch(const cli::StageCall& call, const std::filesystem::path& out, const PublishedFigures& figures,
-               PageHead& head, std::vector<Section>& sections) {
-    const auto options = read_fit_options(call);
-    const auto kept = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
-    std::optional<MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published")) published = read_mechanical_model(*file);
-    const auto content = read_batch_content(out, options, {kept.begin(), kept.end()});
-    const auto model = read_batch_model(out, content, options, published);
-    head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
-    sections.push_back(flights_section(content.flights, model ? std::optional(model->model) : std::nullopt));
+IdentificationOptions read_identification_options(const cli::StageCall& call) {
+    IdentificationOptions options;
+    options.capacity_ah = call.maybe<double>("capacity");
+    if (options.capacity_ah && !(*options.capacity_ah > 0.0 && std::isfinite(*options.capacity_ah))) {
+        throw UsageError(fmt::format("--capacity is {} Ah, expected more than 0", *options.capacity_ah));
+    }
+    return options;
+}
+
+/// The flights' model with its validation.
+void add_model(const cli::StageCall& call, const BatchContent& content,
+               const std::optional<ReportModel>& model, const PublishedFigures& figures, PageHead& head,
+               std::vector<Section>& sections) {
     if (!model) {
         head.notes.push_back("There is no model of these flights: the batch could not fit them.");
         return;
@@ -73,14 +77,31 @@ void add_batch(const cli::StageCall& call, const std::filesystem::path& out, con
     for (const auto& note : model->notes) cli::warn(call, note);
     sections.push_back(model_section(*model, figures, "model"));
     if (!model->notes.empty()) return;
-    const auto most = read_most_validated(call);
+    const auto most = read_most(call, "most-validated");
     if (content.measured.size() < 2 || content.measured.size() > most) {
         head.notes.push_back(fmt::format(
             "The model is validated with 2 to {} flights, and there are {}; flightwatt validate does it.",
             most, content.measured.size()));
         return;
     }
-    sections.push_back(validation_section(leave_one_out(content.measured, options)));
+    sections.push_back(validation_section(leave_one_out(content.measured, read_fit_options(call))));
+}
+
+/// What the batch's folder has to say: flights, model, validation and battery.
+void add_batch(const cli::StageCall& call, const std::filesystem::path& out, const PublishedFigures& figures,
+               PageHead& head, std::vector<Section>& sections) {
+    const auto options = read_fit_options(call);
+    const auto identification = read_identification_options(call);
+    const auto kept = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
+    std::optional<MechanicalModel> published;
+    if (const auto file = call.maybe<std::string>("published")) published = read_mechanical_model(*file);
+    const auto content = read_batch_content(out, options, {kept.begin(), kept.end()});
+    const auto model = read_batch_model(out, content, options, published);
+    head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
+    sections.push_back(flights_section(content.flights, model ? std::optional(model->model) : std::nullopt));
+    add_model(call, content, model, figures, head, sections);
+    sections.push_back(battery_section(
+        identify_for_report(content.flights, identification, read_most(call, "most-battery"))));
 }
 
 nlohmann::ordered_json summary_json(const PageHead& head, const std::vector<Section>& sections) {
@@ -147,7 +168,8 @@ int main(int argc, char** argv) {
     stage.description =
         "Writes one HTML page, to be opened offline, of what flightwatt batch left in the folder OUT "
         "(flights,\n"
-        "model, validation) and of missions (software, schedules, quality of service). Its figures are "
+        "model, validation, battery) and of missions (software, schedules, quality of service, plan). Its "
+        "figures are "
         "Vega-Lite\n"
         "specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node) "
         "and\n"
@@ -161,6 +183,10 @@ int main(int argc, char** argv) {
         "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others")(
         "title", po::value<std::string>()->value_name("TITLE"), "of the page")(
         "most-validated", po::value<std::string>()->value_name("N")->default_value("30"),
-        "leave flights out in turn where there are no more than N: the work grows with their square");
+        "leave flights out in turn where there are no more than N: the work grows with their square")(
+        "capacity", po::value<double>()->value_name("AH"),
+        "the capacity of the flights' battery; without it, what flightwatt battery would say")(
+        "most-battery", po::value<std::string>()->value_name("N")->default_value("12"),
+        "identify the battery from no more than N flights: the work grows with their square");
     return cli::run_stage(argc, argv, stage, report);
 }

@@ -1,0 +1,191 @@
+#include "report/battery_section.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "report/battery_figures.h"
+#include "report/html.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt {
+namespace {
+
+/// What the error says, without the place of a file that the reader did not write.
+std::string reason_of(const InputError& error, const std::string& flight) {
+    const std::string text = error.what();
+    const auto begin = text.find(flight + ": ");
+    return begin == std::string::npos ? text : text.substr(begin + flight.size() + 2);
+}
+
+/// The flight's record, or why it has none.
+void add_record(ReportBattery& battery, const ReportFlight& flight) {
+    if (!flight.rejected.empty()) {
+        battery.silent.push_back({flight.name, "rejected: " + flight.rejected});
+        return;
+    }
+    if (!flight.unusable_power.empty()) {
+        battery.silent.push_back({flight.name, flight.unusable_power});
+        return;
+    }
+    try {
+        battery.records.push_back(discharge_record(flight.series));
+    } catch (const InputError& error) {
+        battery.silent.push_back({flight.name, reason_of(error, flight.name)});
+    }
+}
+
+/// `most` of the records, the first and the last among them.
+std::vector<DischargeRecord> spread_evenly(std::vector<DischargeRecord> records, std::size_t most) {
+    if (records.size() <= most) return records;
+    std::vector<DischargeRecord> chosen;
+    for (std::size_t i = 0; i < most; ++i) {
+        chosen.push_back(std::move(records[most == 1 ? 0 : i * (records.size() - 1) / (most - 1)]));
+    }
+    return chosen;
+}
+
+TextTable parameters_table(const BatteryIdentification& identified) {
+    TextTable table{{"parameter", "value", "95 %, low", "95 %, high", "known from"}, {}};
+    const auto add = [&](const std::string& name, double value, const std::optional<Interval>& interval,
+                         const std::string& origin) {
+        const auto end = [&](double Interval::*side) {
+            return interval ? fmt::format("{:.4g}", (*interval).*side) : std::string("-");
+        };
+        table.rows.push_back(
+            {name, fmt::format("{:.4g}", value), end(&Interval::low), end(&Interval::high), origin});
+    };
+    const std::string voltages = "voltage under load";
+    add("series resistance [ohm]", identified.fit.resistance_ohm, identified.errors.resistance_ohm, voltages);
+    if (identified.fit.rc_resistance_ohm > 0.0) {
+        add("RC pair: resistance [ohm]", identified.fit.rc_resistance_ohm,
+            identified.errors.rc_resistance_ohm, voltages);
+        add("RC pair: time constant [s]", identified.fit.rc_time_constant_s,
+            identified.errors.rc_time_constant_s, voltages);
+    }
+    add("capacity [Ah]", identified.capacity.value_ah, identified.capacity.interval_ah,
+        to_string(identified.capacity.origin));
+    return table;
+}
+
+TextTable records_table(const ReportBattery& battery) {
+    TextTable table{{"flight", "at rest [V]", "missing [Ah]", "drawn [Ah]", "samples", "unused",
+                     "fitted [mV]", "left out [mV]", "beyond the others [%]"},
+                    {}};
+    const auto& flights = battery.identified->flights;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const auto& flight = flights[i];
+        table.rows.push_back({flight.flight, fmt::format("{:.3f}", flight.resting_voltage_v),
+                              fmt::format("{:.3f}", flight.initial_charge_ah),
+                              fmt::format("{:.3f}", flight.drawn_ah), fmt::format("{}", flight.samples),
+                              fmt::format("{}", flight.unused),
+                              fmt::format("{:.1f}", units::mv_from_v(flight.voltage_rms_v)), "-", "-"});
+        if (i >= battery.left_out.size()) continue;
+        auto& row = table.rows.back();
+        row[row.size() - 2] = fmt::format("{:.1f}", units::mv_from_v(battery.left_out[i].voltage_rms_v));
+        row.back() = fmt::format("{:.0f}", battery.left_out[i].beyond_percent);
+    }
+    return table;
+}
+
+std::string rests_on(const ReportBattery& battery) {
+    auto text = fmt::format(
+        "A Th\u00e9venin circuit, identified from voltage, current and charge of {} flight{}, {} LiPo cells "
+        "in "
+        "series: voltages are met within {:.1f} mV RMS.",
+        battery.records.size(), battery.records.size() == 1 ? "" : "s", battery.identified->cells,
+        units::mv_from_v(battery.identified->fit.rms_v));
+    if (battery.records.size() < battery.usable) {
+        text += fmt::format(
+            " They are spread evenly among the {} that could be used: --most-battery limits "
+            "them, because the work grows with their square.",
+            battery.usable);
+    }
+    return text;
+}
+
+/// The first names, and how many more there are.
+std::string some_of(const std::vector<std::string>& names) {
+    constexpr std::size_t most = 10;
+    const auto shown = std::min(most, names.size());
+    auto text =
+        fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+    if (shown < names.size()) text += fmt::format(" and {} more", names.size() - shown);
+    return text;
+}
+
+std::string silent_html(const ReportBattery& battery) {
+    if (battery.silent.empty()) return "";
+    std::map<std::string, std::vector<std::string>> flights_of_reason;
+    for (const auto& silence : battery.silent) flights_of_reason[silence.reason].push_back(silence.flight);
+    TextTable table{{"flights", "number", "why"}, {}};
+    for (const auto& [reason, flights] : flights_of_reason) {
+        table.rows.push_back({some_of(flights), fmt::format("{}", flights.size()), reason});
+    }
+    return "<h3>Not used for the battery</h3>\n" +
+           table_html(table, {"Flights that say nothing of the battery, and why", false, {}});
+}
+
+void add_identified(Section& section, const ReportBattery& battery) {
+    const auto& identified = *battery.identified;
+    section.html += paragraph(rests_on(battery));
+    if (identified.capacity.origin == CapacityOrigin::chart) {
+        section.html += paragraph(
+            "No flight tells the capacity, as none runs empty: it is a guess after the usual chart of LiPo "
+            "cells. Give what the pack says with --capacity.",
+            "warning");
+    }
+    section.html += table_html(parameters_table(identified), {"Parameters of the battery", false, {}});
+    add_figure(section, voltage_figure(identified.battery, battery.records, "battery-voltage"));
+    section.html += table_html(records_table(battery), {"Flights in the fit of the battery", true, {}});
+    section.html += paragraph(
+        "Left out: how far the battery of the other flights is off this flight's voltage, RMS; beyond the "
+        "others: part of its samples with more charge drawn than in any other flight.",
+        "soft");
+    add_figure(section, open_circuit_figure(identified, "battery-open-circuit"));
+}
+
+}  // namespace
+
+ReportBattery identify_for_report(std::span<const ReportFlight> flights, const IdentificationOptions& options,
+                                  std::size_t most) {
+    ReportBattery battery;
+    for (const auto& flight : flights) add_record(battery, flight);
+    battery.usable = battery.records.size();
+    battery.records = spread_evenly(std::move(battery.records), most);
+    if (battery.records.empty()) {
+        battery.no_answer = battery.usable == 0 ? "no flight has a voltage and a current to identify it from"
+                                                : "--most-battery is 0";
+        return battery;
+    }
+    try {
+        battery.identified = identify_battery(battery.records, options);
+        battery.left_out = leave_each_out(battery.records, options);
+    } catch (const NoAnswerError& error) {
+        battery.no_answer = error.what();
+    }
+    return battery;
+}
+
+Section battery_section(const ReportBattery& battery) {
+    Section section{"battery", "Battery", "", {}};
+    if (battery.identified) {
+        add_identified(section, battery);
+        if (battery.left_out.empty()) {
+            section.html +=
+                paragraph(battery.no_answer.empty()
+                              ? "A single flight: none can be left out to check the battery."
+                              : "Flights could not be left out to check the battery: " + battery.no_answer,
+                          "soft");
+        }
+    } else {
+        section.html += paragraph("The battery was not identified: " + battery.no_answer + ".", "warning");
+    }
+    section.html += silent_html(battery);
+    return section;
+}
+
+}  // namespace flightwatt
