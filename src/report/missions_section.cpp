@@ -4,6 +4,7 @@
 #include "mission/comparison.h"
 #include "report/html.h"
 #include "report/model_section.h"
+#include "report/plan_section.h"
 #include "report/profile_figure.h"
 #include "report/qos_map_figure.h"
 #include "report/schedule_figure.h"
@@ -21,7 +22,8 @@ using Missions = std::span<const SimulatedMission>;
 std::vector<Section> model_sections(Missions missions, const PublishedFigures& published) {
     std::vector<Section> sections;
     std::vector<std::string> seen;
-    for (const auto& [mission, simulation, title] : missions) {
+    for (const auto& simulated : missions) {
+        const auto& mission = simulated.mission;
         if (!mission.mechanical) continue;
         const auto text = to_toml(*mission.mechanical);
         if (std::find(seen.begin(), seen.end(), text) != seen.end()) continue;
@@ -123,7 +125,7 @@ Section map_section(Missions missions, const PublishedFigures& published) {
 std::vector<Section> mission_sections(Missions missions, const PublishedFigures& published) {
     auto sections = model_sections(missions, published);
     for (auto& section : {profile_section(missions), schedule_section(missions, published),
-                          map_section(missions, published)}) {
+                          map_section(missions, published), plan_section(missions)}) {
         if (!section.figures.empty()) sections.push_back(section);
     }
     return sections;

@@ -96,10 +96,12 @@ bool have_same_map(const Mission& a, const Mission& b) {
     const auto mechanical = [](const Mission& mission) {
         return mission.mechanical ? to_toml(*mission.mechanical) : std::string();
     };
+    const auto nameless = [](Battery battery) {
+        battery.name.clear();
+        return to_toml(battery);
+    };
     return a.duration_s.values == b.duration_s.values && a.initial_soc_percent == b.initial_soc_percent &&
-           a.battery.voltage_v == b.battery.voltage_v &&
-           a.battery.resistance_ohm == b.battery.resistance_ohm &&
-           a.battery.capacity_ah == b.battery.capacity_ah && same_profiles(a.compute, b.compute) &&
+           nameless(a.battery) == nameless(b.battery) && same_profiles(a.compute, b.compute) &&
            a.phase_clock == b.phase_clock && mechanical(a) == mechanical(b);
 }
 

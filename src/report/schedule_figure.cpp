@@ -162,13 +162,14 @@ VegaJson phase_layers(std::span<const SimulatedMission> missions) {
 /// A bar a stretch: when a mission runs which configuration.
 VegaJson strip_panel(std::span<const SimulatedMission> missions, double longest_s) {
     FigureData data({"start_s", "end_s", "compute_w"}, {"mission", "phase", "runs"});
-    for (const auto& [mission, simulation, title] : missions) {
+    for (const auto& simulated : missions) {
+        const auto& mission = simulated.mission;
         const auto starts_s = phase_starts_s(mission);
         for (const auto& stretch : mission.schedule) {
             const double start_s = starts_s[stretch.phase];
             data.add(
                 {start_s + stretch.from_s, start_s + stretch.to_s, power_w(mission.compute, stretch.run)},
-                {title, phase_word(stretch.phase), describe(mission.compute, stretch.run)});
+                {simulated.title, phase_word(stretch.phase), describe(mission.compute, stretch.run)});
         }
     }
     const VegaJson axis{{"scale", {{"domain", {0.0, longest_s}}, {"nice", false}}},

@@ -1,6 +1,7 @@
 #include "report/simulated_mission.h"
 
 #include "mission/flyable.h"
+#include "mission/plan.h"
 #include "report/figure.h"
 
 #include <algorithm>
@@ -10,19 +11,39 @@
 #include <fmt/format.h>
 
 namespace flightwatt {
+namespace {
 
-std::vector<SimulatedMission> simulate_for_report(std::vector<Mission> missions) {
+/// Flies a mission, planned first where it is yet to be, or in flight where a policy does.
+SimulatedMission fly_for_report(const Mission& mission, const SimulationSteps& steps) {
+    SimulatedMission flown;
+    if (!mission.plan || mission.adaptive) {
+        auto flight = fly(make_flyable(mission), steps);
+        flown.simulation = std::move(flight.simulation);
+        flown.mission = std::move(flight.flown);
+        return flown;
+    }
+    auto plan = plan_mission(mission);
+    flown.simulation = simulate(plan.flown, steps);
+    flown.simulation.summary = labelled_summary(plan);
+    flown.planned = PlannedSchedule{plan.plan.feasible, plan.plan.bound, plan.margin_percent};
+    flown.mission = std::move(plan.flown);
+    return flown;
+}
+
+}  // namespace
+
+std::vector<SimulatedMission> simulate_for_report(const std::vector<Mission>& missions) {
     constexpr double rows = 300.0;
     std::vector<SimulatedMission> simulated;
     std::map<std::string, int> seen;
-    for (auto& mission : missions) {
+    for (const auto& mission : missions) {
         const auto& durations_s = mission.duration_s.values;
         SimulationSteps steps;
         steps.output_s = std::accumulate(durations_s.begin(), durations_s.end(), 0.0) / rows;
         auto title = valid_utf8(mission.name);
         if (const int times = ++seen[title]; times > 1) title += fmt::format(" ({})", times);
-        auto [flown, simulation] = fly(make_flyable(mission), steps);
-        simulated.push_back({std::move(flown), std::move(simulation), std::move(title)});
+        simulated.push_back(fly_for_report(mission, steps));
+        simulated.back().title = std::move(title);
     }
     return simulated;
 }
