@@ -25,6 +25,7 @@
       });
       views.set(element, result.view);
       element.querySelector("summary")?.setAttribute("aria-label", "Save this figure");
+      addSwitches(element, spec, result.view);
       element.dataset.drawn = "yes";
       element.dataset.width = element.clientWidth;
     } catch (error) {
@@ -33,6 +34,35 @@
     } finally {
       delete element.dataset.drawing;
     }
+  }
+
+  // The legend's entries as buttons that hide and show a series, seen when they have the focus: for the keyboard.
+  function addSwitches(element, spec, view) {
+    element.parentElement.querySelector(".series")?.remove();
+    const parameter = spec.params?.find(({ bind }) => bind === "legend");
+    if (!parameter) return;
+    const names = parameter.value.map((value) => Object.values(value)[0]);
+    const store = `${parameter.name}_store`;
+    const shown = () => new Set(view.data(store).flatMap(({ values }) => values).flat());
+    const entryOf = (name) => [...element.querySelectorAll(".role-legend-label text")].find((label) => label.__data__?.datum?.value === name || label.textContent === name);
+    const row = document.createElement("div");
+    row.className = "series";
+    row.setAttribute("role", "group");
+    row.setAttribute("aria-label", "Series of the figure above");
+    for (const name of names) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = name;
+      button.addEventListener("click", () => entryOf(name)?.dispatchEvent(new MouseEvent("click", { bubbles: true })));
+      row.append(button);
+    }
+    const sync = () => {
+      const now = shown();
+      [...row.children].forEach((button, i) => button.setAttribute("aria-pressed", now.has(names[i])));
+    };
+    view.addDataListener(store, sync);
+    sync();
+    element.after(row);
   }
 
   const inView = new IntersectionObserver(

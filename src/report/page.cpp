@@ -49,7 +49,8 @@ std::string opening_html(const PageHead& head, const std::vector<Section>& secti
     return html + contents_html(sections) +
            "<p class=\"soft keys\">In figures over time: drag to move, Ctrl and wheel to zoom, double-click "
            "for "
-           "all; with the keyboard + and \u2212, arrows, 0. The menu in a figure's corner saves it.</p>\n"
+           "all; with the keyboard + and \u2212, arrows, 0, and the tab key for the series. The menu in a "
+           "figure's corner saves it.</p>\n"
            "<noscript><p class=\"warning\">The figures need JavaScript; the tables do not.</p></noscript>\n"
            "</header>\n";
 }

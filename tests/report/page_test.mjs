@@ -135,6 +135,25 @@ test("a click on the legend hides a series, another shows it again", async () =>
   await page.context().close();
 });
 
+test("the legend's series by keyboard", async () => {
+  const { page } = await open("six.html");
+  const figure = page.locator('[data-name="schedules-soc"]');
+  await figure.scrollIntoViewIfNeeded();
+  await figure.locator("svg.marks").waitFor();
+  const lines = () => figure.locator("svg.marks .mark-line.role-mark path").evaluateAll((paths) => paths.filter((line) => line.getAttribute("d")).length);
+  const all = await lines();
+  const button = page.locator("figure:has([data-name='schedules-soc']) .series button").first();
+  assert.equal(await button.getAttribute("aria-pressed"), "true");
+  await button.focus();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.activeElement.getAttribute("aria-pressed") === "false");
+  assert.equal(await lines(), all - 1);
+  await page.keyboard.press(" ");
+  await page.waitForFunction(() => document.activeElement.getAttribute("aria-pressed") === "true");
+  assert.equal(await lines(), all);
+  await page.context().close();
+});
+
 test("saving a figure gives an SVG that parses, and a PNG", async () => {
   const { page } = await open("six.html", { acceptDownloads: true });
   const figure = page.locator('[data-name="model-curves"]');
