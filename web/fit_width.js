@@ -11,6 +11,7 @@ function fitWidth(spec, width) {
     if (part === null || typeof part !== "object") return part;
     const fitted = Object.fromEntries(Object.entries(part).map(([key, value]) => [key, fitNames(value)]));
     if (fitted.legend?.columns) fitted.legend.columns = Math.max(1, Math.min(fitted.legend.columns, Math.floor(width / legendColumn)));
+    if (fitted.type === "text" && fitted.limit) fitted.limit = Math.min(fitted.limit, 0.22 * width);
     if (fitted.axis?.labelLimit) fitted.axis.labelLimit = Math.min(fitted.axis.labelLimit, beside - 20);
     return fitted;
   };

@@ -84,14 +84,23 @@ std::string flights_table_html(std::span<const ReportFlight> flights) {
     return table_html(table, options);
 }
 
+/// Every reason once, with the flights that it holds for, in their order.
 std::string excluded_html(std::span<const ReportFlight> flights) {
-    TextTable table{{"flight", "left out", "reason"}, {}};
+    TextTable table{{"flights", "left out", "reason"}, {}};
+    const auto add = [&](const std::string& flight, const std::string& what, const std::string& reason) {
+        const auto same = std::find_if(table.rows.begin(), table.rows.end(),
+                                       [&](const auto& row) { return row[1] == what && row[2] == reason; });
+        if (same == table.rows.end()) {
+            table.rows.push_back({flight, what, reason});
+        } else {
+            same->front() += ", " + flight;
+        }
+    };
     for (const auto& flight : flights) {
-        if (!flight.rejected.empty()) table.rows.push_back({flight.name, "rejected", flight.rejected});
+        if (!flight.rejected.empty()) add(flight.name, "rejected", flight.rejected);
         for (const auto& reason : flight.left_out) {
             const auto name = flight.name + ": ";
-            table.rows.push_back({flight.name, "of the model",
-                                  reason.starts_with(name) ? reason.substr(name.size()) : reason});
+            add(flight.name, "of the model", reason.starts_with(name) ? reason.substr(name.size()) : reason);
         }
     }
     if (table.rows.empty()) return paragraph("Nothing was left out.");

@@ -94,7 +94,7 @@ VegaJson names_layer(const std::vector<WorthPoint>& points) {
                   {"align", to_the_left ? "right" : "left"},
                   {"dx", to_the_left ? -away_px : away_px},
                   {"dy", 11},
-                  {"limit", {{"expr", "0.22 * width"}}}}},
+                  {"limit", 220}}},
                 {"encoding", encoding}};
     };
     constexpr int away_px = 8;

@@ -34,7 +34,7 @@ for spec in specs:
     paths = [path for path in svg.iter("{http://www.w3.org/2000/svg}path") if len(path.get("d", "")) > 8]
     texts = "".join(text.text or "" for text in svg.iter("{http://www.w3.org/2000/svg}text"))
     assert len(paths) >= 3, spec
-    assert any(unit in texts for unit in ("[W]", "[m]", "[%]", "[Wh]")), (spec, texts[:200])
+    assert any(unit in texts for unit in ("[W]", "[m]", "[%]", "[Wh]", "[V]")), (spec, texts[:200])
     with open(spec.replace(".vl.json", ".pdf"), "rb") as pdf:
         assert pdf.read(5) == b"%PDF-", spec
 print(f"{len(specs)} figures")

@@ -1,0 +1,42 @@
+#include "report/flights_section.h"
+
+#include "flight/flight_reader.h"
+#include "test_paths.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+ReportFlight sample_flight(const std::string& name) {
+    ReportFlight flight;
+    flight.series = read_flight(test::source_dir() / "logs" / (name + ".data"));
+    flight.phases = segment(flight.series);
+    flight.name = flight.series.flight;
+    return flight;
+}
+
+TEST(FlightsSection, NamesEveryReasonOnceWithItsFlights) {
+    auto whole = sample_flight("opterra_synthetic_01");
+    auto one = sample_flight("hazards/hazard_01_run-up");
+    auto two = sample_flight("hazards/hazard_01_two-sorties");
+    for (auto* flight : {&one, &two}) {
+        flight->unusable_power = "made for <segmentation>";
+        flight->left_out = {flight->name + ": it is left out: made for <segmentation>"};
+    }
+    const std::vector<ReportFlight> flights{whole, one, two};
+    const auto section = flights_section(flights, std::nullopt);
+    EXPECT_THAT(section.html, HasSubstr("hazard_01_run-up, hazard_01_two-sorties"));
+    EXPECT_THAT(section.html, HasSubstr(">it is left out: made for &lt;segmentation&gt;<"));
+    EXPECT_THAT(section.html, HasSubstr(">no</td>"));
+    EXPECT_THAT(section.html, HasSubstr(">all</td>"));
+    EXPECT_THAT(section.html, Not(HasSubstr(">in part</td>")));
+    EXPECT_EQ(section.figures.size(), 6U) << "a figure over time and a track each";
+}
+
+}  // namespace
+}  // namespace flightwatt
