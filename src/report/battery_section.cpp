@@ -138,6 +138,11 @@ void add_identified(Section& section, const ReportBattery& battery) {
             "cells. Give what the pack says with --capacity.",
             "warning");
     }
+    if (identified.fit.rc_resistance_ohm == 0.0) {
+        section.html += paragraph("No RC pair explains anything: the battery has none.");
+    } else if (identified.errors.rc_resistance_ohm.low == 0.0) {
+        section.html += paragraph("The RC pair may be none: its resistance's interval reaches down to 0.");
+    }
     section.html += table_html(parameters_table(identified), {"Parameters of the battery", false, {}});
     add_figure(section, voltage_figure(identified.battery, battery.records, "battery-voltage"));
     section.html += table_html(records_table(battery), {"Flights in the fit of the battery", true, {}});

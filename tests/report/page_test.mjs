@@ -279,6 +279,10 @@ test("print: light, whatever the screen, and all of what is open is drawn", asyn
   await page.waitForTimeout(1500);
   const undrawn = await page.evaluate(() => [...window.flightwatt.figures].filter((figure) => figure.clientWidth > 0 && !figure.dataset.drawn).length);
   assert.equal(undrawn, 0);
+  const cut = await page.evaluate(() => [...document.querySelectorAll("table")].filter((table) => table.scrollWidth > document.documentElement.clientWidth).length);
+  assert.equal(cut, 0, "tables wider than the paper");
+  const closed = await page.evaluate(() => getComputedStyle(document.querySelector("details.flight:not([open]) > summary"), "::after").content);
+  assert.match(closed, /not printed/);
   const backgrounds = await page.evaluate(() => [...document.querySelectorAll(".figure svg.marks > rect")].map((rect) => rect.getAttribute("fill")));
   await page.screenshot({ path: path.join(screenshots, "print.png"), fullPage: true });
   assert.deepEqual(backgrounds.filter((color) => color !== "#ffffff"), []);
