@@ -1,6 +1,5 @@
 #pragma once
 
-#include "base/text_table.h"
 #include "mechanical/mechanical_model.h"
 #include "report/figure.h"
 #include "report/report_flight.h"
@@ -8,9 +7,6 @@
 #include <optional>
 
 namespace flightwatt {
-
-/// The edges of a flight's phases with what was seen there and what the autopilot says of them, each once.
-TextTable edge_table(const ReportFlight& flight);
 
 /// Altitude, throttle and power of a flight on one time axis, its phases shaded, their edges explained, and
 /// the model over the power: each phase's curve stretched to the time flown. The flight was not rejected.

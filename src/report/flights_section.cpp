@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 #include "flight/phase_statistics.h"
+#include "report/flight_edges.h"
 #include "report/flight_figure.h"
 #include "report/html.h"
 #include "report/phase_words.h"

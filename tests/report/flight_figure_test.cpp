@@ -1,6 +1,7 @@
 #include "report/flight_figure.h"
 
 #include "flight/flight_reader.h"
+#include "report/flight_edges.h"
 #include "report/track_figure.h"
 #include "test_paths.h"
 
