@@ -4,6 +4,8 @@
 #include "base/units.h"
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
+#include "flight/power_report.h"
+#include "flight/segmentation.h"
 #include "mechanical/prediction.h"
 
 #include <cmath>
@@ -89,12 +91,22 @@ Prediction predict_flight(const cli::StageCall& call) {
     const auto moment = moment_of(call);
     if (!call.has("remaining")) throw UsageError("no time left given: expected --remaining SECONDS");
     prediction.remaining_s = positive(call, "remaining", true);
+    constexpr double longest_s = 1e6;  // no battery flies for eleven days
+    if (prediction.remaining_s > longest_s) {
+        throw UsageError(
+            fmt::format("--remaining {:g}: expected at most {:g} s", prediction.remaining_s, longest_s));
+    }
     const auto sortie = call.get<unsigned>("sortie");
     if (sortie == 0) throw UsageError("--sortie is 0, expected 1 or more");
     const auto model = read_spread_model(call);
     const auto& file = call.inputs.front();
     const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
     for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
+    const auto power = examine_power(series, segment(series));
+    if (!power.absurdities.empty()) {
+        cli::warn(call, fmt::format("{}: no prediction can be trusted: {}", file,
+                                    describe_absurdities(power.absurdities)));
+    }
     prediction.flown = flown_so_far(series, moment, sortie - 1);
     const auto& cruise = model.phases[Phase::cruise];
     const auto source = level_source(call, cruise, prediction.flown);

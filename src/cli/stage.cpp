@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -46,6 +47,17 @@ std::string usage_line(const StageDefinition& definition) {
     return fmt::format("usage: flightwatt {} {} [options]", definition.name, definition.arguments);
 }
 
+/// A result that replaces what it was made from would lose a log for good.
+void refuse_to_overwrite_inputs(const StageCall& call) {
+    if (!call.output || !std::filesystem::is_regular_file(*call.output)) return;
+    for (const auto& input : call.inputs) {
+        std::error_code unknown;
+        if (!std::filesystem::equivalent(*call.output, input, unknown)) continue;
+        throw UsageError(fmt::format("--output {} is the input {}, which would be lost; name another file",
+                                     *call.output, input));
+    }
+}
+
 int run(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
     po::options_description visible = definition.options;
     const auto call = parse(argc, argv, definition, visible);
@@ -66,6 +78,7 @@ int run(int argc, char** argv, const StageDefinition& definition, const StageBod
         throw UsageError(fmt::format("unexpected argument '{}'; {}", call.inputs[definition.max_inputs],
                                      usage_line(definition)));
     }
+    refuse_to_overwrite_inputs(call);
     return body(call);
 }
 
