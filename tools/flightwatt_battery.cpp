@@ -8,8 +8,9 @@
 #include "flight/segmentation.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <optional>
+#include <set>
 
 namespace {
 
@@ -19,8 +20,10 @@ IdentificationOptions read_options(const cli::StageCall& call) {
     IdentificationOptions options;
     options.capacity_ah = call.maybe<double>("capacity");
     options.cells = call.maybe<int>("cells");
-    if (options.capacity_ah && !(*options.capacity_ah > 0.0 && std::isfinite(*options.capacity_ah))) {
-        throw UsageError(fmt::format("--capacity is {} Ah, expected more than 0", *options.capacity_ah));
+    constexpr double most_ah = 1e4;
+    if (options.capacity_ah && !(*options.capacity_ah > 0.0 && *options.capacity_ah <= most_ah)) {
+        throw UsageError(fmt::format("--capacity is {} Ah, expected more than 0 and at most {:g}",
+                                     *options.capacity_ah, most_ah));
     }
     constexpr int most_cells = 24;
     if (options.cells && (*options.cells < 1 || *options.cells > most_cells)) {
@@ -41,9 +44,13 @@ std::vector<std::string> absurdities_of(const FlightSeries& series) {
 std::vector<DischargeRecord> read_records(const cli::StageCall& call) {
     const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
     std::vector<DischargeRecord> records;
+    std::set<std::string> flights;
     std::optional<InputError> last_refusal;
     for (const auto& file : call.inputs) {
         const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
+        if (!flights.insert(series.flight).second) {  // it would foretell itself
+            throw UsageError(fmt::format("flight '{}' is given twice", series.flight));
+        }
         for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
         try {
             const auto absurdities = absurdities_of(series);

@@ -1,0 +1,1 @@
+flightwatt battery "$SOURCE"/logs/opterra_synthetic_01.data "$SOURCE"/logs/opterra_synthetic_01.data
