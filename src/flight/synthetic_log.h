@@ -14,7 +14,7 @@ struct SyntheticSensors {
     double idle_current_a = 0.03;    ///< what the sensor reads with the motor off
     double altitude_noise_m = 0.12;
     bool sends_other_messages = true;  ///< beside those that flights are read from, as real aircraft do
-    double lost_fraction = 0.10;  ///< of all lines, half of them in bursts
+    double lost_fraction = 0.10;       ///< of all lines, half of them in bursts
     double pack_capacity_ah = 3.2;
     double pack_resistance_ohm = 0.06;
 };

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/units.h"
-#include "mechanical/made_up_flights.h"
 #include "mechanical/flight_spread.h"
+#include "mechanical/made_up_flights.h"
 #include "mechanical/validation.h"
 
 #include <cstddef>
