@@ -2,14 +2,14 @@
 
 #include "base/atomic_file.h"
 #include "base/toml_reader.h"
+#include "batch/batch_files.h"
 #include "batch/batch_run.h"
 #include "batch/folder_lock.h"
 #include "batch/interruption.h"
-#include "batch/left_overs.h"
+#include "cli/output/fit_options.h"
+#include "cli/output/table_one_output.h"
 #include "cli/progress.h"
 #include "cli/stage.h"
-#include "fit_options.h"
-#include "table_one_output.h"
 
 #include <algorithm>
 #include <atomic>
@@ -34,8 +34,8 @@ struct Watch {
 };
 
 /// Moves the bar on, or says what became of the log.
-BatchProgress progress_of(const cli::StageCall& call, Watch& watch) {
-    return [&](std::size_t done, std::size_t all, const BatchFlight& flight) {
+batch::BatchProgress progress_of(const cli::StageCall& call, Watch& watch) {
+    return [&](std::size_t done, std::size_t all, const batch::BatchFlight& flight) {
         watch.done = done;
         if (watch.bar) {
             watch.bar->show(done, all);
@@ -58,7 +58,7 @@ std::function<void(int)> farewell_of(const cli::StageCall& call, Watch& watch) {
     };
 }
 
-void report_notes(const cli::StageCall& call, const std::vector<BatchFlight>& flights) {
+void report_notes(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights) {
     for (const auto& flight : flights) {
         for (const auto& warning : flight.record.warnings) {
             cli::warn(call, fmt::format("{}: {}", flight.record.flight, warning));
@@ -74,15 +74,15 @@ void report_notes(const cli::StageCall& call, const std::vector<BatchFlight>& fl
 
 /// On failure no model of an earlier run stays behind to be taken for this one's.
 void remove_model(const std::filesystem::path& out) {
-    for (const auto* name : model_names) std::filesystem::remove(out / name);
+    for (const auto* name : batch::model_names) std::filesystem::remove(out / name);
 }
 
 /// Fits what the batch accepted. Takes the samples out of `flights`: of thousands, two copies are too many.
-MechanicalModel fit_batch(const cli::StageCall& call, std::vector<BatchFlight>& flights,
-                          const std::filesystem::path& out) {
+mechanical::MechanicalModel fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight>& flights,
+                                      const std::filesystem::path& out) {
     auto options = read_fit_options(call);
     options.name = call.get<std::string>("name");
-    std::vector<FlightSamples> samples;
+    std::vector<mechanical::FlightSamples> samples;
     for (auto& flight : flights) {
         auto& taken = flight.selection.flights;
         std::move(taken.begin(), taken.end(), std::back_inserter(samples));
@@ -96,8 +96,9 @@ MechanicalModel fit_batch(const cli::StageCall& call, std::vector<BatchFlight>& 
     }
 }
 
-nlohmann::ordered_json summary_json(const std::vector<BatchFlight>& flights, const MechanicalModel& model) {
-    auto json = to_json(model);
+nlohmann::ordered_json summary_json(const std::vector<batch::BatchFlight>& flights,
+                                    const mechanical::MechanicalModel& model) {
+    auto json = cli::to_json(model);
     json["logs"] = nlohmann::ordered_json::array();
     for (const auto& flight : flights) {
         json["logs"].push_back({{"flight", flight.record.flight},
@@ -117,7 +118,7 @@ unsigned read_jobs(const cli::StageCall& call) {
     return static_cast<unsigned>(jobs);
 }
 
-void refuse_unknown_flights(const std::set<std::string>& keep, const std::vector<LogFile>& logs) {
+void refuse_unknown_flights(const std::set<std::string>& keep, const std::vector<batch::LogFile>& logs) {
     std::vector<std::string> names;
     names.reserve(logs.size());
     for (const auto& log : logs) names.push_back(log.flight);
@@ -129,14 +130,15 @@ void refuse_unknown_flights(const std::set<std::string>& keep, const std::vector
     }
 }
 
-BatchOptions read_batch_options(const cli::StageCall& call, const ModelFitOptions& fit_options) {
+batch::BatchOptions read_batch_options(const cli::StageCall& call,
+                                       const mechanical::ModelFitOptions& fit_options) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
-    BatchOptions options;
+    batch::BatchOptions options;
     options.out = *call.output;
     options.aircraft_id = call.maybe<std::string>("aircraft");
     options.jobs = read_jobs(call);
     options.correct_idle_offset = call.has("correct-idle-offset");
-    options.needed_samples = samples_needed(fit_options.phases.order);
+    options.needed_samples = mechanical::samples_needed(fit_options.phases.order);
     if (const auto keep = call.maybe<std::vector<std::string>>("keep")) {
         options.keep.insert(keep->begin(), keep->end());
     }
@@ -144,21 +146,23 @@ BatchOptions read_batch_options(const cli::StageCall& call, const ModelFitOption
 }
 
 /// Writes the model and its Table I as files.
-void write_model(const MechanicalModel& model, const TextTable& table, const BatchOptions& options) {
-    const WriteGate::Pass pass(*options.gate);
-    write_file_atomically(options.out / model_names.front(), to_toml(model));
-    for (auto name = model_names.begin() + 1; name != model_names.end(); ++name) {
-        write_file_atomically(options.out / *name, table_text(table, *name));
+void write_model(const mechanical::MechanicalModel& model, const TextTable& table,
+                 const batch::BatchOptions& options) {
+    const batch::WriteGate::Pass pass(*options.gate);
+    write_file_atomically(options.out / batch::model_names.front(), to_toml(model));
+    for (auto name = batch::model_names.begin() + 1; name != batch::model_names.end(); ++name) {
+        write_file_atomically(options.out / *name, cli::table_text(table, *name));
     }
 }
 
 /// What follows the logs: the catalogue and the fit. Returns the exit code.
-int conclude(const cli::StageCall& call, std::vector<BatchFlight> flights, const BatchOptions& options,
-             const std::optional<MechanicalModel>& published) {
+int conclude(const cli::StageCall& call, std::vector<batch::BatchFlight> flights,
+             const batch::BatchOptions& options,
+             const std::optional<mechanical::MechanicalModel>& published) {
     report_notes(call, flights);
     {
-        const WriteGate::Pass pass(*options.gate);
-        write_file_atomically(options.out / catalogue_name, catalogue_csv(flights));
+        const batch::WriteGate::Pass pass(*options.gate);
+        write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights));
     }
     if (!call.json) cli::print(to_text(flights_table(flights)));
     const auto rejected = std::count_if(flights.begin(), flights.end(),
@@ -168,11 +172,11 @@ int conclude(const cli::StageCall& call, std::vector<BatchFlight> flights, const
         throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", rejected));
     }
     const auto model = fit_batch(call, flights, options.out);
-    const auto table = table_of(model, published);
+    const auto table = cli::table_of(model, published);
     write_model(model, table, options);
     warn_of_bounds(call, model);
     if (call.json)
-        cli::print(json_text(summary_json(flights, model)));
+        cli::print(cli::json_text(summary_json(flights, model)));
     else
         cli::print("\n" + to_text(table));
     if (rejected > 0) {
@@ -182,24 +186,25 @@ int conclude(const cli::StageCall& call, std::vector<BatchFlight> flights, const
     return cli::ok;
 }
 
-int batch(const cli::StageCall& call) {
+int run_over_logs(const cli::StageCall& call) {
     const auto fit_options = read_fit_options(call);  // refuses bad options before the work
     auto options = read_batch_options(call, fit_options);
-    std::optional<MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published")) published = read_mechanical_model(*file);
-    const auto logs = find_logs(call.inputs);
+    std::optional<mechanical::MechanicalModel> published;
+    if (const auto file = call.maybe<std::string>("published"))
+        published = mechanical::read_mechanical_model(*file);
+    const auto logs = batch::find_logs(call.inputs);
     refuse_unknown_flights(options.keep, logs);
     make_directories(options.out);
-    const FolderLock lock(options.out);
-    for (const auto& dropped : find_dropped(logs, options.out)) {
+    const batch::FolderLock lock(options.out);
+    for (const auto& dropped : batch::find_dropped(logs, options.out)) {
         cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
     }
-    WriteGate gate;
+    batch::WriteGate gate;
     options.gate = &gate;
     Watch watch;
     watch.all = logs.size();
     if (::isatty(STDERR_FILENO) != 0) watch.bar.emplace(stderr, "logs");
-    const Interruption interruption(gate, farewell_of(call, watch));
+    const batch::Interruption interruption(gate, farewell_of(call, watch));
     auto flights = run_batch(logs, options, progress_of(call, watch));
     if (watch.bar) watch.bar->clear();
     return conclude(call, std::move(flights), options, published);
@@ -229,12 +234,12 @@ int main(int argc, char** argv) {
         "However it\n"
         "ended, the same command goes on where it stopped and comes to the same results.";
     stage.output_help = "the folder of the results";
-    add_fit_options(stage.options);
-    add_power_options(stage.options);
+    cli::add_fit_options(stage.options);
+    cli::add_power_options(stage.options);
     stage.options.add_options()("name", po::value<std::string>()->value_name("NAME")->default_value("batch"),
                                 "the model's name")(
         "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
         "jobs", po::value<int>()->value_name("N")->default_value(0, "one a core"), "logs at a time")(
         "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
-    return cli::run_stage(argc, argv, stage, batch);
+    return cli::run_stage(argc, argv, stage, run_over_logs);
 }

@@ -1,10 +1,10 @@
 // flightwatt battery: flights to the battery that they were flown on.
 
 #include "battery/lipo_chart.h"
-#include "battery_output.h"
+#include "cli/output/battery_output.h"
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
-#include "flight/power_report.h"
+#include "flight/power_check.h"
 #include "flight/segmentation.h"
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace {
 
 using namespace flightwatt;
 
-IdentificationOptions read_options(const cli::StageCall& call) {
-    IdentificationOptions options;
+battery::IdentificationOptions read_options(const cli::StageCall& call) {
+    battery::IdentificationOptions options;
     options.capacity_ah = call.maybe<double>("capacity");
     options.cells = call.maybe<int>("cells");
     constexpr double most_ah = 1e4;
@@ -35,19 +35,19 @@ IdentificationOptions read_options(const cli::StageCall& call) {
 }
 
 /// What makes a power record absurd makes a battery record absurd. Without altitude there is no telling.
-std::vector<std::string> absurdities_of(const FlightSeries& series) {
+std::vector<std::string> absurdities_of(const flight::FlightSeries& series) {
     return series.altitude_m.empty() ? std::vector<std::string>{}
                                      : examine_power(series, segment(series)).absurdities;
 }
 
 /// The records that can be used; each flight that cannot is named, with the reason.
-std::vector<DischargeRecord> read_records(const cli::StageCall& call) {
+std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
     const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
-    std::vector<DischargeRecord> records;
+    std::vector<battery::DischargeRecord> records;
     std::set<std::string> flights;
     std::optional<InputError> last_refusal;
     for (const auto& file : call.inputs) {
-        const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
+        const auto series = flight::read_flight(file, call.maybe<std::string>("aircraft"));
         if (!flights.insert(series.flight).second) {  // it would foretell itself
             throw UsageError(fmt::format("flight '{}' is given twice", series.flight));
         }
@@ -55,10 +55,10 @@ std::vector<DischargeRecord> read_records(const cli::StageCall& call) {
         try {
             const auto absurdities = absurdities_of(series);
             if (!absurdities.empty() && std::find(keep.begin(), keep.end(), series.flight) == keep.end()) {
-                throw InputError({file},
-                                 fmt::format("{}: {}", series.flight, describe_absurdities(absurdities)));
+                throw InputError(
+                    {file}, fmt::format("{}: {}", series.flight, flight::describe_absurdities(absurdities)));
             }
-            records.push_back(discharge_record(series));
+            records.push_back(battery::discharge_record(series));
         } catch (const InputError& error) {
             if (call.inputs.size() == 1) throw;
             cli::warn(call, fmt::format("left out: {}", error.what()));
@@ -69,10 +69,10 @@ std::vector<DischargeRecord> read_records(const cli::StageCall& call) {
     return records;
 }
 
-void warn_if_never_full(const cli::StageCall& call, const BatteryIdentification& identified) {
+void warn_if_never_full(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
     double highest_v = 0.0;
     for (const auto& flight : identified.flights) highest_v = std::max(highest_v, flight.resting_voltage_v);
-    const double percent = lipo_chart_soc_percent(highest_v / identified.cells);
+    const double percent = battery::lipo_chart_soc_percent(highest_v / identified.cells);
     constexpr double as_good_as_full_percent = 85.0;
     if (percent >= as_good_as_full_percent) return;
     cli::warn(call,
@@ -81,15 +81,15 @@ void warn_if_never_full(const cli::StageCall& call, const BatteryIdentification&
                           highest_v, identified.cells, percent));
 }
 
-void note_what_it_rests_on(const cli::StageCall& call, const BatteryIdentification& identified) {
+void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
     warn_if_never_full(call, identified);
-    if (identified.capacity.origin == CapacityOrigin::given) {
+    if (identified.capacity.origin == battery::CapacityOrigin::given) {
         cli::note(call, "the capacity is the one given: the flights do not tell it");
     }
-    if (identified.capacity.origin == CapacityOrigin::chart) {
+    if (identified.capacity.origin == battery::CapacityOrigin::chart) {
         cli::warn(call, fmt::format("the flights do not tell the capacity, as none runs empty: {}; give what "
                                     "the pack says with --capacity",
-                                    describe(identified.capacity)));
+                                    cli::describe(identified.capacity)));
     }
     if (identified.known_down_to_percent > 0.0) {
         cli::note(
@@ -112,12 +112,12 @@ int identify(const cli::StageCall& call) {
     const auto left_out = leave_each_out(records, options);
     note_what_it_rests_on(call, identified);
     if (left_out.empty()) cli::note(call, "a single flight: none can be left out to check the battery");
-    cli::write_result(call, provenance(identified) + to_toml(identified.battery));
+    cli::write_result(call, cli::provenance(identified) + to_toml(identified.battery));
     if (call.json) {
-        cli::print(json_text(to_json(identified, left_out)));
+        cli::print(cli::json_text(cli::to_json(identified, left_out)));
     } else if (call.output) {
-        cli::print(to_text(parameters_table(identified)) + "\n" +
-                   to_text(flights_table(identified, left_out)));
+        cli::print(to_text(cli::parameters_table(identified)) + "\n" +
+                   to_text(cli::flights_table(identified, left_out)));
     }
     return cli::ok;
 }

@@ -1,13 +1,13 @@
 // Several mission files to a table, ranked by what they leave in the battery.
 
+#include "cli/output/mission_json.h"
+#include "cli/output/sampling_output.h"
+#include "cli/output/terminal_pictures.h"
 #include "cli/stage.h"
 #include "mission/comparison.h"
-#include "mission/disturbance_toml.h"
+#include "mission/disturbance_file.h"
 #include "mission/flight_draws.h"
-#include "mission/flyable.h"
-#include "mission_json.h"
-#include "sampling_output.h"
-#include "terminal_pictures.h"
+#include "mission/prepared_mission.h"
 
 #include <algorithm>
 
@@ -17,21 +17,21 @@ namespace {
 
 using namespace flightwatt;
 
-std::string ranking_json(const std::vector<MissionSummary>& ranking, bool sampled) {
+std::string ranking_json(const std::vector<mission::MissionSummary>& ranking, bool sampled) {
     auto list = nlohmann::ordered_json::array();
     for (const auto& summary : ranking) {
-        list.push_back(to_json(summary));
+        list.push_back(cli::to_json(summary));
         if (sampled && !summary.samples) list.back()["probability_below_reserve"] = nullptr;
     }
-    return json_text(list);
+    return cli::json_text(list);
 }
 
 /// Runs a mission; one that is yet to be planned is planned first.
-Simulation simulation_of(const cli::StageCall& call, const Mission& mission,
-                         const std::optional<SamplingOptions>& sampling) {
-    std::vector<Disturbance> disturbances;
+mission::Simulation simulation_of(const cli::StageCall& call, const mission::Mission& mission,
+                                  const std::optional<mission::SamplingOptions>& sampling) {
+    std::vector<mission::Disturbance> disturbances;
     if (const auto file = call.maybe<std::string>("disturb"))
-        disturbances = read_disturbances(*file, mission.duration_s);
+        disturbances = mission::read_disturbances(*file, mission.duration_s);
     const auto flyable = make_flyable(mission);
     auto simulation = fly(flyable, {}, disturbances).simulation;
     if (sampling && has_spread(flyable.mission)) {
@@ -41,24 +41,25 @@ Simulation simulation_of(const cli::StageCall& call, const Mission& mission,
 }
 
 /// The curves under their ranks, as a picture; empty where the terminal shows none.
-std::string soc_picture(const cli::StageCall& call, const std::vector<Simulation>& simulations,
-                        const std::vector<MissionSummary>& ranking) {
+std::string soc_picture(const cli::StageCall& call, const std::vector<mission::Simulation>& simulations,
+                        const std::vector<mission::MissionSummary>& ranking) {
     const auto plot = terminal_plot(call, "state of charge [%] over time, by rank");
     if (!plot || call.has("markdown")) return "";
-    std::vector<TerminalLine> lines;
+    std::vector<cli::TerminalLine> lines;
     for (const auto& simulation : simulations) {
-        const auto place = std::find_if(ranking.begin(), ranking.end(), [&](const MissionSummary& summary) {
-            return summary.mission == simulation.summary.mission &&
-                   summary.final_soc_percent == simulation.summary.final_soc_percent;
-        });
+        const auto place =
+            std::find_if(ranking.begin(), ranking.end(), [&](const mission::MissionSummary& summary) {
+                return summary.mission == simulation.summary.mission &&
+                       summary.final_soc_percent == simulation.summary.final_soc_percent;
+            });
         const auto rank = static_cast<std::size_t>(place - ranking.begin()) + 1;
-        if (!simulation.curve.rows.empty()) lines.push_back(soc_line(simulation.curve, rank));
+        if (!simulation.curve.rows.empty()) lines.push_back(cli::soc_line(simulation.curve, rank));
     }
     return draw(*plot, lines);
 }
 
 /// What the table does not say.
-int explain(const cli::StageCall& call, const std::vector<MissionSummary>& ranking, bool sampled) {
+int explain(const cli::StageCall& call, const std::vector<mission::MissionSummary>& ranking, bool sampled) {
     int code = cli::ok;
     for (const auto& summary : ranking) {
         if (sampled && !summary.samples) {
@@ -81,16 +82,18 @@ int explain(const cli::StageCall& call, const std::vector<MissionSummary>& ranki
 
 int compare_missions(const cli::StageCall& call) {
     const auto sampling = sampling_options(call, false);
-    std::vector<Mission> missions;  // all read before the first is run: a bad file leaves no half answer
+    std::vector<mission::Mission>
+        missions;  // all read before the first is run: a bad file leaves no half answer
     missions.reserve(call.inputs.size());
-    for (const auto& file : call.inputs) missions.push_back(read_mission(file, {true, std::nullopt}));
-    std::vector<Simulation> simulations;
-    std::vector<MissionSummary> summaries;
+    for (const auto& file : call.inputs)
+        missions.push_back(mission::read_mission(file, {true, std::nullopt}));
+    std::vector<mission::Simulation> simulations;
+    std::vector<mission::MissionSummary> summaries;
     for (const auto& mission : missions) {
         simulations.push_back(simulation_of(call, mission, sampling));
         summaries.push_back(simulations.back().summary);
     }
-    if (sampling && std::none_of(missions.begin(), missions.end(), has_spread)) {
+    if (sampling && std::none_of(missions.begin(), missions.end(), mission::has_spread)) {
         spreads_of(missions.front());  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));

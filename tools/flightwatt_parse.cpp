@@ -1,10 +1,10 @@
 // flightwatt parse: a Paparazzi log to the series CSV of its power samples.
 
+#include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
 #include "flight/phase_statistics.h"
-#include "flight/series_csv.h"
-#include "json_text.h"
+#include "flight/series_file.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using namespace flightwatt;
 
-nlohmann::ordered_json summary(const FlightSeries& series) {
+nlohmann::ordered_json summary(const flight::FlightSeries& series) {
     return {{"flight", series.flight},
             {"aircraft_id", series.aircraft_id},
             {"aircraft_name", series.aircraft_name},
@@ -26,18 +26,18 @@ nlohmann::ordered_json summary(const FlightSeries& series) {
 }
 
 int parse(const cli::StageCall& call) {
-    const auto series = read_flight(call.inputs.front(), call.maybe<std::string>("aircraft"));
+    const auto series = flight::read_flight(call.inputs.front(), call.maybe<std::string>("aircraft"));
     cli::write_result(call, to_csv(series));
     for (const auto& warning : series.warnings)
         cli::warn(call, fmt::format("{}: {}", call.inputs.front(), warning));
     if (call.json) {
-        cli::print(json_text(summary(series)));
+        cli::print(cli::json_text(summary(series)));
         return cli::ok;
     }
     cli::note(call,
               fmt::format("{}: aircraft {} {}, {} samples from {:.1f} to {:.1f} s, usually {:.2f} s apart",
                           series.flight, series.aircraft_id, series.aircraft_name, series.time_s.size(),
-                          series.time_s.front(), series.time_s.back(), usual_interval_s(series)));
+                          series.time_s.front(), series.time_s.back(), flight::usual_interval_s(series)));
     for (const auto& [channel, source] : series.sources) {
         cli::note(call, fmt::format("  {:<20} from {}", channel, source));
     }

@@ -2,12 +2,12 @@
 
 #include "base/atomic_file.h"
 #include "base/units.h"
+#include "cli/output/plan_json.h"
 #include "cli/stage.h"
-#include "mission/inverse_questions.h"
+#include "mission/feasibility_limits.h"
+#include "mission/infeasibility_report.h"
 #include "mission/plan.h"
-#include "mission/planned_mission_toml.h"
-#include "mission/shortfall.h"
-#include "plan_json.h"
+#include "mission/planned_mission_file.h"
 
 #include <filesystem>
 
@@ -22,8 +22,8 @@ struct MissionFile {
     std::filesystem::path path;
     std::string text;
 
-    Mission read(std::optional<double> cruise_s = {}) const {
-        return parse_mission(text, path, {true, cruise_s});
+    mission::Mission read(std::optional<double> cruise_s = {}) const {
+        return mission::parse_mission(text, path, {true, cruise_s});
     }
 };
 
@@ -41,7 +41,7 @@ std::optional<double> probability(const cli::StageCall& call) {
     return given;
 }
 
-std::string describe(const MissionPlan& plan, const Mission& mission) {
+std::string describe(const mission::MissionPlan& plan, const mission::Mission& mission) {
     const double utility = *plan.summary.utility;
     const double gap =
         plan.plan.bound > 0.0 ? units::percent_of(plan.plan.bound - utility, plan.plan.bound) : 0.0;
@@ -56,13 +56,13 @@ std::string describe(const MissionPlan& plan, const Mission& mission) {
 }
 
 [[noreturn]] void refuse_infeasible(const cli::StageCall& call, const MissionFile& file,
-                                    const Mission& mission, const MissionPlan& plan) {
+                                    const mission::Mission& mission, const mission::MissionPlan& plan) {
     if (!plan.plan.deliverable) throw NoAnswerError(describe(plan.summary));
     const auto shortfall = shortfall_of(mission, plan, [&](double cruise_s) { return file.read(cruise_s); });
     if (call.json) {
-        auto json = to_json(plan, mission);
-        json["shortfall"] = to_json(shortfall);
-        cli::print(json_text(json));
+        auto json = cli::to_json(plan, mission);
+        json["shortfall"] = cli::to_json(shortfall);
+        cli::print(cli::json_text(json));
     }
     throw NoAnswerError(fmt::format("{}: {}", mission.name, describe(mission, shortfall)));
 }
@@ -79,15 +79,15 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
     cli::write_result(
         call, heading + planned_mission_toml(file.text, file.path, plan.flown, folder_of_result(call)));
     if (call.json) {
-        cli::print(json_text(to_json(plan, mission)));
+        cli::print(cli::json_text(cli::to_json(plan, mission)));
     } else {
         cli::note(call, describe(plan, mission));
     }
     return cli::ok;
 }
 
-int answer(const cli::StageCall& call, const Mission& mission, const std::string& question,
-           const std::string& unit, const MostThatLands& most) {
+int answer(const cli::StageCall& call, const mission::Mission& mission, const std::string& question,
+           const std::string& unit, const mission::MostThatLands& most) {
     nlohmann::ordered_json json;
     json["mission"] = mission.name;
     json[question] = most.value;
@@ -97,7 +97,7 @@ int answer(const cli::StageCall& call, const Mission& mission, const std::string
     json["limited_by"] = most.power_is_the_limit ? "power" : most.cut_off_is_the_limit ? "cut-off" : "charge";
     cli::write_result(call, fmt::format("{:.6f} {}\n", most.value, unit));
     if (call.json) {
-        cli::print(json_text(json));
+        cli::print(cli::json_text(json));
     } else {
         cli::note(call, fmt::format("{}: then {:.6f} % are left, {:+.1e} points from the reserve{}",
                                     mission.name, most.final_soc_percent, most.residual_percent,
@@ -118,7 +118,7 @@ int plan_file(const cli::StageCall& call) {
         throw UsageError("--probability belongs to a plan, not to --longest-cruise or --largest-payload");
     }
     if (cruise) {
-        const auto most = longest_cruise([&](double cruise_s) { return file.read(cruise_s); });
+        const auto most = mission::longest_cruise([&](double cruise_s) { return file.read(cruise_s); });
         return answer(call, file.read(), "longest_cruise_s", "s", most);
     }
     if (payload) {

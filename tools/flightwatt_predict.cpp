@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
-#include "flight/power_report.h"
+#include "flight/power_check.h"
 #include "flight/segmentation.h"
 #include "mechanical/prediction.h"
 
@@ -24,7 +24,7 @@ double positive(const cli::StageCall& call, const std::string& option, bool zero
         fmt::format("--{} is {}, expected {} s", option, value, zero_allowed ? "0 or more" : "more than 0"));
 }
 
-Moment moment_of(const cli::StageCall& call) {
+mechanical::Moment moment_of(const cli::StageCall& call) {
     if (call.has("until") == call.has("until-log-time")) {
         throw UsageError("expected either --until (seconds since lift-off) or --until-log-time");
     }
@@ -33,11 +33,11 @@ Moment moment_of(const cli::StageCall& call) {
 }
 
 /// The model that --model names. Its spread is what the interval rests on.
-MechanicalModel read_spread_model(const cli::StageCall& call) {
+mechanical::MechanicalModel read_spread_model(const cli::StageCall& call) {
     if (!call.has("model")) throw UsageError("no model given: expected --model MODEL.toml");
     const auto file = call.get<std::string>("model");
-    auto model = read_mechanical_model(file);
-    for (const auto phase : {Phase::cruise, Phase::landing}) {
+    auto model = mechanical::read_mechanical_model(file);
+    for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) {
         if (model.phases[phase].level_spread) continue;
         throw InputError({file}, fmt::format("[{}] has no spread: how much flights differ", to_string(phase)),
                          "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
@@ -46,44 +46,49 @@ MechanicalModel read_spread_model(const cli::StageCall& call) {
 }
 
 /// What --level auto stands for: the level law where the model has one and the flight tells its covariate.
-LevelSource automatic_source(const cli::StageCall& call, const PhaseModel& cruise, const FlownSoFar& flown) {
-    if (!cruise.level_law) return LevelSource::curve;
+mechanical::LevelSource automatic_source(const cli::StageCall& call, const mechanical::PhaseModel& cruise,
+                                         const mechanical::FlownSoFar& flown) {
+    if (!cruise.level_law) return mechanical::LevelSource::curve;
     const auto covariate = cruise.level_law->covariate;
-    if (flown.covariates[covariate]) return LevelSource::covariate;
+    if (flown.covariates[covariate]) return mechanical::LevelSource::covariate;
     cli::warn(call, fmt::format("the model's level follows {}, which this flight does not tell: expected by "
                                 "the curve",
                                 to_string(covariate)));
-    return LevelSource::curve;
+    return mechanical::LevelSource::curve;
 }
 
-LevelSource level_source(const cli::StageCall& call, const PhaseModel& cruise, const FlownSoFar& flown) {
+mechanical::LevelSource level_source(const cli::StageCall& call, const mechanical::PhaseModel& cruise,
+                                     const mechanical::FlownSoFar& flown) {
     const auto name = call.get<std::string>("level");
     if (name == "auto") return automatic_source(call, cruise, flown);
-    if (name == "curve") return LevelSource::curve;
-    if (name == "constant") return LevelSource::constant;
-    if (name == "airspeed") return LevelSource::airspeed;
-    if (name == "covariate") return LevelSource::covariate;
+    if (name == "curve") return mechanical::LevelSource::curve;
+    if (name == "constant") return mechanical::LevelSource::constant;
+    if (name == "airspeed") return mechanical::LevelSource::airspeed;
+    if (name == "covariate") return mechanical::LevelSource::covariate;
     throw UsageError(fmt::format("--level {}: expected auto, curve, constant, airspeed or covariate", name));
 }
 
 /// What a law says beyond its flights is told, not refused: the flight is as it is.
-void warn_of_reach(const cli::StageCall& call, const PhaseModel& cruise, const FlownSoFar& flown) {
+void warn_of_reach(const cli::StageCall& call, const mechanical::PhaseModel& cruise,
+                   const mechanical::FlownSoFar& flown) {
     const auto& law = cruise.level_law.value();
     const double value = flown.covariates[law.covariate].value();
     if (level_at(law, value).within_flights) return;
-    cli::warn(call, fmt::format("{} = {:.4g} is beyond what the model's flights showed, {:.4g} to {:.4g}{}",
-                                to_string(law.covariate), value, law.least, law.most,
-                                law.covariate == Covariate::airspeed_cubed ? "" : ": taken as the nearest"));
+    cli::warn(
+        call,
+        fmt::format("{} = {:.4g} is beyond what the model's flights showed, {:.4g} to {:.4g}{}",
+                    to_string(law.covariate), value, law.least, law.most,
+                    law.covariate == mechanical::Covariate::airspeed_cubed ? "" : ": taken as the nearest"));
 }
 
 struct Prediction {
-    FlownSoFar flown;
+    mechanical::FlownSoFar flown;
     double remaining_s = 0.0;
-    RestPrediction cruise;
-    EnergyEstimate landing;
+    mechanical::RestPrediction cruise;
+    mechanical::EnergyEstimate landing;
     double landing_s = 0.0;
-    EnergyEstimate rest;
-    EnergyInterval interval;
+    mechanical::EnergyEstimate rest;
+    mechanical::EnergyInterval interval;
 };
 
 Prediction predict_flight(const cli::StageCall& call) {
@@ -100,21 +105,22 @@ Prediction predict_flight(const cli::StageCall& call) {
     if (sortie == 0) throw UsageError("--sortie is 0, expected 1 or more");
     const auto model = read_spread_model(call);
     const auto& file = call.inputs.front();
-    const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
+    const auto series = flight::read_flight(file, call.maybe<std::string>("aircraft"));
     for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
-    const auto power = examine_power(series, segment(series));
+    const auto power = flight::examine_power(series, flight::segment(series));
     if (!power.absurdities.empty()) {
         cli::warn(call, fmt::format("{}: no prediction can be trusted: {}", file,
-                                    describe_absurdities(power.absurdities)));
+                                    flight::describe_absurdities(power.absurdities)));
     }
-    prediction.flown = flown_so_far(series, moment, sortie - 1);
-    const auto& cruise = model.phases[Phase::cruise];
+    prediction.flown = mechanical::flown_so_far(series, moment, sortie - 1);
+    const auto& cruise = model.phases[flight::Phase::cruise];
     const auto source = level_source(call, cruise, prediction.flown);
-    prediction.cruise =
-        predict_rest(forecast_of(model, Phase::cruise), prediction.flown, prediction.remaining_s, source);
-    if (source == LevelSource::covariate) warn_of_reach(call, cruise, prediction.flown);
-    prediction.landing_s = model.phases[Phase::landing].duration_s;
-    prediction.landing = predict_before_flight(forecast_of(model, Phase::landing), prediction.landing_s);
+    prediction.cruise = predict_rest(mechanical::forecast_of(model, flight::Phase::cruise), prediction.flown,
+                                     prediction.remaining_s, source);
+    if (source == mechanical::LevelSource::covariate) warn_of_reach(call, cruise, prediction.flown);
+    prediction.landing_s = model.phases[flight::Phase::landing].duration_s;
+    prediction.landing =
+        mechanical::predict_before_flight(forecast_of(model, flight::Phase::landing), prediction.landing_s);
     prediction.rest = sum_of(prediction.cruise.energy, prediction.landing);
     prediction.interval = interval_95(prediction.rest).value();
     return prediction;

@@ -4,10 +4,10 @@
 #include "base/signal_watch.h"
 #include "base/toml_reader.h"
 #include "batch/folder_lock.h"
+#include "cli/output/json_text.h"
+#include "cli/output/profile_output.h"
 #include "cli/stage.h"
 #include "compute/profile_reader.h"
-#include "json_text.h"
-#include "profile_output.h"
 
 #include <algorithm>
 #include <cstring>
@@ -28,8 +28,8 @@ std::vector<std::string> words_of(const std::string& list) {
     return words;
 }
 
-ProfileNaming naming_of(const cli::StageCall& call) {
-    ProfileNaming naming;
+compute::ProfileNaming naming_of(const cli::StageCall& call) {
+    compute::ProfileNaming naming;
     naming.where.file = "the command line";
     if (const auto names = call.maybe<std::string>("parameters")) naming.parameters = words_of(*names);
     if (const auto names = call.maybe<std::string>("columns")) naming.columns = words_of(*names);
@@ -41,25 +41,26 @@ int check_interpolation(const cli::StageCall& call) {
     auto json = nlohmann::ordered_json::array();
     for (const auto& file : call.inputs) {
         const auto profile = read_power_profile(file, naming_of(call));
-        const auto errors = interpolation_errors(profile);
+        const auto errors = cli::interpolation_errors(profile);
         if (!text.empty()) text += "\n";
-        text += interpolation_text(file, profile.power_w.size(), errors);
+        text += cli::interpolation_text(file, profile.power_w.size(), errors);
         nlohmann::ordered_json methods = nlohmann::ordered_json::array();
-        for (const auto& error : errors) methods.push_back(to_json(error));
+        for (const auto& error : errors) methods.push_back(cli::to_json(error));
         json.push_back({{"file", file}, {"nodes", profile.power_w.size()}, {"leave_one_out", methods}});
     }
     cli::write_result(call, text);
-    if (call.json) cli::print(json_text(json));
+    if (call.json) cli::print(cli::json_text(json));
     return cli::ok;
 }
 
 /// What the command line says otherwise than the specification.
-void apply_options(const cli::StageCall& call, ProfileSpecification& specification) {
+void apply_options(const cli::StageCall& call, compute::ProfileSpecification& specification) {
     auto& sampler = specification.sampler;
     if (const auto kind = call.maybe<std::string>("sampler")) {
         const bool needs_more = *kind == "command" || *kind == "recorded";
-        const bool known = *kind == "ina3221" || std::find(sampler_kinds.begin(), sampler_kinds.end(),
-                                                           *kind) != sampler_kinds.end();
+        const bool known = *kind == "ina3221" ||
+                           std::find(compute::sampler_kinds.begin(), compute::sampler_kinds.end(), *kind) !=
+                               compute::sampler_kinds.end();
         if (!known || (needs_more && sampler.kind != *kind)) {
             throw UsageError(fmt::format("--sampler {}: {}", *kind,
                                          known ? "its settings belong into the specification's [sampler]"
@@ -84,23 +85,25 @@ void apply_options(const cli::StageCall& call, ProfileSpecification& specificati
     }
 }
 
-ProfilerOptions options_of(const cli::StageCall& call, const SignalWatch& signals, std::size_t& done,
-                           std::size_t& all) {
-    ProfilerOptions options;
+compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatch& signals, std::size_t& done,
+                                    std::size_t& all) {
+    compute::ProfilerOptions options;
     options.folder = *call.output;
     options.signals = signals.file();
     options.caught = [&signals] { return signals.caught().value_or(SIGINT); };
-    options.opened = [&call](const PowerSampler& sampler) {
+    options.opened = [&call](const compute::PowerSampler& sampler) {
         for (const auto& line : sampler.found) cli::note(call, "found " + line);
         cli::note(call, fmt::format("sampling with {}: {}", sampler.kind, sampler.source));
     };
-    options.progress = [&call, &done, &all](const ProfileRun& run, std::size_t count, std::size_t of) {
+    options.progress = [&call, &done, &all](const compute::ProfileRun& run, std::size_t count,
+                                            std::size_t of) {
         done = count;
         all = of;
         const auto name = run.configuration.empty() ? run.component : run.component + " " + run.configuration;
-        const auto what = run.was_done                  ? "up to date"
-                          : run.status == RunStatus::ok ? fmt::format("{:.4g} W", run.estimate.power_w)
-                                                        : to_string(run.status);
+        const auto what = run.was_done ? "up to date"
+                          : run.status == compute::RunStatus::ok
+                              ? fmt::format("{:.4g} W", run.estimate.power_w)
+                              : to_string(run.status);
         cli::note(call, fmt::format("[{}/{}] {} repeat {}: {}{}", count, of, name, run.repeat, what,
                                     run.note.empty() ? "" : ": " + run.note));
     };
@@ -113,19 +116,19 @@ ProfilerOptions options_of(const cli::StageCall& call, const SignalWatch& signal
     return options;
 }
 
-int conclude(const cli::StageCall& call, const ProfileOutcome& outcome,
-             const ProfileSpecification& specification) {
+int conclude(const cli::StageCall& call, const compute::ProfileOutcome& outcome,
+             const compute::ProfileSpecification& specification) {
     write_profiles(outcome, specification, *call.output, call.has("powprofiler"));
     if (call.json) {
-        cli::print(json_text(to_json(outcome, specification.above_idle)));
+        cli::print(cli::json_text(cli::to_json(outcome, specification.above_idle)));
     } else {
-        cli::print(profile_text(outcome, specification.above_idle));
+        cli::print(cli::profile_text(outcome, specification.above_idle));
     }
     std::size_t failed = 0;
     for (const auto& component : outcome.components) failed += component.failures.size();
     if (failed == 0) return cli::ok;
     cli::note(call, fmt::format("{} of {} runs gave no power, see {}/{}; the same command tries them again",
-                                failed, outcome.runs.size(), *call.output, runs_name));
+                                failed, outcome.runs.size(), *call.output, compute::runs_name));
     return cli::no_answer;
 }
 
@@ -136,17 +139,17 @@ int profile_components(const cli::StageCall& call) {
     }
     if (call.inputs.size() != 1) throw UsageError("expected one SPEC");
     if (!call.output) throw UsageError("no folder given: expected -o DIR");
-    auto specification = read_profile_specification(call.inputs.front());
+    auto specification = compute::read_profile_specification(call.inputs.front());
     apply_options(call, specification);
     std::size_t done = 0;
     std::size_t all = 0;
     const SignalWatch signals;
     const auto options = options_of(call, signals, done, all);
     make_directories(options.folder);
-    const FolderLock lock(options.folder);
+    const batch::FolderLock lock(options.folder);
     try {
         return conclude(call, profile(specification, options), specification);
-    } catch (const Interrupted& interrupted) {
+    } catch (const compute::Interrupted& interrupted) {
         const auto* name = ::sigabbrev_np(interrupted.signal());
         cli::note(call,
                   fmt::format("stopped by SIG{} after {} of {} runs; the same command goes on from there",

@@ -1,12 +1,12 @@
 // flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
 
+#include "cli/output/report_flights.h"
 #include "cli/stage.h"
 #include "mission/mission.h"
 #include "report/battery_section.h"
 #include "report/figure_files.h"
 #include "report/missions_section.h"
 #include "report/page.h"
-#include "report_flights.h"
 
 #include <chrono>
 #include <cmath>
@@ -20,14 +20,14 @@ using namespace flightwatt;
 
 struct ReportInputs {
     std::optional<std::filesystem::path> out;
-    std::vector<Mission> missions;
+    std::vector<mission::Mission> missions;
 };
 
 ReportInputs read_inputs(const cli::StageCall& call) {
     ReportInputs inputs;
     for (const auto& input : call.inputs) {
         if (!std::filesystem::is_directory(input)) {
-            inputs.missions.push_back(read_mission(input, {true, std::nullopt}));
+            inputs.missions.push_back(mission::read_mission(input, {true, std::nullopt}));
             continue;
         }
         if (inputs.out) {
@@ -57,8 +57,8 @@ std::uint64_t read_most(const cli::StageCall& call, const std::string& option) {
     return *number;
 }
 
-IdentificationOptions read_identification_options(const cli::StageCall& call) {
-    IdentificationOptions options;
+battery::IdentificationOptions read_identification_options(const cli::StageCall& call) {
+    battery::IdentificationOptions options;
     options.capacity_ah = call.maybe<double>("capacity");
     if (options.capacity_ah && !(*options.capacity_ah > 0.0 && std::isfinite(*options.capacity_ah))) {
         throw UsageError(fmt::format("--capacity is {} Ah, expected more than 0", *options.capacity_ah));
@@ -67,9 +67,9 @@ IdentificationOptions read_identification_options(const cli::StageCall& call) {
 }
 
 /// The flights' model with its validation.
-void add_model(const cli::StageCall& call, const BatchContent& content,
-               const std::optional<ReportModel>& model, const PublishedFigures& figures, PageHead& head,
-               std::vector<Section>& sections) {
+void add_model(const cli::StageCall& call, const cli::BatchContent& content,
+               const std::optional<report::ReportModel>& model, const report::PublishedFigures& figures,
+               report::PageHead& head, std::vector<report::Section>& sections) {
     if (!model) {
         head.notes.push_back("There is no model of these flights: the batch could not fit them.");
         return;
@@ -84,28 +84,33 @@ void add_model(const cli::StageCall& call, const BatchContent& content,
             most, content.measured.size()));
         return;
     }
-    sections.push_back(validation_section(leave_one_out(content.measured, read_fit_options(call))));
+    sections.push_back(report::validation_section(leave_one_out(content.measured, read_fit_options(call))));
 }
 
 /// What the batch's folder has to say: flights, model, validation and battery.
-void add_batch(const cli::StageCall& call, const std::filesystem::path& out, const PublishedFigures& figures,
-               PageHead& head, std::vector<Section>& sections) {
+void add_batch(const cli::StageCall& call, const std::filesystem::path& out,
+               const report::PublishedFigures& figures, report::PageHead& head,
+               std::vector<report::Section>& sections) {
     const auto options = read_fit_options(call);
     const auto identification = read_identification_options(call);
     const auto kept = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
-    std::optional<MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published")) published = read_mechanical_model(*file);
-    const auto content = read_batch_content(out, options, {kept.begin(), kept.end()});
-    const auto model = read_batch_model(out, content, options, published);
+    std::optional<mechanical::MechanicalModel> published;
+    if (const auto file = call.maybe<std::string>("published"))
+        published = mechanical::read_mechanical_model(*file);
+    const auto content = cli::read_batch_content(out, options, {kept.begin(), kept.end()});
+    const auto model = cli::read_batch_model(out, content, options, published);
     head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
-    sections.push_back(flights_section(content.flights, model ? std::optional(model->model) : std::nullopt));
+    sections.push_back(
+        report::flights_section(content.flights, model ? std::optional(model->model) : std::nullopt));
     add_model(call, content, model, figures, head, sections);
-    sections.push_back(battery_section(
-        identify_for_report(content.flights, identification, read_most(call, "most-battery"))));
+    sections.push_back(report::battery_section(
+        report::identify_for_report(content.flights, identification, read_most(call, "most-battery"))));
 }
 
-nlohmann::ordered_json summary_json(const PageHead& head, const std::vector<Section>& sections) {
-    nlohmann::ordered_json json{{"title", head.title}, {"notes", head.notes}, {"figures", VegaJson::array()}};
+nlohmann::ordered_json summary_json(const report::PageHead& head,
+                                    const std::vector<report::Section>& sections) {
+    nlohmann::ordered_json json{
+        {"title", head.title}, {"notes", head.notes}, {"figures", report::VegaJson::array()}};
     for (const auto& section : sections) {
         for (const auto& figure : section.figures) {
             json["figures"].push_back(
@@ -116,8 +121,8 @@ nlohmann::ordered_json summary_json(const PageHead& head, const std::vector<Sect
 }
 
 /// Where figures are wanted as files.
-void write_figure_files(const cli::StageCall& call, const std::vector<Section>& sections,
-                        const WebFiles& web) {
+void write_figure_files(const cli::StageCall& call, const std::vector<report::Section>& sections,
+                        const report::WebFiles& web) {
     const auto folder = call.maybe<std::string>("figures");
     if (!folder) return;
     const auto files = write_figures(sections, web, *folder);
@@ -127,34 +132,34 @@ void write_figure_files(const cli::StageCall& call, const std::vector<Section>& 
     if (files.has_svg && !files.has_pdf) cli::warn(call, "rsvg-convert is not there: no PDF was made");
 }
 
-int report(const cli::StageCall& call) {
+int write_page(const cli::StageCall& call) {
     auto inputs = read_inputs(call);
-    PageHead head{"FlightWatt report", {}, {}};
-    if (const auto title = call.maybe<std::string>("title")) head.title = valid_utf8(*title);
+    report::PageHead head{"FlightWatt report", {}, {}};
+    if (const auto title = call.maybe<std::string>("title")) head.title = report::valid_utf8(*title);
     head.facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}};
-    PublishedFigures published;
+    report::PublishedFigures published;
     if (const auto folder = call.maybe<std::string>("digitised")) {
-        published = read_published_figures(*folder);
+        published = report::read_published_figures(*folder);
         head.facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
     } else {
         head.facts.emplace_back("beside", "no digitised figures: none were given (--digitised)");
     }
-    std::vector<Section> sections;
+    std::vector<report::Section> sections;
     if (inputs.out) add_batch(call, *inputs.out, published, head, sections);
     if (!inputs.missions.empty()) {
         std::string names;
         for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + mission.file;
         head.facts.emplace_back("missions", names);
-        const auto missions = simulate_for_report(std::move(inputs.missions));
+        const auto missions = report::simulate_for_report(std::move(inputs.missions));
         for (auto& section : mission_sections(missions, published)) sections.push_back(std::move(section));
     }
     const bool wants_page = call.output || (!call.json && !call.has("figures"));
     if (wants_page || call.has("figures")) {
-        const auto web = read_web_files(web_folder());
+        const auto web = report::read_web_files(report::web_folder());
         write_figure_files(call, sections, web);
         if (wants_page) cli::write_result(call, page_html(head, sections, web));
     }
-    if (call.json) cli::print(json_text(summary_json(head, sections)));
+    if (call.json) cli::print(cli::json_text(summary_json(head, sections)));
     return cli::ok;
 }
 
@@ -174,8 +179,8 @@ int main(int argc, char** argv) {
         "specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node) "
         "and\n"
         ".pdf (where rsvg-convert is). Give the fit options that the batch was given.";
-    add_fit_options(stage.options);
-    add_keep_option(stage.options);
+    cli::add_fit_options(stage.options);
+    cli::add_keep_option(stage.options);
     stage.options.add_options()("figures", po::value<std::string>()->value_name("DIR"),
                                 "write every figure to DIR")(
         "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
@@ -188,5 +193,5 @@ int main(int argc, char** argv) {
         "the capacity of the flights' battery; without it, what flightwatt battery would say")(
         "most-battery", po::value<std::string>()->value_name("N")->default_value("12"),
         "identify the battery from no more than N flights: the work grows with their square");
-    return cli::run_stage(argc, argv, stage, report);
+    return cli::run_stage(argc, argv, stage, write_page);
 }

@@ -1,11 +1,11 @@
 // flightwatt segment: take-off, cruise and landing of every sortie in a log.
 
+#include "cli/output/json_text.h"
+#include "cli/output/segment_explanation.h"
+#include "cli/output/segment_json.h"
+#include "cli/output/terminal_pictures.h"
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
-#include "json_text.h"
-#include "segment_explanation.h"
-#include "segment_json.h"
-#include "terminal_pictures.h"
 
 #include <fmt/format.h>
 
@@ -15,8 +15,8 @@ using namespace flightwatt;
 
 int segment_flight(const cli::StageCall& call) {
     const auto& file = call.inputs.front();
-    const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
-    SegmentationOptions options;
+    const auto series = flight::read_flight(file, call.maybe<std::string>("aircraft"));
+    flight::SegmentationOptions options;
     options.cruise_fraction = call.get<double>("cruise-fraction");
     options.ground_fraction = call.get<double>("ground-fraction");
     options.flight_height_m = call.get<double>("flight-height");
@@ -24,23 +24,23 @@ int segment_flight(const cli::StageCall& call) {
     options.hold_s = call.get<double>("hold");
     options.idle_throttle_percent = call.get<double>("idle-throttle");
     const auto phases = segment(series, options);
-    require_sortie(series, phases, file);
+    flight::require_sortie(series, phases, file);
     for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
     for (const auto& warning : phases.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
     for (const auto& other : phases.others) {
         cli::note(call, fmt::format("{}: no flight from {:.0f} to {:.0f} s: {}", file, other.start_s,
                                     other.end_s, other.what));
     }
-    const auto power = examine_power(series, phases);
+    const auto power = flight::examine_power(series, phases);
     for (const auto& absurdity : power.absurdities) {
         cli::warn(call, fmt::format("{}: absurd power record: {}", file, absurdity));
     }
     const bool explain = call.has("explain");
-    if (!explain || call.output) cli::write_result(call, phases_csv(series, phases));
+    if (!explain || call.output) cli::write_result(call, flight::phases_csv(series, phases));
     if (call.json) {
-        cli::print(json_text(to_json(series, phases, power)));
+        cli::print(cli::json_text(cli::to_json(series, phases, power)));
     } else if (explain) {
-        cli::print(explanation(series, phases, power));
+        cli::print(cli::explanation(series, phases, power));
     }
     if (const auto plot = terminal_plot(call, "altitude [m] over time")) {
         cli::print(altitude_profile(*plot, series, phases));
@@ -52,7 +52,7 @@ int segment_flight(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     namespace po = boost::program_options;
-    const SegmentationOptions defaults;
+    const flight::SegmentationOptions defaults;
     cli::StageDefinition stage;
     stage.name = "segment";
     stage.arguments = "FLIGHT.data|SERIES.csv";

@@ -2,12 +2,12 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "cli/output/mission_json.h"
+#include "cli/output/sampling_output.h"
 #include "cli/stage.h"
-#include "mission/disturbance_toml.h"
-#include "mission/flyable.h"
-#include "mission/planned_mission_toml.h"
-#include "mission_json.h"
-#include "sampling_output.h"
+#include "mission/disturbance_file.h"
+#include "mission/planned_mission_file.h"
+#include "mission/prepared_mission.h"
 
 #include <filesystem>
 
@@ -15,13 +15,14 @@ namespace {
 
 using namespace flightwatt;
 
-std::vector<Disturbance> disturbances(const cli::StageCall& call, const Mission& mission) {
+std::vector<mission::Disturbance> disturbances(const cli::StageCall& call, const mission::Mission& mission) {
     const auto file = call.maybe<std::string>("disturb");
-    return file ? read_disturbances(*file, mission.duration_s) : std::vector<Disturbance>();
+    return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
 }
 
 /// The mission with the schedule that was flown, wherever it came from.
-void write_schedule(const cli::StageCall& call, const std::string& text, const FlownMission& flight) {
+void write_schedule(const cli::StageCall& call, const std::string& text,
+                    const mission::FlownMission& flight) {
     const auto file = call.maybe<std::string>("schedule-out");
     if (!file) return;
     const std::filesystem::path path = call.inputs.front();
@@ -31,8 +32,8 @@ void write_schedule(const cli::StageCall& call, const std::string& text, const F
 }
 
 /// Draws flights if they were asked for.
-void sample(const cli::StageCall& call, const Flyable& flyable, const std::vector<Disturbance>& disturbed_by,
-            MissionSummary& summary) {
+void sample(const cli::StageCall& call, const mission::Flyable& flyable,
+            const std::vector<mission::Disturbance>& disturbed_by, mission::MissionSummary& summary) {
     const auto options = sampling_options(call, call.has("samples-csv"));
     if (!options) return;
     summary.samples = sample_flights(flyable, disturbed_by, *options);
@@ -42,10 +43,10 @@ void sample(const cli::StageCall& call, const Flyable& flyable, const std::vecto
 
 int simulate_mission(const cli::StageCall& call) {
     const auto text = read_file(call.inputs.front());
-    const auto mission = parse_mission(text, call.inputs.front());
+    const auto mission = mission::parse_mission(text, call.inputs.front());
     const auto disturbed_by = disturbances(call, mission);
-    const auto flyable = make_flyable(mission);
-    SimulationSteps steps;
+    const auto flyable = mission::make_flyable(mission);
+    mission::SimulationSteps steps;
     steps.output_s = call.get<double>("step");
     auto flight = fly(flyable, steps, disturbed_by);
     auto& summary = flight.simulation.summary;
@@ -54,7 +55,7 @@ int simulate_mission(const cli::StageCall& call) {
     write_schedule(call, text, flight);
     cli::write_result(call, to_csv(flight.simulation.curve));
     if (call.json) {
-        cli::print(json_text(to_json(summary)));
+        cli::print(cli::json_text(cli::to_json(summary)));
     } else {
         cli::note(call, describe(summary));
         if (summary.samples) cli::note(call, describe(*summary.samples));

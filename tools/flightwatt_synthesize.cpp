@@ -2,11 +2,11 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "cli/output/json_text.h"
 #include "cli/stage.h"
-#include "flight/synthetic_log.h"
-#include "json_text.h"
-#include "mechanical/flight_spread.h"
 #include "mechanical/mechanical_model.h"
+#include "synthetic/flight_spread.h"
+#include "synthetic/synthetic_log.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,9 @@ namespace {
 
 using namespace flightwatt;
 
-SyntheticFlight make_flight(const PerPhase<PhaseModel>& phases, std::mt19937_64& random) {
-    SyntheticFlight flight;
+synthetic::SyntheticFlight make_flight(const flight::PerPhase<mechanical::PhaseModel>& phases,
+                                       std::mt19937_64& random) {
+    synthetic::SyntheticFlight flight;
     const auto between = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
@@ -36,19 +37,19 @@ SyntheticFlight make_flight(const PerPhase<PhaseModel>& phases, std::mt19937_64&
     flight.airspeed_m_per_s = between(12.0, 14.0);
     flight.wind_east_m_per_s = between(-3.0, 3.0);
     flight.wind_north_m_per_s = between(-3.0, 3.0);
-    for (const auto phase : all_phases) flight.duration_s[phase] = phases[phase].duration_s;
-    flight.power_w = [phases](Phase phase, double tau) {
+    for (const auto phase : flight::all_phases) flight.duration_s[phase] = phases[phase].duration_s;
+    flight.power_w = [phases](flight::Phase phase, double tau) {
         return std::max(0.0, power_w(phases[phase].fourier, tau * phases[phase].duration_s));
     };
     return flight;
 }
 
 /// The phases that the log shows, cut where it begins and ends.
-std::string truth_csv(const SyntheticScenario& scenario) {
+std::string truth_csv(const synthetic::SyntheticScenario& scenario) {
     std::string text = "sortie,phase,start_s,end_s,complete\n";
     for (std::size_t s = 0; s < scenario.flights.size(); ++s) {
         const auto& flight = scenario.flights[s];
-        for (const auto phase : all_phases) {
+        for (const auto phase : flight::all_phases) {
             const double start_s = std::max(flight.start_s(phase), scenario.begin_s);
             const double end_s = std::min(flight.end_s(phase), scenario.end_s);
             if (end_s <= start_s) continue;
@@ -60,11 +61,11 @@ std::string truth_csv(const SyntheticScenario& scenario) {
 }
 
 /// The hazards asked for: none, one by its name, or all.
-std::vector<std::pair<std::string, Hazard>> chosen_hazards(const std::string& name) {
-    if (name == "none") return {{"", Hazard::none}};
-    if (name == "all") return hazards();
+std::vector<std::pair<std::string, synthetic::Hazard>> chosen_hazards(const std::string& name) {
+    if (name == "none") return {{"", synthetic::Hazard::none}};
+    if (name == "all") return synthetic::hazards();
     std::vector<std::string> names{"none", "all"};
-    for (const auto& known : hazards()) {
+    for (const auto& known : synthetic::hazards()) {
         if (known.first == name) return {known};
         names.push_back(known.first);
     }
@@ -78,9 +79,9 @@ struct LogIdentity {
 };
 
 /// Writes NAME.log, NAME.data and, if asked for, NAME.truth.csv; returns the log's size in bytes.
-std::size_t write_log(const cli::StageCall& call, const SyntheticScenario& scenario,
+std::size_t write_log(const cli::StageCall& call, const synthetic::SyntheticScenario& scenario,
                       const LogIdentity& identity, std::uint64_t seed) {
-    SyntheticSensors sensors;
+    synthetic::SyntheticSensors sensors;
     sensors.current_noise_a = call.get<double>("current-noise");
     sensors.sends_other_messages = !call.has("flight-messages-only");
     const auto log = make_synthetic_log(scenario, sensors, identity.name, identity.made_by, seed);
@@ -106,10 +107,10 @@ void require_between(const char* option, double value, double low, double high) 
 }
 
 /// Refuses models of which no log could be made: days long, or with power beyond any number.
-void require_flyable(const MechanicalModel& model, const std::string& file) {
+void require_flyable(const mechanical::MechanicalModel& model, const std::string& file) {
     constexpr double longest_phase_s = 1e5;
     constexpr double most_power_w = 1e6;
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto& fourier = model.phases[phase].fourier;
         const double duration_s = model.phases[phase].duration_s;
         double most_w = std::abs(fourier.a0_w);
@@ -142,9 +143,9 @@ void check_options(const cli::StageCall& call) {
 }
 
 /// The cruise of another duration, its curve stretched.
-void set_cruise(PhaseModel& cruise, double duration_s) {
+void set_cruise(mechanical::PhaseModel& cruise, double duration_s) {
     require_between("cruise", duration_s, 60.0, 1e5);
-    cruise.fourier = flown_model(cruise, duration_s, PhaseClock::stretched);
+    cruise.fourier = flown_model(cruise, duration_s, mechanical::PhaseClock::stretched);
     cruise.duration_s = duration_s;
 }
 
@@ -153,12 +154,12 @@ int synthesize(const cli::StageCall& call) {
     const auto count = static_cast<std::size_t>(call.get<int>("flights"));
     const auto seed = static_cast<std::uint64_t>(call.get<std::int64_t>("seed"));
     const auto hazard_list = chosen_hazards(call.get<std::string>("hazard"));
-    auto model = read_mechanical_model(call.inputs.front());
+    auto model = mechanical::read_mechanical_model(call.inputs.front());
     if (const auto cruise_s = call.maybe<double>("cruise"))
-        set_cruise(model.phases[Phase::cruise], *cruise_s);
+        set_cruise(model.phases[flight::Phase::cruise], *cruise_s);
     require_flyable(model, call.inputs.front());
     make_directories(*call.output);
-    SpreadOptions spread;
+    synthetic::SpreadOptions spread;
     spread.bands = call.get<double>("spread");
     const auto flights = draw_flights(model, count, seed, spread);
     nlohmann::ordered_json written = nlohmann::ordered_json::array();
@@ -177,7 +178,7 @@ int synthesize(const cli::StageCall& call) {
             written.push_back({{"flight", identity.name}, {"bytes", bytes}});
         }
     }
-    if (call.json) cli::print(json_text({{"flights", written}}));
+    if (call.json) cli::print(cli::json_text({{"flights", written}}));
     return cli::ok;
 }
 
@@ -202,7 +203,8 @@ int main(int argc, char** argv) {
         "file names begin with it")("spread", po::value<double>()->value_name("X")->default_value(1.0, "1"),
                                     "flight-to-flight spread, as a multiple of the paper's bands")(
         "current-noise",
-        po::value<double>()->value_name("A")->default_value(SyntheticSensors{}.current_noise_a, "0.001"),
+        po::value<double>()->value_name("A")->default_value(synthetic::SyntheticSensors{}.current_noise_a,
+                                                            "0.001"),
         "noise of the current sensor, as a standard deviation")(
         "cruise", po::value<double>()->value_name("S"), "how long flights cruise, in seconds (the model's)")(
         "flight-messages-only", "leave out the messages that no flight is read from: small logs")(

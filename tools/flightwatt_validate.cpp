@@ -1,12 +1,12 @@
 // flightwatt validate: leaves each flight out, fits the others and predicts its energy.
 
+#include "cli/output/fit_options.h"
+#include "cli/output/validation_output.h"
 #include "cli/stage.h"
-#include "fit_options.h"
 #include "flight/flight_reader.h"
-#include "flight/power_report.h"
+#include "flight/power_check.h"
 #include "mechanical/covariates.h"
 #include "mechanical/measured_flight.h"
-#include "validation_output.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,30 +20,30 @@ namespace {
 using namespace flightwatt;
 
 /// The flights of one log. In flight, those that are not in cruise at the moment are left out.
-std::vector<MeasuredFlight> read_flights(const cli::StageCall& call, const std::string& file,
-                                         std::size_t needed_samples) {
-    const auto series = read_flight(file, call.maybe<std::string>("aircraft"));
-    const auto phases = segment(series);
-    require_sortie(series, phases, file);
+std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, const std::string& file,
+                                                     std::size_t needed_samples) {
+    const auto series = flight::read_flight(file, call.maybe<std::string>("aircraft"));
+    const auto phases = flight::segment(series);
+    flight::require_sortie(series, phases, file);
     for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
-    const auto power = examine_power(series, phases);
+    const auto power = flight::examine_power(series, phases);
     const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
     if (!power.absurdities.empty() && std::find(keep.begin(), keep.end(), series.flight) == keep.end()) {
-        cli::warn(call,
-                  to_string(LeftOut{series.flight, std::nullopt, describe_absurdities(power.absurdities)}));
+        cli::warn(call, to_string(mechanical::LeftOut{series.flight, std::nullopt,
+                                                      flight::describe_absurdities(power.absurdities)}));
         return {};
     }
-    auto measured = measure_flights(series, phases, needed_samples);
+    auto measured = mechanical::measure_flights(series, phases, needed_samples);
     for (const auto& left_out : measured.left_out) {
         cli::warn(call, to_string(left_out));
     }
     const auto until_s = call.maybe<double>("until");
     if (!until_s) return std::move(measured.flights);
-    std::vector<MeasuredFlight> in_cruise;
+    std::vector<mechanical::MeasuredFlight> in_cruise;
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
         try {
-            flight.flown = flown_so_far(series, {until_s, 0.0}, measured.sorties[i]);
+            flight.flown = mechanical::flown_so_far(series, {until_s, 0.0}, measured.sorties[i]);
             in_cruise.push_back(std::move(flight));
         } catch (const NoAnswerError& error) {
             cli::warn(call, fmt::format("{} is left out: {}", flight.samples.flight, error.what()));
@@ -53,20 +53,21 @@ std::vector<MeasuredFlight> read_flights(const cli::StageCall& call, const std::
 }
 
 /// --covariate NAME[,NAME] or all.
-std::vector<Covariate> read_covariates(const cli::StageCall& call) {
+std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
     const auto text = call.maybe<std::string>("covariate");
     if (!text) return {};
     if (call.has("until")) {
         throw UsageError("--covariate is for predictions before the flight: leave out it or --until");
     }
-    if (*text == "all") return {all_covariates.begin(), all_covariates.end()};
+    if (*text == "all") return {mechanical::all_covariates.begin(), mechanical::all_covariates.end()};
     std::vector<std::string> names;
     boost::algorithm::split(names, *text, [](char c) { return c == ','; });
-    std::vector<Covariate> covariates;
+    std::vector<mechanical::Covariate> covariates;
     for (const auto& name : names) {
-        const auto covariate = covariate_from(name);
+        const auto covariate = mechanical::covariate_from(name);
         if (!covariate) {
-            throw UsageError(fmt::format("--covariate {}: expected all, {}", name, covariate_names()));
+            throw UsageError(
+                fmt::format("--covariate {}: expected all, {}", name, mechanical::covariate_names()));
         }
         if (std::find(covariates.begin(), covariates.end(), *covariate) == covariates.end()) {
             covariates.push_back(*covariate);
@@ -76,13 +77,13 @@ std::vector<Covariate> read_covariates(const cli::StageCall& call) {
 }
 
 /// Which covariates beat the constant mean in cruise, and which cannot be judged.
-std::string verdicts_on(const std::vector<Covariate>& covariates,
-                        const std::vector<ValidatedFlight>& flights) {
+std::string verdicts_on(const std::vector<mechanical::Covariate>& covariates,
+                        const std::vector<mechanical::ValidatedFlight>& flights) {
     std::string text;
-    const auto mean = score_of(flights, "constant_mean", Phase::cruise);
+    const auto mean = score_of(flights, "constant_mean", flight::Phase::cruise);
     for (const auto covariate : covariates) {
         const auto model = fmt::format("by_{}", to_string(covariate));
-        const auto score = score_of(flights, model, Phase::cruise);
+        const auto score = score_of(flights, model, flight::Phase::cruise);
         if (!score || !mean) {
             text += fmt::format("cruise: {} is not known of all flights\n", model);
             continue;
@@ -99,11 +100,11 @@ std::string verdicts_on(const std::vector<Covariate>& covariates,
     return text;
 }
 
-std::string report(const std::vector<ValidatedFlight>& flights, const std::vector<Covariate>& covariates,
-                   bool in_flight) {
-    auto text = to_text(flights_table(flights)) + "\n" + to_text(scores_table(flights)) + "\n" +
-                verdict(flights, "fourier", "constant_mean");
-    if (in_flight) text += verdict(flights, "in_flight", "fourier");
+std::string report(const std::vector<mechanical::ValidatedFlight>& flights,
+                   const std::vector<mechanical::Covariate>& covariates, bool in_flight) {
+    auto text = to_text(cli::flights_table(flights)) + "\n" + to_text(cli::scores_table(flights)) + "\n" +
+                cli::verdict(flights, "fourier", "constant_mean");
+    if (in_flight) text += cli::verdict(flights, "in_flight", "fourier");
     text += verdicts_on(covariates, flights);
     constexpr std::size_t few = 20;
     if (flights.size() < few) {
@@ -120,14 +121,14 @@ int validate_flights(const cli::StageCall& call) {
         throw UsageError(fmt::format("--until is {}, expected more than 0 s since lift-off", *until_s));
     }
     const auto covariates = read_covariates(call);
-    std::vector<MeasuredFlight> flights;
+    std::vector<mechanical::MeasuredFlight> flights;
     for (const auto& file : call.inputs) {
-        auto read = read_flights(call, file, samples_needed(options.phases.order));
+        auto read = read_flights(call, file, mechanical::samples_needed(options.phases.order));
         std::move(read.begin(), read.end(), std::back_inserter(flights));
     }
     const auto validated = leave_one_out(flights, options, covariates);
     cli::write_result(call, report(validated, covariates, until_s.has_value()));
-    if (call.json) cli::print(scores_json(validated).dump(2) + "\n");
+    if (call.json) cli::print(cli::scores_json(validated).dump(2) + "\n");
     return cli::ok;
 }
 
@@ -158,8 +159,8 @@ int main(int argc, char** argv) {
         "Errors in percent are parts of the phase's measured energy, the flown part included; none for "
         "landing,\n"
         "whose power is near zero. Bias is predicted less measured.";
-    add_fit_options(stage.options);
-    add_keep_option(stage.options);
+    cli::add_fit_options(stage.options);
+    cli::add_keep_option(stage.options);
     stage.options.add_options()("until", po::value<double>()->value_name("S"),
                                 "validate the prediction in flight, S seconds after lift-off")(
         "covariate", po::value<std::string>()->value_name("NAME[,NAME]"),

@@ -3,12 +3,12 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/fingerprint.h"
+#include "batch/batch_files.h"
 #include "batch/fit_selection.h"
 #include "batch/interruption.h"
-#include "batch/left_overs.h"
 #include "flight/flight_reader.h"
-#include "flight/power_report.h"
-#include "flight/series_csv.h"
+#include "flight/power_check.h"
+#include "flight/series_file.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
 
@@ -20,7 +20,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 std::filesystem::path flights_folder(const BatchOptions& options) { return options.out / "flights"; }
@@ -46,8 +46,8 @@ std::string fingerprint_of(const LogFile& log, const BatchOptions& options) {
     fingerprint.add(options.aircraft_id.value_or(""));
     fingerprint.add(log.why_not_fitted);
     fingerprint.add(options.correct_idle_offset ? "idle offset corrected" : "");
-    fingerprint.add(DataFile(log.path).text());
-    const auto configuration = find_log_file(log.path);
+    fingerprint.add(telemetry::DataFile(log.path).text());
+    const auto configuration = telemetry::find_log_file(log.path);
     fingerprint.add(configuration ? read_file(*configuration) : "no .log");
     return fingerprint.hex();
 }
@@ -98,18 +98,18 @@ std::string describe(const InputError& error) {
 /// Reads, segments and writes one log. Throws InputError where it cannot be used.
 BatchFlight do_accepted(const LogFile& log, const BatchOptions& options) {
     BatchFlight done;
-    auto series = read_flight(log.path, options.aircraft_id);
+    auto series = flight::read_flight(log.path, options.aircraft_id);
     series.flight = log.flight;
-    const auto phases = segment(series);
-    require_sortie(series, phases, log.path.string());
-    const auto power = examine_power(series, phases);
-    if (options.correct_idle_offset) correct_idle_offset(series, power.idle);
+    const auto phases = flight::segment(series);
+    flight::require_sortie(series, phases, log.path.string());
+    const auto power = flight::examine_power(series, phases);
+    if (options.correct_idle_offset) flight::correct_idle_offset(series, power.idle);
     done.record = record_of(series, phases);
     done.record.absurdities = power.absurdities;
     done.record.why_not_fitted = log.why_not_fitted;
-    done.selection = select_for_fit(series, phases, done.record, options.needed_samples, options.keep);
+    done.selection = batch::select_for_fit(series, phases, done.record, options.needed_samples, options.keep);
     write_result(options, log.flight, series_ending, to_csv(series));
-    write_result(options, log.flight, phases_ending, phases_csv(series, phases));
+    write_result(options, log.flight, phases_ending, flight::phases_csv(series, phases));
     return done;
 }
 
@@ -122,10 +122,10 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
             done.was_up_to_date = true;
             done.record = std::move(*record);
             if (!done.record.accepted) return done;
-            auto series = read_series_csv(result_path(options, log.flight, series_ending));
+            auto series = flight::read_series_csv(result_path(options, log.flight, series_ending));
             series.flight = log.flight;
-            done.selection = select_for_fit(series, phases_of(done.record), done.record,
-                                            options.needed_samples, options.keep);
+            done.selection = batch::select_for_fit(series, batch::phases_of(done.record), done.record,
+                                                   options.needed_samples, options.keep);
             return done;
         }
         remove_results(options, log.flight);
@@ -181,4 +181,4 @@ std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const Batch
     return flights;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 
 class WriteGate;
 
@@ -31,7 +31,7 @@ struct BatchOptions {
 struct BatchFlight {
     FlightRecord record;
     bool was_up_to_date = false;
-    FlightSelection selection;  ///< what a fit takes from it; empty if it was rejected
+    mechanical::FlightSelection selection;  ///< what a fit takes from it; empty if it was rejected
 };
 
 /// Called as logs finish, from one thread at a time: how many are done, of how many, and which it was.
@@ -52,4 +52,4 @@ TextTable flights_table(const std::vector<BatchFlight>& flights);
 /// counter_energy_wh,used and more; rejected logs have a row with their error.
 std::string catalogue_csv(const std::vector<BatchFlight>& flights);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

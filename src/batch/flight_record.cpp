@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -34,7 +34,7 @@ Json phase_json(const RecordedPhase& phase) {
 RecordedPhase recorded_phase(const Json& json) {
     RecordedPhase phase;
     phase.sortie = json.at("sortie");
-    phase.phase = phase_from(json.at("phase").get<std::string>()).value();
+    phase.phase = flight::phase_from(json.at("phase").get<std::string>()).value();
     phase.start_s = json.at("start_s");
     phase.end_s = json.at("end_s");
     phase.start_gap_s = json.at("start_gap_s");
@@ -55,7 +55,7 @@ RecordedPhase recorded_phase(const Json& json) {
 }
 
 /// What the best witness of an edge says.
-std::string verdict_text(const ExplainedEdge& explained) {
+std::string verdict_text(const flight::ExplainedEdge& explained) {
     if (explained.witnesses.empty()) return explained.verdict;
     const auto& best = explained.witnesses.front();
     return fmt::format("{}{} {} ({:+.1f} s)", explained.verdict,
@@ -64,7 +64,7 @@ std::string verdict_text(const ExplainedEdge& explained) {
 
 }  // namespace
 
-FlightRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
+FlightRecord record_of(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
     FlightRecord record;
     record.flight = series.flight;
     record.accepted = true;
@@ -87,11 +87,11 @@ FlightRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
     return record;
 }
 
-FlightPhases phases_of(const FlightRecord& record) {
-    FlightPhases phases;
+flight::FlightPhases phases_of(const FlightRecord& record) {
+    flight::FlightPhases phases;
     for (const auto& recorded : record.phases) {
         if (phases.sorties.size() < recorded.sortie) phases.sorties.resize(recorded.sortie);
-        PhaseSpan span;
+        flight::PhaseSpan span;
         span.phase = recorded.phase;
         span.start.time_s = recorded.start_s;
         span.end.time_s = recorded.end_s;
@@ -154,4 +154,4 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
     }
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -10,18 +10,18 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 
 /// One phase of one sortie as the batch remembers it.
 struct RecordedPhase {
     std::size_t sortie = 1;
-    Phase phase = Phase::cruise;
+    flight::Phase phase = flight::Phase::cruise;
     double start_s = 0.0;
     double end_s = 0.0;
     double start_gap_s = 0.0;  ///< see PhaseEdge
     double end_gap_s = 0.0;
     bool complete = true;
-    PhaseStatistics statistics;
+    flight::PhaseStatistics statistics;
     /// Of the airspeed, which the series CSV does not hold; see PhaseSamples.
     std::optional<double> airspeed_cubed_m3_per_s3 = {};
 };
@@ -51,13 +51,13 @@ struct FlightRecord {
 };
 
 /// The record of a flight that was read and segmented.
-FlightRecord record_of(const FlightSeries& series, const FlightPhases& phases);
+FlightRecord record_of(const flight::FlightSeries& series, const flight::FlightPhases& phases);
 
 /// The phases again, without their evidence: what a fit needs.
-FlightPhases phases_of(const FlightRecord& record);
+flight::FlightPhases phases_of(const FlightRecord& record);
 
 /// The record as JSON, and back. Reading gives std::nullopt for what is no record of this version.
 std::string to_json_text(const FlightRecord& record);
 std::optional<FlightRecord> record_from_json(const std::string& text);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

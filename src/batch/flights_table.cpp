@@ -6,20 +6,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 bool is_used(const BatchFlight& flight, const RecordedPhase& phase) {
-    const auto name = flight_name_of_sortie(flight.record.flight, phase.sortie);
+    const auto name = mechanical::flight_name_of_sortie(flight.record.flight, phase.sortie);
     return std::any_of(flight.selection.flights.begin(), flight.selection.flights.end(),
-                       [&](const FlightSamples& samples) {
+                       [&](const mechanical::FlightSamples& samples) {
                            return samples.flight == name && samples.phases[phase.phase].has_value();
                        });
 }
 
 /// What a sortie's phases add up to.
 struct SortieRow {
-    PerPhase<const RecordedPhase*> phases{};
+    flight::PerPhase<const RecordedPhase*> phases{};
     double energy_wh = 0.0;
     double counter_wh = 0.0;
     bool has_counter = true;
@@ -46,14 +46,14 @@ std::vector<SortieRow> sortie_rows(const FlightRecord& record) {
 
 std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& row, std::size_t sortie) {
     std::vector<std::string> cells{flight.record.flight, fmt::format("{}", sortie)};
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto* recorded = row.phases[phase];
         // An asterisk marks a phase that the log cuts.
         cells.push_back(recorded == nullptr ? "-"
                                             : fmt::format("{:.0f}{}", recorded->end_s - recorded->start_s,
                                                           recorded->complete ? "" : "*"));
     }
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto* recorded = row.phases[phase];
         cells.push_back(recorded == nullptr ? "-" : fmt::format("{:.1f}", recorded->statistics.mean_power_w));
     }
@@ -118,4 +118,4 @@ std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
     return text;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

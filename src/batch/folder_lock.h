@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 
 /// Keeps other runs of batch or profile out of a folder while it lives: two at once would remove each other's
 /// results. Leaves nothing behind, not even when the program is killed. Throws OutputError where another one
@@ -18,4 +18,4 @@ class FolderLock {
     int folder_ = -1;
 };
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 /// Of the second within which an interrupted program has to end.
@@ -81,4 +81,4 @@ Interruption::~Interruption() {
     change_mask(SIG_UNBLOCK, signals_);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

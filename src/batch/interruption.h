@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 
 /// Lets files be written whole before the program ends: those who write are inside, whoever ends the program
 /// closes it first.
@@ -56,4 +56,4 @@ class Interruption {
     std::optional<std::jthread> thread_;
 };
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

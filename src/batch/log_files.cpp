@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 bool is_log_name(const std::filesystem::path& path) {
@@ -76,7 +76,7 @@ std::vector<LogFile> each_once(std::vector<LogFile> logs) {
 
 /// The log's own name, or, where another log has that, the next free one of NAME_2, NAME_3, ...
 std::string free_name(const std::filesystem::path& path, const std::set<std::string>& taken) {
-    auto name = flight_name(path);
+    auto name = telemetry::flight_name(path);
     if (name.empty()) name = "unnamed";
     auto free = name;
     for (int use = 2; taken.contains(free); ++use) free = fmt::format("{}_{}", name, use);
@@ -116,4 +116,4 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
     return logs;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 
 /// A log that a batch is to do, and the name that its results go by.
 struct LogFile {
@@ -20,4 +20,4 @@ struct LogFile {
 /// is no log at all, or for a not-fitted.txt that does not say why.
 std::vector<LogFile> find_logs(const std::vector<std::string>& inputs);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -2,9 +2,9 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "batch/left_overs.h"
-#include "flight/phases_csv_reader.h"
-#include "flight/series_csv.h"
+#include "batch/batch_files.h"
+#include "flight/phases_file.h"
+#include "flight/series_file.h"
 
 #include <algorithm>
 #include <string>
@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 std::vector<std::filesystem::path> record_files(const std::filesystem::path& folder) {
@@ -35,11 +35,11 @@ StoredFlight read_flight_of(const std::filesystem::path& file) {
     record->flight = name;  // JSON holds no name that is not UTF-8
     StoredFlight flight{std::move(*record), {}, {}};
     if (!flight.record.accepted) return flight;
-    flight.series = read_series_csv(file.parent_path() / (name + series_ending));
+    flight.series = flight::read_series_csv(file.parent_path() / (name + series_ending));
     flight.series.flight = name;
     flight.series.current_origin = flight.record.current_origin;
     flight.series.power_source = flight.record.power_source;
-    flight.phases = read_phases_csv(file.parent_path() / (name + phases_ending));
+    flight.phases = flight::read_phases_csv(file.parent_path() / (name + phases_ending));
     return flight;
 }
 
@@ -60,4 +60,4 @@ std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out) 
     return flights;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

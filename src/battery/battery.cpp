@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 namespace {
 
 /// Straight lines between the knots, the ends' values beyond them.
@@ -65,4 +65,4 @@ double internal_current_a(const Battery& battery, double power_w, const BatteryS
     return 2.0 * power_w / (u + std::sqrt(discriminant));
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

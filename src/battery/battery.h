@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 
 /// Open-circuit voltage over state of charge: straight lines between knots.
 struct OpenCircuitVoltage {
@@ -106,4 +106,4 @@ Battery battery_from(const TomlTable& table);
 /// The battery as read_battery reads it.
 std::string to_toml(const Battery& battery);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

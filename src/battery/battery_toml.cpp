@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 namespace {
 
 constexpr double least_time_constant_s = 0.1;
@@ -162,4 +162,4 @@ std::string to_toml(const Battery& battery) {
     return text + interval_lines(battery.intervals);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

@@ -10,7 +10,7 @@
 
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 namespace {
 
 constexpr double time_tolerance_s = 1e-10;
@@ -162,4 +162,4 @@ Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double
     return discharge(battery, power_w, from_s, to_s, BatteryState{soc_percent, 0.0}, {max_step_s, 0.0});
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 
 /// Power [W] that the load draws, smooth over the time that it is asked for, as a function of time [s].
 using PowerOverTime = std::function<double(double time_s)>;
@@ -50,4 +50,4 @@ Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double
 Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double from_s, double to_s,
                     double soc_percent, double max_step_s);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

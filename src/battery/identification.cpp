@@ -10,7 +10,7 @@
 
 #include <boost/math/tools/roots.hpp>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 namespace {
 
 constexpr int most_segments = 12;
@@ -231,4 +231,4 @@ std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> record
     return checks;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

@@ -1,17 +1,17 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "battery/circuit_errors.h"
-#include "battery/circuit_fit.h"
-#include "battery/discharge_record.h"
-#include "battery/open_circuit.h"
+#include "battery/identification/circuit_errors.h"
+#include "battery/identification/circuit_fit.h"
+#include "battery/identification/discharge_record.h"
+#include "battery/identification/open_circuit.h"
 
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 
 struct IdentificationOptions {
     std::optional<double> capacity_ah;
@@ -68,4 +68,4 @@ PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& 
 std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records,
                                          const IdentificationOptions& options);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 namespace {
 
 constexpr double chart_step_percent = 5.0;
@@ -34,4 +34,4 @@ int lipo_cells(double resting_voltage_v) {
     return static_cast<int>(std::max(1.0, std::ceil(resting_voltage_v / greatest_cell_voltage_v)));
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace flightwatt {
+namespace flightwatt::battery {
 
 /// The open-circuit voltage that lithium-polymer packs are commonly said to have, a cell: 4.20 V full, 3.84 V
 /// half, 3.27 V empty (the voltage chart that sellers of packs print, e.g.
@@ -17,4 +17,4 @@ double lipo_chart_soc_percent(double cell_voltage_v);
 /// How many cells a pack has that rests at this voltage, if it is charged: at most 4.25 V a cell.
 int lipo_cells(double resting_voltage_v);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

@@ -1,6 +1,6 @@
 #include "compute/compute_model.h"
 
-namespace flightwatt {
+namespace flightwatt::compute {
 
 double power_w(const ComputeModel& model, const Configuration& configuration) {
     double power = 0.0;
@@ -10,4 +10,4 @@ double power_w(const ComputeModel& model, const Configuration& configuration) {
     return power;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

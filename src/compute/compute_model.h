@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 
 /// A piece of on-board software.
 struct Component {
@@ -33,4 +33,4 @@ using Configuration = std::vector<RunningComponent>;
 /// QoS out of range.
 double power_w(const ComputeModel& model, const Configuration& configuration);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 std::string spell(const std::vector<std::string>& parameters, const std::vector<double>& qos) {
@@ -135,4 +135,4 @@ double power_w(const PowerProfile& profile, const std::vector<double>& qos) {
     return power;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 
 /// One profiled configuration of a component.
 struct ProfileNode {
@@ -44,4 +44,4 @@ void require_in_range(const PowerProfile& profile, std::size_t parameter, double
 /// Throws InputError, placed in the profile, if a value is out of range.
 double power_w(const PowerProfile& profile, const std::vector<double>& qos);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 
 std::vector<std::vector<double>> grid_points(const PowerProfile& profile) {
     std::vector<std::vector<double>> points(profile.power_w.size());
@@ -40,4 +40,4 @@ LeaveOneOut leave_grid_nodes_out(const PowerProfile& profile) {
     return summarize_left_out("linear between neighbours", std::move(errors), profile.power_w);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

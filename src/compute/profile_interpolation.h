@@ -1,11 +1,11 @@
 #pragma once
 
 #include "compute/power_profile.h"
-#include "compute/scattered_interpolation.h"
+#include "compute/profiling/scattered_interpolation.h"
 
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 
 /// The nodes of a profile, in the order of its power_w.
 std::vector<std::vector<double>> grid_points(const PowerProfile& profile);
@@ -15,4 +15,4 @@ std::vector<std::vector<double>> grid_points(const PowerProfile& profile);
 /// (a profile is never extrapolated) and are NaN.
 LeaveOneOut leave_grid_nodes_out(const PowerProfile& profile);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -2,9 +2,9 @@
 
 #include "base/csv.h"
 #include "base/number.h"
-#include "compute/power_recording.h"
-#include "compute/powprofiler_config.h"
-#include "compute/powprofiler_csv.h"
+#include "compute/powprofiler/power_recording.h"
+#include "compute/powprofiler/powprofiler_config.h"
+#include "compute/powprofiler/powprofiler_csv.h"
 
 #include <algorithm>
 #include <set>
@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 constexpr std::string_view power_column = "power_w";
@@ -212,4 +212,4 @@ PowerProfile read_power_profile(const std::filesystem::path& path, const Profile
     return profile_with_header(std::move(table), naming);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 
 /// The names that a user gives to a profile that has none of its own. At most one of the two lists is filled.
 struct ProfileNaming {
@@ -30,4 +30,4 @@ struct ProfileNaming {
 /// refuses.
 PowerProfile read_power_profile(const std::filesystem::path& path, const ProfileNaming& naming = {});
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -2,8 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/toml_reader.h"
+#include "compute/profiling/sampler_settings_toml.h"
 #include "compute/qos_range.h"
-#include "compute/sampler_settings_toml.h"
 #include "compute/toml_number.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 constexpr std::size_t most_configurations = 100000;
@@ -244,4 +244,4 @@ ProfileSpecification read_profile_specification(const std::filesystem::path& pat
     return parse_profile_specification(read_file(path), path);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

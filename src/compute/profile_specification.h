@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "compute/power_sampler.h"
+#include "compute/sensors/power_sampler.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 
 /// One point of a component's ranges, and what is to be run there.
 struct ProfiledConfiguration {
@@ -74,4 +74,4 @@ ProfileSpecification parse_profile_specification(std::string_view text, const st
 /// `directory` and h are passed over, frequency is the sampling's.
 ProfileSpecification read_powprofiler_specification(const std::filesystem::path& path);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

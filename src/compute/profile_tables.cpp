@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 constexpr int first_parameter_flag = 200;  // of powprofiler
@@ -134,4 +134,4 @@ void write_profiles(const ProfileOutcome& outcome, const ProfileSpecification& s
     if (powprofiler) write_powprofiler(outcome, folder / "powprofiler");
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -5,7 +5,7 @@
 #include <string>
 
 /// Layer 2 as files.
-namespace flightwatt {
+namespace flightwatt::compute {
 
 /// Power that stands in power_w of a node: its total, or what is above `idle`; the standard error then holds
 /// that of idle too.
@@ -41,4 +41,4 @@ std::string powprofiler_layer1_csv(const PowerTrace& trace);
 void write_profiles(const ProfileOutcome& outcome, const ProfileSpecification& specification,
                     const std::filesystem::path& folder, bool powprofiler);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

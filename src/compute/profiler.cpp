@@ -1,7 +1,7 @@
 #include "compute/profiler.h"
 
 #include "base/atomic_file.h"
-#include "compute/spread_nodes.h"
+#include "compute/profiling/spread_nodes.h"
 
 #include <algorithm>
 #include <chrono>
@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& specification,
@@ -196,4 +196,4 @@ ProfileOutcome profile(const ProfileSpecification& specification, const Profiler
     return outcome;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

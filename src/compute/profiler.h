@@ -1,8 +1,8 @@
 #pragma once
 
-#include "compute/profile_runs.h"
 #include "compute/profile_specification.h"
-#include "compute/scattered_interpolation.h"
+#include "compute/profiling/profile_runs.h"
+#include "compute/profiling/scattered_interpolation.h"
 
 #include <filesystem>
 #include <functional>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 
 /// A configuration and its power.
 struct NodeEstimate {
@@ -57,4 +57,4 @@ ProfileOutcome profile(const ProfileSpecification& specification, const Profiler
 ComponentEstimate estimate_component(const ProfiledComponent& component, std::size_t index,
                                      const std::vector<ProfileRun>& runs);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 constexpr double rounding = 1e-9;  // of a step
@@ -69,4 +69,4 @@ std::string with_qos(const std::string& text, const std::vector<std::string>& pa
     return result;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

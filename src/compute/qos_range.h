@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 
 /// A parameter of quality of service and the values that it is profiled at.
 struct QosRange {
@@ -28,4 +28,4 @@ std::string spell_qos(const std::vector<std::string>& parameters, const std::vec
 std::string with_qos(const std::string& text, const std::vector<std::string>& parameters,
                      const std::vector<double>& qos);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

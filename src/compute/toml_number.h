@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 /// Numbers of a TOML table that have a default and a bound. They throw InputError.
-namespace flightwatt {
+namespace flightwatt::compute {
 
 inline double number_from(const TomlTable& table, std::string_view key, double fallback, double least) {
     const auto value = table.optional_number(key);
@@ -37,4 +37,4 @@ inline std::uint64_t count_from(const TomlTable& table, std::string_view key, st
     throw InputError(table.where(key), fmt::format("{} = {}, expected a whole number", key, value));
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

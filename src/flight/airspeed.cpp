@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, double start_s, double end_s) {
     constexpr double reach_s = 5.0;
@@ -24,4 +24,4 @@ std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, doubl
     return sum / static_cast<double>(count);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

@@ -1,10 +1,10 @@
 #include "flight/cut_series.h"
 
-#include "flight/series_csv.h"
+#include "flight/series_file.h"
 
 #include <algorithm>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 std::size_t count_until(const std::vector<double>& time_s, double until_s) {
@@ -35,4 +35,4 @@ FlightSeries cut_series(const FlightSeries& series, double until_s) {
     return cut;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

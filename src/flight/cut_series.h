@@ -2,7 +2,7 @@
 
 #include "flight/flight_series.h"
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 /// What the series held at `until_s` (the log's own seconds): nothing later is left, in no channel, track or
 /// witness. Values that are interpolated between a sample before and one after (channels other than power
@@ -10,4 +10,4 @@ namespace flightwatt {
 /// their own tracks, which are exact. The planned ground altitude is known before a flight and stays.
 FlightSeries cut_series(const FlightSeries& series, double until_s);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 constexpr int manual_mode = 0;
@@ -155,4 +155,4 @@ std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sorti
     return edges;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

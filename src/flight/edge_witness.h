@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 /// What a sortie's four edges are called.
 enum class EdgeKind { lift_off, takeoff_end, landing_start, touchdown };
@@ -43,4 +43,4 @@ inline constexpr double witness_reach_s = 60.0;
 /// the pilot takes the switch to MANUAL when the aircraft has long come to rest.
 std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sortie& sortie);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

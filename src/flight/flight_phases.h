@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 /// The phases of a sortie that are modelled; what lies between sorties is ground.
 enum class Phase { takeoff, cruise, landing };
@@ -35,4 +35,4 @@ struct PerPhase {
     const T& operator[](Phase phase) const { return values[static_cast<std::size_t>(phase)]; }
 };
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

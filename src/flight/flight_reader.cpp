@@ -1,7 +1,7 @@
 #include "flight/flight_reader.h"
 
 #include "base/error.h"
-#include "flight/series_csv.h"
+#include "flight/series_file.h"
 #include "flight/telemetry_series.h"
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
-std::string choose_aircraft(const TelemetryLog& log, const std::optional<std::string>& named) {
+std::string choose_aircraft(const telemetry::TelemetryLog& log, const std::optional<std::string>& named) {
     const auto flown = flown_aircraft(log);
     if (named) {
         std::vector<std::string> ids;
@@ -41,4 +41,4 @@ FlightSeries read_flight(const std::filesystem::path& path, const std::optional<
     return series;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

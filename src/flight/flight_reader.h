@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 /// Reads a flight from a Paparazzi .data file (compressed or not, with its .log beside it) or a series CSV.
 /// `aircraft_id` chooses one of several aircraft. Throws InputError where the file cannot be used, where
@@ -14,4 +14,4 @@ namespace flightwatt {
 FlightSeries read_flight(const std::filesystem::path& path,
                          const std::optional<std::string>& aircraft_id = std::nullopt);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

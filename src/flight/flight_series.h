@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 /// A value that is known at some times, in order.
 struct Track {
@@ -58,4 +58,4 @@ struct FlightSeries {
     std::vector<std::string> warnings;  ///< what a user should know: skipped lines, assumed definitions
 };
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

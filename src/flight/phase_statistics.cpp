@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 std::size_t first_at_or_after(const std::vector<double>& time_s, double t) {
@@ -114,4 +114,4 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
     return text;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 /// What was measured between two times.
 struct PhaseStatistics {
@@ -40,4 +40,4 @@ double usual_interval_s(const FlightSeries& series);
 /// evidence at both edges; a witness that is absent leaves its cell empty.
 std::string phases_csv(const FlightSeries& series, const FlightPhases& phases);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

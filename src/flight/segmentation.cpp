@@ -1,7 +1,7 @@
 #include "flight/segmentation.h"
 
 #include "base/error.h"
-#include "flight/flight_grid.h"
+#include "flight/segmentation/flight_grid.h"
 #include "flight/track.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 /// What lies between two rests: something moved, or the motor ran.
@@ -330,4 +330,4 @@ void require_sortie(const FlightSeries& series, const FlightPhases& phases, cons
                      seen);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

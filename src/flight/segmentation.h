@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 /// The few physical thresholds of the segmentation.
 struct SegmentationOptions {
@@ -77,4 +77,4 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
 /// Throws InputError saying what the log shows instead, if there is no sortie. `file` is named in it.
 void require_sortie(const FlightSeries& series, const FlightPhases& phases, const std::string& file);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

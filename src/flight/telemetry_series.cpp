@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "flight/power_source.h"
 #include "flight/segmentation.h"
+#include "flight/sources/power_source.h"
 #include "flight/track.h"
 #include "telemetry/data_file.h"
 
@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 using units::Quantity;
@@ -34,7 +34,8 @@ struct FoundTrack {
 };
 
 /// The column of a candidate, if the sender sent it with that quantity.
-std::optional<FoundTrack> find_track(const SenderLog& sender, const Candidate& candidate, Merge merge) {
+std::optional<FoundTrack> find_track(const telemetry::SenderLog& sender, const Candidate& candidate,
+                                     Merge merge) {
     const auto* table = sender.table(candidate.message);
     const auto* column = table == nullptr ? nullptr : table->column(candidate.field);
     if (column == nullptr || column->quantity != candidate.quantity) return std::nullopt;
@@ -44,7 +45,8 @@ std::optional<FoundTrack> find_track(const SenderLog& sender, const Candidate& c
 }
 
 /// The first candidate that varies, else the first that is there at all.
-FoundTrack choose_track(const SenderLog& sender, const std::vector<Candidate>& candidates, Merge merge) {
+FoundTrack choose_track(const telemetry::SenderLog& sender, const std::vector<Candidate>& candidates,
+                        Merge merge) {
     FoundTrack constant;
     for (const auto& candidate : candidates) {
         auto found = find_track(sender, candidate, merge);
@@ -55,7 +57,7 @@ FoundTrack choose_track(const SenderLog& sender, const std::vector<Candidate>& c
     return constant;
 }
 
-FoundTrack altitude_of(const SenderLog& sender) {
+FoundTrack altitude_of(const telemetry::SenderLog& sender) {
     return choose_track(sender,
                         {{"ESTIMATOR", "z", Quantity::metre},
                          {"ROTORCRAFT_FP", "up", Quantity::metre},
@@ -65,7 +67,7 @@ FoundTrack altitude_of(const SenderLog& sender) {
                         Merge::mean);
 }
 
-FoundTrack throttle_of(const SenderLog& sender) {
+FoundTrack throttle_of(const telemetry::SenderLog& sender) {
     auto found = choose_track(
         sender, {{"ENERGY", "throttle", Quantity::percent}, {"BAT", "throttle", Quantity::percent}},
         Merge::mean);
@@ -79,7 +81,7 @@ FoundTrack throttle_of(const SenderLog& sender) {
     return {std::move(track), "ROTORCRAFT_FP.thrust"};
 }
 
-FoundTrack ground_speed_of(const SenderLog& sender) {
+FoundTrack ground_speed_of(const telemetry::SenderLog& sender) {
     if (auto speed = find_track(sender, {"GPS", "speed", Quantity::metre_per_second}, Merge::mean)) {
         return std::move(*speed);
     }
@@ -97,7 +99,7 @@ FoundTrack ground_speed_of(const SenderLog& sender) {
 }
 
 /// The wind's speed as the aircraft estimates it; 0 east and 0 north says that it does not know yet.
-Track wind_of(const SenderLog& sender) {
+Track wind_of(const telemetry::SenderLog& sender) {
     const auto* table = sender.table("WIND_INFO");
     if (table == nullptr) return {};
     const auto* east = table->column("east");
@@ -123,7 +125,7 @@ void add_channel(FlightSeries& series, std::vector<double> FlightSeries::*channe
 }
 
 /// The pack's current, or else the sum of what its consumers report.
-FoundTrack current_of(const SenderLog& sender) {
+FoundTrack current_of(const telemetry::SenderLog& sender) {
     auto found = choose_track(sender,
                               {{"ENERGY", "current", Quantity::ampere},
                                {"ENERGY", "amp", Quantity::ampere},
@@ -134,7 +136,7 @@ FoundTrack current_of(const SenderLog& sender) {
     return {std::move(sum.current_a), std::move(sum.source)};
 }
 
-void add_channels(FlightSeries& series, const SenderLog& sender) {
+void add_channels(FlightSeries& series, const telemetry::SenderLog& sender) {
     const auto altitude = altitude_of(sender);
     series.altitude_track = altitude.track;
     add_channel(series, &FlightSeries::altitude_m, "altitude_m", altitude);
@@ -181,13 +183,13 @@ void add_channels(FlightSeries& series, const SenderLog& sender) {
 }
 
 /// Modes and blocks have no unit.
-Track state_track(const SenderLog& sender, const char* message, const char* field) {
+Track state_track(const telemetry::SenderLog& sender, const char* message, const char* field) {
     const auto* table = sender.table(message);
     const auto* column = table == nullptr ? nullptr : table->column(field);
     return column == nullptr ? Track{} : make_track(table->time_s, column->values, Merge::latest);
 }
 
-void add_witnesses(FlightSeries& series, const SenderLog& sender) {
+void add_witnesses(FlightSeries& series, const telemetry::SenderLog& sender) {
     if (const auto* takeoff = sender.table("TAKEOFF")) series.witnesses.takeoff_s = takeoff->time_s;
     series.witnesses.mode = state_track(sender, "PPRZ_MODE", "ap_mode");
     series.witnesses.block = state_track(sender, "NAVIGATION", "cur_block");
@@ -197,7 +199,7 @@ void add_witnesses(FlightSeries& series, const SenderLog& sender) {
     }
 }
 
-void add_configuration(FlightSeries& series, const TelemetryLog& log) {
+void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log) {
     if (!log.configuration) {
         if (!log.assumed_definitions.empty()) {
             series.warnings.push_back(fmt::format("no .log beside it: message layouts assumed: {}",
@@ -215,8 +217,9 @@ void add_configuration(FlightSeries& series, const TelemetryLog& log) {
         series.sources.at("altitude_m").starts_with("ROTORCRAFT_FP")) {
         series.ground_altitude_m = 0.0;  // its heights are above the reference on the ground
     }
-    if (aircraft.current_origin == CurrentOrigin::sensor) series.current_origin = "measured by a sensor";
-    if (aircraft.current_origin == CurrentOrigin::throttle) {
+    if (aircraft.current_origin == telemetry::CurrentOrigin::sensor)
+        series.current_origin = "measured by a sensor";
+    if (aircraft.current_origin == telemetry::CurrentOrigin::throttle) {
         series.current_origin = "computed from throttle";
         series.warnings.emplace_back(
             "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: its current was computed "
@@ -226,15 +229,16 @@ void add_configuration(FlightSeries& series, const TelemetryLog& log) {
 }
 
 /// "ENERGY: another number of fields than the .log defines: 3 lines, first at line 17".
-std::string describe(const SkippedLines& skip) {
+std::string describe(const telemetry::SkippedLines& skip) {
     return fmt::format("{}: {} line{}, first at line {}", skip.reason, skip.count, skip.count == 1 ? "" : "s",
                        skip.first_line);
 }
 
-[[noreturn]] void refuse_without_power(const TelemetryLog& log, const std::string& aircraft_id,
+[[noreturn]] void refuse_without_power(const telemetry::TelemetryLog& log, const std::string& aircraft_id,
                                        const std::vector<std::string>& passed_over) {
     std::vector<std::string> names;
-    for (const auto& [name, count] : census_of_messages(DataFile(log.data_file).text())) {
+    for (const auto& [name, count] :
+         telemetry::census_of_messages(telemetry::DataFile(log.data_file).text())) {
         names.push_back(fmt::format("{} {}", name, count));
     }
     std::vector<std::string> reasons = passed_over;
@@ -254,7 +258,7 @@ std::string describe(const SkippedLines& skip) {
 }
 
 /// Altitude and throttle alone, on the altitude's clock: enough to see whether an aircraft flew.
-bool flew(const SenderLog& sender) {
+bool flew(const telemetry::SenderLog& sender) {
     FlightSeries series;
     auto altitude = altitude_of(sender).track;
     if (altitude.time_s.size() < 2) return false;
@@ -270,7 +274,7 @@ bool flew(const SenderLog& sender) {
 
 /// Times may come a little late; a jump back of a minute is another log, or another boot, behind the first
 /// one.
-void refuse_restarted_clock(const TelemetryLog& log, const SenderLog& sender) {
+void refuse_restarted_clock(const telemetry::TelemetryLog& log, const telemetry::SenderLog& sender) {
     constexpr double late_s = 60.0;
     for (const auto& table : sender.tables) {
         for (std::size_t i = 1; i < table.time_s.size(); ++i) {
@@ -285,12 +289,12 @@ void refuse_restarted_clock(const TelemetryLog& log, const SenderLog& sender) {
 
 /// The 4-field ENERGY stood without a .log, so the order of its last two fields was assumed. Where they fit
 /// the other way round (power is voltage times current), they are exchanged. True if they were.
-bool exchange_energy_and_power(SenderLog& sender) {
+bool exchange_energy_and_power(telemetry::SenderLog& sender) {
     for (auto& table : sender.tables) {
         if (table.message != "ENERGY" || table.columns.size() != 4) continue;
-        const auto column = [&](std::string_view name) -> Column* {
+        const auto column = [&](std::string_view name) -> telemetry::Column* {
             const auto found = std::find_if(table.columns.begin(), table.columns.end(),
-                                            [&](const Column& c) { return c.field == name; });
+                                            [&](const telemetry::Column& c) { return c.field == name; });
             return found == table.columns.end() ? nullptr : &*found;
         };
         auto* energy = column("energy");
@@ -322,7 +326,7 @@ bool exchange_energy_and_power(SenderLog& sender) {
 
 }  // namespace
 
-std::vector<MessageRequest> flight_messages() {
+std::vector<telemetry::MessageRequest> flight_messages() {
     return {
         {"ENERGY", {"throttle", "voltage", "bat", "current", "amp", "power", "charge", "energy"}},
         {"BAT", {"throttle", "voltage", "amps", "energy"}},
@@ -342,7 +346,7 @@ std::vector<MessageRequest> flight_messages() {
     };
 }
 
-std::vector<std::string> flown_aircraft(const TelemetryLog& log) {
+std::vector<std::string> flown_aircraft(const telemetry::TelemetryLog& log) {
     std::vector<std::string> sent;
     std::vector<std::string> flown;
     for (const auto& sender : log.senders) {
@@ -357,18 +361,18 @@ std::vector<std::string> flown_aircraft(const TelemetryLog& log) {
     return flown.empty() ? sent : flown;
 }
 
-FlightSeries flight_series(const TelemetryLog& log, const std::string& aircraft_id) {
+FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id) {
     FlightSeries series;
     series.file = log.data_file.string();
     series.flight = log.flight;
     series.aircraft_id = aircraft_id;
     const auto sender = std::find_if(log.senders.begin(), log.senders.end(),
-                                     [&](const SenderLog& s) { return s.id == aircraft_id; });
+                                     [&](const telemetry::SenderLog& s) { return s.id == aircraft_id; });
     std::vector<std::string> passed_over;
     if (sender == log.senders.end()) refuse_without_power(log, aircraft_id, passed_over);
     refuse_restarted_clock(log, *sender);
-    SenderLog exchanged;
-    const SenderLog* own = &*sender;
+    telemetry::SenderLog exchanged;
+    const telemetry::SenderLog* own = &*sender;
     if (!log.configuration) {
         exchanged = *sender;
         if (exchange_energy_and_power(exchanged)) {
@@ -392,4 +396,4 @@ FlightSeries flight_series(const TelemetryLog& log, const std::string& aircraft_
     return series;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 /// The messages and fields that a FlightSeries is made of.
-std::vector<MessageRequest> flight_messages();
+std::vector<telemetry::MessageRequest> flight_messages();
 
 /// The ids of the aircraft that flew in the log: the segmentation finds a sortie in their altitude and
 /// throttle. If none flew, those that sent such messages.
-std::vector<std::string> flown_aircraft(const TelemetryLog& log);
+std::vector<std::string> flown_aircraft(const telemetry::TelemetryLog& log);
 
 /// The channels of one aircraft on the clock of its power samples. Throws InputError where it measured no
 /// power, naming what was looked at and what the log holds.
-FlightSeries flight_series(const TelemetryLog& log, const std::string& aircraft_id);
+FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 double interpolate(const Track& track, std::size_t after, double time_s) {
@@ -68,4 +68,4 @@ bool is_constant(const Track& track) {
                        [&](double value) { return value == track.value.front(); });
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

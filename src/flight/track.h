@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 
 /// What several values at the same time become.
 enum class Merge {
@@ -29,4 +29,4 @@ std::vector<double> resample(const Track& track, const std::vector<double>& time
 /// True if the track holds one value throughout (or nothing).
 bool is_constant(const Track& track);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

@@ -4,7 +4,7 @@
 
 #include <boost/math/distributions/students_t.hpp>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// What every interval of ours is meant to hold.
 inline constexpr double confidence_level = 0.95;
@@ -16,4 +16,4 @@ inline double half_width_in_standard_errors(double degrees_of_freedom) {
     return boost::math::quantile(distribution, 0.5 + confidence_level / 2.0);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,16 +1,16 @@
 #include "mechanical/covariates.h"
 
 #include "flight/airspeed.h"
-#include "mechanical/level_law.h"
+#include "mechanical/prediction/level_law.h"
 
 #include <algorithm>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 /// The mean of the track's values from `start_s` on, for early_s; std::nullopt without any.
-std::optional<double> early_mean(const Track& track, double start_s) {
+std::optional<double> early_mean(const flight::Track& track, double start_s) {
     double sum = 0.0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < track.time_s.size(); ++i) {
@@ -22,10 +22,10 @@ std::optional<double> early_mean(const Track& track, double start_s) {
     return sum / static_cast<double>(count);
 }
 
-std::optional<double> resting_voltage_v(const FlightSeries& series, double lift_off_s) {
+std::optional<double> resting_voltage_v(const flight::FlightSeries& series, double lift_off_s) {
     constexpr double watched_s = 120.0;
     if (series.voltage_v.empty() || series.throttle_percent.empty()) return std::nullopt;
-    const double idle_percent = SegmentationOptions{}.idle_throttle_percent;
+    const double idle_percent = flight::SegmentationOptions{}.idle_throttle_percent;
     std::vector<double> voltages;
     for (std::size_t i = 0; i < series.time_s.size() && series.time_s[i] < lift_off_s; ++i) {
         if (series.time_s[i] < lift_off_s - watched_s || series.throttle_percent[i] > idle_percent) continue;
@@ -39,16 +39,17 @@ std::optional<double> resting_voltage_v(const FlightSeries& series, double lift_
 
 }  // namespace
 
-Covariates covariates_of(const FlightSeries& series, const Sortie& sortie) {
+Covariates covariates_of(const flight::FlightSeries& series, const flight::Sortie& sortie) {
     Covariates found;
     found[Covariate::height] = sortie.height_m;
     for (const auto& span : sortie.phases) {
-        if (span.phase == Phase::takeoff && span.complete) {
+        if (span.phase == flight::Phase::takeoff && span.complete) {
             found[Covariate::initial_voltage] = resting_voltage_v(series, span.start.time_s);
         }
-        if (span.phase != Phase::cruise) continue;
+        if (span.phase != flight::Phase::cruise) continue;
         const double start_s = span.start.time_s;
-        if (const auto& first = sortie.phases.front(); first.phase == Phase::takeoff && first.complete) {
+        if (const auto& first = sortie.phases.front();
+            first.phase == flight::Phase::takeoff && first.complete) {
             found[Covariate::time_to_cruise] = start_s - first.start.time_s;
         }
         found[Covariate::wind] = early_mean(series.wind_speed_track, start_s);
@@ -69,4 +70,4 @@ std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> ot
     return constant_power(level_at(*law, *value));
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -2,14 +2,14 @@
 
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
-#include "mechanical/baselines.h"
-#include "mechanical/covariate.h"
-#include "mechanical/phase_samples.h"
+#include "mechanical/fit/phase_samples.h"
+#include "mechanical/prediction/covariate.h"
+#include "mechanical/validation/baselines.h"
 
 #include <optional>
 #include <span>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// How long the cruise is watched for what is known early.
 inline constexpr double early_s = 60.0;
@@ -22,7 +22,7 @@ inline constexpr double early_s = 60.0;
 ///                              within the cruise is none: the curve itself is a function of it
 ///   wind_m_per_s, airspeed_m_per_s, ground_speed_m_per_s   means over the first early_s of the cruise
 ///   airspeed_cubed_m3_per_s3   mean cube of the airspeed over that time
-Covariates covariates_of(const FlightSeries& series, const Sortie& sortie);
+Covariates covariates_of(const flight::FlightSeries& series, const flight::Sortie& sortie);
 
 /// The mean power of a cruise, foretold by one covariate from other flights by their level_law. The spread of
 /// a line has n - 2 degrees of freedom: none is given for 2 flights. std::nullopt if the flight lacks the
@@ -30,4 +30,4 @@ Covariates covariates_of(const FlightSeries& series, const Sortie& sortie);
 std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> others,
                                                 const PhaseSamples& flight, Covariate covariate);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

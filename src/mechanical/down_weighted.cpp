@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 constexpr double hardly_counted = 0.5;
@@ -29,4 +29,4 @@ std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSampl
     return found;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "mechanical/phase_fit.h"
-#include "mechanical/phase_samples.h"
+#include "mechanical/fit/phase_fit.h"
+#include "mechanical/fit/phase_samples.h"
 
 #include <span>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// A sample that a robust fit hardly listened to.
 struct DownWeightedSample {
@@ -23,4 +23,4 @@ struct DownWeightedSample {
 std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSamples> flights,
                                                       const PhaseFit& fit);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

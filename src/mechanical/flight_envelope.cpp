@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 std::optional<PhaseSpread> flight_envelope(const PhaseFit& fit, std::span<const double> weights,
                                            std::size_t points) {
@@ -41,4 +41,4 @@ double population_standard_error_w(const PhaseSpread& spread, std::size_t i) {
     return spread.standard_deviation_w[i] / std::sqrt(spread.counted_flights);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "mechanical/phase_fit.h"
-#include "mechanical/phase_uncertainty.h"
+#include "mechanical/fit/phase_fit.h"
+#include "mechanical/uncertainty/phase_uncertainty.h"
 
 #include <cstddef>
 #include <optional>
 #include <span>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// So many points the model file's spread has, from begin to end of the phase.
 inline constexpr std::size_t points_of_spread = 21;
@@ -24,4 +24,4 @@ std::optional<PhaseSpread> flight_envelope(const PhaseFit& fit, std::span<const 
 /// spread: sd / sqrt(counted_flights). Its Student's t has counted_flights - 1 degrees of freedom.
 double population_standard_error_w(const PhaseSpread& spread, std::size_t i);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

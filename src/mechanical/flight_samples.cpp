@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 constexpr double longest_edge_gap = 0.25;  // of the phase
 
 /// Why a phase cannot be fitted, before its samples are counted; empty if it can.
-std::string why_left_out(const PhaseSpan& span) {
+std::string why_left_out(const flight::PhaseSpan& span) {
     if (!span.complete) return "the log begins or ends inside of it";
     const double gap_s = std::max(span.start.gap_s, span.end.gap_s);
     if (gap_s > longest_edge_gap * span.duration_s()) {
@@ -22,7 +22,8 @@ std::string why_left_out(const PhaseSpan& span) {
     return "";
 }
 
-PhaseSamples samples_of(const FlightSeries& series, const PhaseSpan& span, const std::string& flight) {
+PhaseSamples samples_of(const flight::FlightSeries& series, const flight::PhaseSpan& span,
+                        const std::string& flight) {
     PhaseSamples samples;
     samples.flight = flight;
     samples.duration_s = span.duration_s();
@@ -50,7 +51,7 @@ std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie)
     return sortie == 1 ? flight : fmt::format("{}#{}", flight, sortie);
 }
 
-FlightSelection select_samples(const FlightSeries& series, const FlightPhases& phases,
+FlightSelection select_samples(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                                std::size_t needed_samples) {
     FlightSelection selection;
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
@@ -82,4 +83,4 @@ void leave_out_all(FlightSelection& selection, const std::string& flight, const 
     selection.left_out.push_back({flight, std::nullopt, reason});
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -2,18 +2,18 @@
 
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
-#include "mechanical/phase_samples.h"
+#include "mechanical/fit/phase_samples.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// What is not fitted, and why.
 struct LeftOut {
     std::string flight;
-    std::optional<Phase> phase;  ///< absent: the whole flight
+    std::optional<flight::Phase> phase;  ///< absent: the whole flight
     std::string reason;
 };
 
@@ -32,10 +32,10 @@ struct FlightSelection {
 /// What a sortie is called in a fit: NAME, and NAME#2 from the second on.
 std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie);
 
-FlightSelection select_samples(const FlightSeries& series, const FlightPhases& phases,
+FlightSelection select_samples(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                                std::size_t needed_samples);
 
 /// Leaves out every flight of the selection, for one reason.
 void leave_out_all(FlightSelection& selection, const std::string& flight, const std::string& reason);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

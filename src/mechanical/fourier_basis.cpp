@@ -5,7 +5,7 @@
 
 #include <Eigen/SVD>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 void fourier_row(double angle, int order, std::span<double> row) {
     const double c = std::cos(angle);
@@ -44,4 +44,4 @@ double basis_condition(int order, double theta_rad, std::size_t samples) {
     return singular(0) / singular(singular.size() - 1);
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

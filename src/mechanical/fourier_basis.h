@@ -5,7 +5,10 @@
 
 #include <Eigen/Core>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
+
+/// The highest order that is supported; beyond it the lowest admissible frequencies leave no digits.
+inline constexpr int max_order = 8;
 
 /// How many coefficients a series of that order has: a0, a1, b1, ... a_order, b_order.
 constexpr int coefficient_count(int order) { return 2 * order + 1; }
@@ -21,4 +24,4 @@ Eigen::MatrixXd fourier_basis(std::span<const double> tau, int order, double the
 /// samples. It says by how much noise is amplified in the coefficients.
 double basis_condition(int order, double theta_rad, std::size_t samples = 1000);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

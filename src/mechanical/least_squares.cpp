@@ -2,7 +2,7 @@
 
 #include <Eigen/QR>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values) {
     const Eigen::Index columns = matrix.cols();
@@ -24,4 +24,4 @@ std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, cons
     return fit;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// A linear least-squares solution with what follows from it.
 struct LinearFit {
@@ -20,4 +20,4 @@ struct LinearFit {
 /// the digits that the normal equations lose. std::nullopt if the columns are dependent to rounding.
 std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

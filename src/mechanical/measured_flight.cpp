@@ -5,14 +5,14 @@
 
 #include <utility>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
-MeasuredFlights measure_flights(const FlightSeries& series, const FlightPhases& phases,
+MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                                 std::size_t needed_samples) {
     MeasuredFlights measured;
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
         // One sortie at a time, so that each knows its number; names as if all had been selected at once.
-        FlightPhases one;
+        flight::FlightPhases one;
         one.sorties.resize(s);
         one.sorties.push_back(phases.sorties[s]);
         auto selection = select_samples(series, one, needed_samples);
@@ -20,7 +20,7 @@ MeasuredFlights measure_flights(const FlightSeries& series, const FlightPhases& 
         if (selection.flights.empty()) continue;
         MeasuredFlight flight;
         flight.samples = std::move(selection.flights.front());
-        if (auto& cruise = flight.samples.phases[Phase::cruise]) {
+        if (auto& cruise = flight.samples.phases[flight::Phase::cruise]) {
             cruise->covariates = covariates_of(series, phases.sorties[s]);
         }
         for (const auto& span : phases.sorties[s].phases) {
@@ -35,4 +35,4 @@ MeasuredFlights measure_flights(const FlightSeries& series, const FlightPhases& 
     return measured;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

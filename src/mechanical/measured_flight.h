@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// What a validation takes from one log: every sortie that select_samples selects, with the measured energy
 /// (phase_statistics) of the selected phases.
@@ -17,7 +17,7 @@ struct MeasuredFlights {
     std::vector<std::size_t> sorties;  ///< of each flight, counted from 0
 };
 
-MeasuredFlights measure_flights(const FlightSeries& series, const FlightPhases& phases,
+MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                                 std::size_t needed_samples);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

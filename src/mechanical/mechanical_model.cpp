@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 double power_w(const FourierModel& model, double time_s) {
     double power = model.a0_w;
@@ -30,4 +30,4 @@ FourierModel flown_model(const PhaseModel& phase, double flown_s, PhaseClock clo
     return flown;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

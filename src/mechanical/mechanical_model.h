@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flight/flight_phases.h"
-#include "mechanical/level_law.h"
-#include "mechanical/phase_uncertainty.h"
+#include "mechanical/prediction/level_law.h"
+#include "mechanical/uncertainty/phase_uncertainty.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// Mechanical power of one phase (Eq. 1), t in the phase's own time [s], omega = 1/xi of the equation:
 ///     f(t) = a0 + sum_{n=1..order} a_n cos(n omega t) + b_n sin(n omega t)      [W]
@@ -77,7 +77,7 @@ struct PhaseContribution {
 
 struct FlightContribution {
     std::string flight;
-    PerPhase<std::optional<PhaseContribution>> phases;
+    flight::PerPhase<std::optional<PhaseContribution>> phases;
 };
 
 /// Power over a whole flight (Eqs. 2-4), with the flights it was made from.
@@ -85,7 +85,7 @@ struct MechanicalModel {
     std::string name;
     std::string description;  ///< how it was made, for people
     std::string weighting;    ///< "uniform", "inverse-variance", "agreement", "by hand" or "published"
-    PerPhase<PhaseModel> phases;
+    flight::PerPhase<PhaseModel> phases;
     std::vector<FlightContribution> flights;
 };
 
@@ -104,4 +104,4 @@ FourierModel flown_model(const PhaseModel& phase, double flown_s, PhaseClock clo
 MechanicalModel read_mechanical_model(const std::filesystem::path& path);
 std::string to_toml(const MechanicalModel& model);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,13 +1,13 @@
 #include "base/toml_reader.h"
 #include "base/toml_text.h"
 #include "mechanical/mechanical_model.h"
-#include "mechanical/phase_uncertainty_toml.h"
+#include "mechanical/uncertainty/phase_uncertainty_toml.h"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 double positive_number(const TomlTable& table, std::string_view key) {
@@ -145,7 +145,7 @@ PhaseContribution read_contribution(const TomlTable& table) {
 FlightContribution read_flight(const TomlTable& table) {
     FlightContribution flight;
     flight.flight = table.string("flight");
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         if (const auto part = table.optional_table(to_string(phase))) {
             flight.phases[phase] = read_contribution(*part);
         }
@@ -163,7 +163,7 @@ std::string level_law_toml(const LevelLaw& law) {
         toml_real(law.residual_sd_w.value()));
 }
 
-std::string phase_toml(Phase name, const PhaseModel& phase) {
+std::string phase_toml(flight::Phase name, const PhaseModel& phase) {
     std::string text = fmt::format("\n[{}]\nduration_s = {}\nomega_rad_per_s = {}\n", to_string(name),
                                    toml_real(phase.duration_s), toml_real(phase.fourier.omega_rad_per_s));
     if (phase.range) {
@@ -195,7 +195,7 @@ std::string phase_toml(Phase name, const PhaseModel& phase) {
 
 std::string flight_toml(const FlightContribution& flight) {
     std::string text = fmt::format("\n[[flights]]\nflight = {}\n", toml_string(flight.flight));
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         if (const auto& part = flight.phases[phase]) {
             text += fmt::format("{} = {{ weight = {}, duration_s = {}, rms_w = {}, samples = {} }}\n",
                                 to_string(phase), toml_real(part->weight), toml_real(part->duration_s),
@@ -213,7 +213,8 @@ MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
     model.name = root.string("name");
     model.description = root.optional_string("description").value_or("");
     model.weighting = root.optional_string("weighting").value_or("");
-    for (const auto phase : all_phases) model.phases[phase] = read_phase(root.table(to_string(phase)));
+    for (const auto phase : flight::all_phases)
+        model.phases[phase] = read_phase(root.table(to_string(phase)));
     for (const auto& flight : root.tables("flights")) model.flights.push_back(read_flight(flight));
     root.refuse_unknown_keys();
     return model;
@@ -225,9 +226,9 @@ std::string to_toml(const MechanicalModel& model) {
         "#   power_w(t) = a0_w + sum over n of cos_w[n] cos(n omega t) + sin_w[n] sin(n omega t)\n";
     text += fmt::format("name = {}\ndescription = {}\nweighting = {}\n", toml_string(model.name),
                         toml_string(model.description), toml_string(model.weighting));
-    for (const auto phase : all_phases) text += phase_toml(phase, model.phases[phase]);
+    for (const auto phase : flight::all_phases) text += phase_toml(phase, model.phases[phase]);
     for (const auto& flight : model.flights) text += flight_toml(flight);
     return text;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

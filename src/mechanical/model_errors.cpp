@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
-std::string phase_curve_csv(const ModelFit& fit, Phase phase, const ErrorAnalysis& analysis) {
+std::string phase_curve_csv(const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis) {
     const auto& model = fit.model.phases[phase];
     const auto points = points_of_curve(model.fourier, model.duration_s) / 5 + 1;
     const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points);
@@ -39,9 +39,9 @@ std::string phase_curve_csv(const ModelFit& fit, Phase phase, const ErrorAnalysi
 
 }  // namespace
 
-PerPhase<PhaseErrorReport> add_errors(ModelFit& fit) {
-    PerPhase<PhaseErrorReport> reports;
-    for (const auto phase : all_phases) {
+flight::PerPhase<PhaseErrorReport> add_errors(ModelFit& fit) {
+    flight::PerPhase<PhaseErrorReport> reports;
+    for (const auto phase : flight::all_phases) {
         auto& report = reports[phase];
         report.analysis = analyse_errors(fit.samples[phase], fit.fits[phase], fit.weights[phase]);
         report.profile = frequency_profile(fit.samples[phase], fit.fits[phase], report.analysis);
@@ -51,12 +51,12 @@ PerPhase<PhaseErrorReport> add_errors(ModelFit& fit) {
     return reports;
 }
 
-std::string curves_csv(const ModelFit& fit, const PerPhase<PhaseErrorReport>& reports) {
+std::string curves_csv(const ModelFit& fit, const flight::PerPhase<PhaseErrorReport>& reports) {
     std::string text =
         "phase,tau,time_s,power_w,standard_error_w,low_95_w,high_95_w,flights_low_w,flights_high_w,"
         "flights_sd_w,population_low_95_w,population_high_95_w\n";
-    for (const auto phase : all_phases) text += phase_curve_csv(fit, phase, reports[phase].analysis);
+    for (const auto phase : flight::all_phases) text += phase_curve_csv(fit, phase, reports[phase].analysis);
     return text;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,7 +1,7 @@
 #include "mechanical/model_fit.h"
 
 #include "base/error.h"
-#include "mechanical/level_spread.h"
+#include "mechanical/prediction/level_spread.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 std::vector<std::string> names_of(std::span<const FlightSamples> flights) {
@@ -25,9 +25,9 @@ std::vector<std::string> names_of(std::span<const FlightSamples> flights) {
 }
 
 std::string orders_of(const ModelFitOptions& options) {
-    const int takeoff = options.order(Phase::takeoff);
-    const int cruise = options.order(Phase::cruise);
-    const int landing = options.order(Phase::landing);
+    const int takeoff = options.order(flight::Phase::takeoff);
+    const int cruise = options.order(flight::Phase::cruise);
+    const int landing = options.order(flight::Phase::landing);
     if (takeoff == cruise && cruise == landing) return fmt::format("of order {} a phase", takeoff);
     return fmt::format("of orders {} (take-off), {} (cruise), {} (landing)", takeoff, cruise, landing);
 }
@@ -41,7 +41,7 @@ std::string described(const ModelFitOptions& options, std::size_t flights) {
 }
 
 /// Power beyond any aircraft's overflows on the way; a model of that is none.
-void refuse_what_is_no_number(Phase phase, const FourierModel& model) {
+void refuse_what_is_no_number(flight::Phase phase, const FourierModel& model) {
     double sum = model.a0_w;
     for (const double value : model.cos_w) sum += value;
     for (const double value : model.sin_w) sum += value;
@@ -67,7 +67,7 @@ LevelLaw wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) 
 
 }  // namespace
 
-std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, Phase phase) {
+std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, flight::Phase phase) {
     std::vector<PhaseSamples> samples;
     for (const auto& flight : flights) {
         if (!flight.phases[phase]) continue;
@@ -77,7 +77,7 @@ std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flight
     return samples;
 }
 
-FittedPhase fit_phase_model(Phase phase, std::span<const PhaseSamples> flights,
+FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options) {
     auto phase_options = options.phases;
     phase_options.order = options.order(phase);
@@ -87,7 +87,7 @@ FittedPhase fit_phase_model(Phase phase, std::span<const PhaseSamples> flights,
     fitted.model = average_phase(fitted.fit, fitted.weights);
     refuse_what_is_no_number(phase, fitted.model.fourier);
     fitted.model.level_spread = level_spread(fitted.model, flights);
-    if (phase == Phase::cruise) {
+    if (phase == flight::Phase::cruise) {
         fitted.model.airspeed = airspeed_law(flights);
         if (options.level_covariate) fitted.model.level_law = wanted_law(flights, *options.level_covariate);
     }
@@ -108,7 +108,7 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
     model.weighting = to_string(options.weights.weighting);
     for (const auto& name : names) model.flights.push_back({name, {}});
 
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         parts.samples[phase] = samples_of_phase(flights, phase);
         auto fitted = fit_phase_model(phase, parts.samples[phase], options);
         model.phases[phase] = fitted.model;
@@ -126,4 +126,4 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
     return parts;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,26 +1,27 @@
 #pragma once
 
-#include "mechanical/flight_weights.h"
+#include "mechanical/fit/flight_weights.h"
+#include "mechanical/fit/phase_fit.h"
+#include "mechanical/fit/phase_samples.h"
 #include "mechanical/mechanical_model.h"
-#include "mechanical/phase_fit.h"
-#include "mechanical/phase_samples.h"
 
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 struct ModelFitOptions {
     std::string name = "fitted";  ///< of the model
     PhaseFitOptions phases = {};
     WeightOptions weights = {};
     std::optional<Covariate> level_covariate = {};  ///< of the cruise: what its level is to follow
-    PerPhase<std::optional<int>> orders = {};  ///< where a phase is to have another order than phases.order
+    flight::PerPhase<std::optional<int>> orders =
+        {};  ///< where a phase is to have another order than phases.order
 
     /// The order of one phase.
-    int order(Phase phase) const { return orders[phase].value_or(phases.order); }
+    int order(flight::Phase phase) const { return orders[phase].value_or(phases.order); }
 };
 
 /// One phase as it was fitted and averaged.
@@ -33,19 +34,19 @@ struct FittedPhase {
 /// Fits and averages one phase (Eqs. 1, 5-7), with its spread and, for the cruise, its airspeed law and the
 /// level law that was asked for. Throws NoAnswerError for a level covariate that fewer than 3 flights have,
 /// or that does not differ between them, and what fit_phase and flight_weights throw.
-FittedPhase fit_phase_model(Phase phase, std::span<const PhaseSamples> flights,
+FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options = {});
 
 /// A model with what it was made of, flight by flight: what an analysis of its errors needs.
 struct ModelFit {
     MechanicalModel model;
-    PerPhase<std::vector<PhaseSamples>> samples;
-    PerPhase<PhaseFit> fits;                ///< flights in the order of the samples
-    PerPhase<std::vector<double>> weights;  ///< in that order too
+    flight::PerPhase<std::vector<PhaseSamples>> samples;
+    flight::PerPhase<PhaseFit> fits;                ///< flights in the order of the samples
+    flight::PerPhase<std::vector<double>> weights;  ///< in that order too
 };
 
 /// The flights that have the phase, in their order, under their flights' names.
-std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, Phase phase);
+std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, flight::Phase phase);
 
 /// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights
 /// that have it and averaged with their weights. A phase's rms_w is that of the samples about their own
@@ -56,4 +57,4 @@ MechanicalModel fit_mechanical_model(std::span<const FlightSamples> flights,
                                      const ModelFitOptions& options = {});
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options = {});
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <span>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// Of values that are not empty.
 inline double mean_of(std::span<const double> values) {
@@ -19,4 +19,4 @@ inline double sample_sd(std::span<const double> values) {
     return std::sqrt(square_sum / static_cast<double>(values.size() - 1));
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 constexpr std::size_t time_folds = 5;
@@ -54,7 +54,7 @@ std::vector<Fold> blocks_of_time(const PhaseSamples& flight) {
     return folds;
 }
 
-double mean_square_error_w2(Phase phase, const Fold& fold, const PhaseFitOptions& options,
+double mean_square_error_w2(flight::Phase phase, const Fold& fold, const PhaseFitOptions& options,
                             const WeightOptions& weights) {
     const auto fit = fit_phase(phase, fold.seen, options);
     const auto mean = average_phase(fit, flight_weights(fit, phase, weights));
@@ -72,7 +72,7 @@ struct FoldErrors {
     std::string reason;
 };
 
-FoldErrors errors_of(Phase phase, const std::vector<Fold>& folds, const PhaseFitOptions& options,
+FoldErrors errors_of(flight::Phase phase, const std::vector<Fold>& folds, const PhaseFitOptions& options,
                      const WeightOptions& weights) {
     FoldErrors errors;
     try {
@@ -105,8 +105,8 @@ void compare(OrderError& error, const std::vector<double>& own, const std::vecto
 
 }  // namespace
 
-OrderChoice choose_order(Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options,
-                         const WeightOptions& weights) {
+OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flights,
+                         const PhaseFitOptions& options, const WeightOptions& weights) {
     if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
     OrderChoice choice;
     const bool several = flights.size() > 1;
@@ -150,4 +150,4 @@ OrderChoice choose_order(Phase phase, std::span<const PhaseSamples> flights, con
     return choice;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

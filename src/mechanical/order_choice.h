@@ -1,15 +1,15 @@
 #pragma once
 
-#include "mechanical/flight_weights.h"
-#include "mechanical/phase_fit.h"
-#include "mechanical/phase_samples.h"
+#include "mechanical/fit/flight_weights.h"
+#include "mechanical/fit/phase_fit.h"
+#include "mechanical/fit/phase_samples.h"
 
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// The orders that are tried: from 0, a constant, to this.
 inline constexpr int highest_tried_order = 6;
@@ -37,7 +37,7 @@ struct OrderChoice {
 /// in turn. Chosen is the lowest order whose mean square error is within one standard error (of the
 /// difference, fold by fold) of the least. options.order is not read; weights by hand count as uniform.
 /// Throws NoAnswerError if no order can be fitted.
-OrderChoice choose_order(Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options,
-                         const WeightOptions& weights);
+OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flights,
+                         const PhaseFitOptions& options, const WeightOptions& weights);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

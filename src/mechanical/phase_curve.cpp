@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 std::size_t points_of_curve(const FourierModel& model, double duration_s) {
     const double turns = model.omega_rad_per_s * duration_s / units::rad_per_turn;
@@ -32,4 +32,4 @@ double curve_rms_difference_w(const PhaseModel& a, const PhaseModel& b) {
     return std::sqrt(sum / static_cast<double>(points));
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

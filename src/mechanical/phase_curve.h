@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// How many evenly spread points show every swing of the series over `duration_s`: 16 a period of its highest
 /// harmonic, and at least 1000.
@@ -18,4 +18,4 @@ std::vector<double> curve_w(const FourierModel& model, double duration_s, std::s
 /// curves are compared at equal parts of the phase, whatever the seconds.
 double curve_rms_difference_w(const PhaseModel& a, const PhaseModel& b);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 /// What was expected of a cruise, in flight.
@@ -116,7 +116,7 @@ EnergyEstimate estimate_of(const PhaseForecast& phase, double energy_wh, double 
 
 }  // namespace
 
-PhaseForecast forecast_of(const MechanicalModel& model, Phase phase) {
+PhaseForecast forecast_of(const MechanicalModel& model, flight::Phase phase) {
     PhaseForecast forecast{model.phases[phase], 0.0};
     for (const auto& flight : model.flights) {
         if (const auto& part = flight.phases[phase])
@@ -186,4 +186,4 @@ RestPrediction predict_rest(const PhaseForecast& cruise, const FlownSoFar& flown
     return rest;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "mechanical/drift.h"
-#include "mechanical/energy_estimate.h"
-#include "mechanical/flown_so_far.h"
 #include "mechanical/mechanical_model.h"
+#include "mechanical/prediction/drift.h"
+#include "mechanical/prediction/energy_estimate.h"
+#include "mechanical/prediction/flight_progress.h"
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// A phase of the model as a prediction needs it.
 struct PhaseForecast {
@@ -14,7 +14,7 @@ struct PhaseForecast {
 };
 
 /// The phase of a model with the weights of its flights (all alike where it does not say).
-PhaseForecast forecast_of(const MechanicalModel& model, Phase phase);
+PhaseForecast forecast_of(const MechanicalModel& model, flight::Phase phase);
 
 /// Energy of a phase that will take `duration_s`, before the flight: the stretched curve's integral. Its
 /// interval holds the spread of the flights' mean powers (which contains what a flight drifts in a phase)
@@ -61,4 +61,4 @@ struct RestPrediction {
 RestPrediction predict_rest(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s,
                             LevelSource source);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
-constexpr PerPhase<std::string_view> column_names{{"take-off", "cruise", "landing"}};
+constexpr flight::PerPhase<std::string_view> column_names{{"take-off", "cruise", "landing"}};
 
 std::string as_printed(double value) { return fmt::format("{:.4g}", value); }
 
@@ -23,7 +23,8 @@ std::string percent_of_change(double was, double is) {
 
 std::size_t highest_order(const MechanicalModel& model) {
     std::size_t order = 0;
-    for (const auto phase : all_phases) order = std::max(order, model.phases[phase].fourier.cos_w.size());
+    for (const auto phase : flight::all_phases)
+        order = std::max(order, model.phases[phase].fourier.cos_w.size());
     return order;
 }
 
@@ -81,7 +82,7 @@ TextTable table_one(const MechanicalModel& model, TableIntervals intervals) {
     const auto order = highest_order(model);
     TextTable table;
     add_column(table, "coefficient", row_names(order));
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         add_column(table, std::string(column_names[phase]), column_of(model.phases[phase], order));
         if (intervals == TableIntervals::absent) continue;
         add_column(table, fmt::format("{} +-", column_names[phase]),
@@ -97,7 +98,7 @@ TextTable table_one_beside(const MechanicalModel& published, const MechanicalMod
     auto names = row_names(order);
     names.insert(names.end(), {"duration_s", "curve RMS difference [W]", "a0 difference [%]"});
     add_column(table, "coefficient", names);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto& was = published.phases[phase];
         const auto& is = regenerated.phases[phase];
         auto left = column_of(was, order);
@@ -115,4 +116,4 @@ TextTable table_one_beside(const MechanicalModel& published, const MechanicalMod
     return table;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -3,7 +3,7 @@
 #include "base/text_table.h"
 #include "mechanical/mechanical_model.h"
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// Whether a table has a column beside each phase for half the width of the coefficients' 95 % intervals, as
 /// two digits ("+-"); '-' where the model has no errors, or none for the frequency.
@@ -19,4 +19,4 @@ TextTable table_one(const MechanicalModel& model, TableIntervals intervals = Tab
 TextTable table_one_beside(const MechanicalModel& published, const MechanicalModel& regenerated,
                            TableIntervals intervals = TableIntervals::absent);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 /// Text in which TeX's own characters stand for themselves.
@@ -88,4 +88,4 @@ std::string to_latex(const TextTable& table) {
     return text + "\\hline\n\\end{tabular}" + (scaled ? "}" : "") + "\n\\end{table}\n";
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -2,9 +2,9 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "mechanical/baselines.h"
 #include "mechanical/covariates.h"
 #include "mechanical/prediction.h"
+#include "mechanical/validation/baselines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,18 +12,18 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 /// One phase of the flight left out, and the others that have this phase.
 struct Fold {
-    Phase phase;
+    flight::Phase phase;
     const PhaseSamples& flown;
     std::vector<PhaseSamples> others;
     std::optional<std::size_t> nearest;  ///< among `others`
 };
 
-std::vector<PhaseSamples> phases_of(std::span<const FlightSamples> flights, Phase phase) {
+std::vector<PhaseSamples> phases_of(std::span<const FlightSamples> flights, flight::Phase phase) {
     std::vector<PhaseSamples> samples;
     for (const auto& flight : flights) {
         if (flight.phases[phase]) samples.push_back(*flight.phases[phase]);
@@ -32,13 +32,13 @@ std::vector<PhaseSamples> phases_of(std::span<const FlightSamples> flights, Phas
 }
 
 /// The nearest flight by the durations of all phases, among those that have this one.
-std::optional<std::size_t> nearest_with(Phase phase, std::span<const FlightSamples> flights,
+std::optional<std::size_t> nearest_with(flight::Phase phase, std::span<const FlightSamples> flights,
                                         const FlightSamples& left_out) {
     std::vector<FlightSamples> having;
     std::copy_if(flights.begin(), flights.end(), std::back_inserter(having),
                  [&](const FlightSamples& flight) { return flight.phases[phase].has_value(); });
-    PerPhase<std::optional<double>> durations;
-    for (const auto p : all_phases) {
+    flight::PerPhase<std::optional<double>> durations;
+    for (const auto p : flight::all_phases) {
         if (left_out.phases[p]) durations[p] = left_out.phases[p]->duration_s;
     }
     return nearest_flight(having, durations);
@@ -63,7 +63,7 @@ std::string model_of(Covariate covariate) { return fmt::format("by_{}", to_strin
 void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Covariate> covariates) {
     const double duration_s = fold.flown.duration_s;
     for (const auto covariate : covariates) {
-        const auto power = fold.phase == Phase::cruise
+        const auto power = fold.phase == flight::Phase::cruise
                                ? power_by_covariate(fold.others, fold.flown, covariate)
                                : constant_mean(fold.others);
         if (power) estimates.emplace_back(model_of(covariate), energy_of(*power, duration_s));
@@ -77,7 +77,7 @@ Estimates predict_phase(const Fold& fold, const ModelFitOptions& options) {
         {"fourier", predict_before_flight(forecast_of_others(fold, options), duration_s)},
         {"constant_mean", energy_of(mean, duration_s)},
         {"nearest_flight", energy_of(power_of_flight(fold.others, fold.nearest.value()), duration_s)}};
-    if (fold.phase != Phase::cruise) {
+    if (fold.phase != flight::Phase::cruise) {
         estimates.emplace_back("airspeed_cubed", energy_of(mean, duration_s));
     } else if (const auto power = power_at_airspeed(fold.others, fold.flown.airspeed_cubed_m3_per_s3)) {
         estimates.emplace_back("airspeed_cubed", energy_of(*power, duration_s));
@@ -125,8 +125,8 @@ Estimates estimates_of(const MeasuredFlight& left_out, const Fold& fold, const M
         add_covariates(estimates, fold, covariates);
         return estimates;
     }
-    if (fold.phase == Phase::takeoff) return {};
-    if (fold.phase == Phase::landing) return predict_landing_in_flight(fold, options);
+    if (fold.phase == flight::Phase::takeoff) return {};
+    if (fold.phase == flight::Phase::landing) return predict_landing_in_flight(fold, options);
     const double remaining_s = fold.flown.duration_s - left_out.flown->cruise_s();
     if (remaining_s <= 0.0) return {};
     return predict_cruise_in_flight(fold, *left_out.flown, remaining_s, options);
@@ -142,7 +142,7 @@ FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& mode
 ValidatedFlight validate_flight(const MeasuredFlight& left_out, std::span<const FlightSamples> others,
                                 const ModelFitOptions& options, std::span<const Covariate> covariates) {
     ValidatedFlight flight{left_out.samples.flight, {}, {}, {}};
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         if (!left_out.samples.phases[phase]) continue;
         const Fold fold{phase, *left_out.samples.phases[phase], phases_of(others, phase),
                         nearest_with(phase, others, left_out.samples)};
@@ -154,9 +154,9 @@ ValidatedFlight validate_flight(const MeasuredFlight& left_out, std::span<const 
         }
     }
     // A model that cannot tell the cruise (no airspeed, no spread) only repeats others in the other phases.
-    if (flight.measured_wh[Phase::cruise]) {
+    if (flight.measured_wh[flight::Phase::cruise]) {
         std::erase_if(flight.predictions,
-                      [](const auto& prediction) { return !prediction.phases[Phase::cruise]; });
+                      [](const auto& prediction) { return !prediction.phases[flight::Phase::cruise]; });
     }
     return flight;
 }
@@ -188,4 +188,4 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     return validated;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,34 +1,34 @@
 #pragma once
 
-#include "mechanical/energy_estimate.h"
-#include "mechanical/flown_so_far.h"
 #include "mechanical/model_fit.h"
+#include "mechanical/prediction/energy_estimate.h"
+#include "mechanical/prediction/flight_progress.h"
 
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// One flight as the validation needs it: what may be fitted, and the measured truth of the same phases.
 struct MeasuredFlight {
     FlightSamples samples;
-    PerPhase<std::optional<double>> energy_wh;          ///< integral of the measured power
-    PerPhase<std::optional<double>> counter_energy_wh;  ///< what the on-board counter said
-    std::optional<FlownSoFar> flown;                    ///< only for a validation in flight
+    flight::PerPhase<std::optional<double>> energy_wh;          ///< integral of the measured power
+    flight::PerPhase<std::optional<double>> counter_energy_wh;  ///< what the on-board counter said
+    std::optional<FlownSoFar> flown;                            ///< only for a validation in flight
 };
 
 /// What one model says of a flight that it has not seen.
 struct FlightPrediction {
     std::string model;
-    PerPhase<std::optional<EnergyEstimate>> phases;
+    flight::PerPhase<std::optional<EnergyEstimate>> phases;
 };
 
 struct ValidatedFlight {
     std::string flight;
-    PerPhase<std::optional<double>> measured_wh;  ///< phases that were predicted
-    PerPhase<std::optional<double>> counter_wh;
+    flight::PerPhase<std::optional<double>> measured_wh;  ///< phases that were predicted
+    flight::PerPhase<std::optional<double>> counter_wh;
     std::vector<FlightPrediction> predictions;
 };
 
@@ -51,4 +51,4 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
                                            const ModelFitOptions& options = {},
                                            std::span<const Covariate> covariates = {});
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 const FlightPrediction* find_prediction(const ValidatedFlight& flight, const std::string& model) {
@@ -14,19 +14,20 @@ const FlightPrediction* find_prediction(const ValidatedFlight& flight, const std
     return found == flight.predictions.end() ? nullptr : &*found;
 }
 
-bool was_predicted(const ValidatedFlight& flight, std::optional<Phase> phase) {
-    return std::any_of(all_phases.begin(), all_phases.end(),
-                       [&](Phase p) { return (!phase || p == *phase) && flight.measured_wh[p].has_value(); });
+bool was_predicted(const ValidatedFlight& flight, std::optional<flight::Phase> phase) {
+    return std::any_of(flight::all_phases.begin(), flight::all_phases.end(), [&](flight::Phase p) {
+        return (!phase || p == *phase) && flight.measured_wh[p].has_value();
+    });
 }
 
 }  // namespace
 
 std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, const std::string& model,
-                                                std::optional<Phase> phase) {
+                                                std::optional<flight::Phase> phase) {
     const auto* prediction = find_prediction(flight, model);
     if (prediction == nullptr || !was_predicted(flight, phase)) return std::nullopt;
     PredictedEnergy energy;
-    for (const auto p : all_phases) {
+    for (const auto p : flight::all_phases) {
         if ((phase && p != *phase) || !flight.measured_wh[p]) continue;
         if (!prediction->phases[p]) return std::nullopt;
         energy.measured_wh += *flight.measured_wh[p];
@@ -36,7 +37,7 @@ std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, c
 }
 
 std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, const std::string& model,
-                                   std::optional<Phase> phase) {
+                                   std::optional<flight::Phase> phase) {
     ModelScore score;
     double percent = 0.0;
     std::size_t covered = 0;
@@ -59,7 +60,7 @@ std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, con
     const auto count = static_cast<double>(score.flights);
     score.mean_absolute_error_wh /= count;
     score.bias_wh /= count;
-    if (phase != Phase::landing && std::isfinite(percent))
+    if (phase != flight::Phase::landing && std::isfinite(percent))
         score.mean_absolute_error_percent = percent / count;
     if (with_interval > 0)
         score.coverage_95 = static_cast<double>(covered) / static_cast<double>(with_interval);
@@ -78,4 +79,4 @@ std::vector<std::string> model_names(std::span<const ValidatedFlight> flights) {
     return names;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 
 /// How one model did over the flights, in one phase or in the whole.
 struct ModelScore {
@@ -21,7 +21,7 @@ struct ModelScore {
 /// The phase's score, or the whole flight's without a phase: the sum over the phases that were predicted.
 /// std::nullopt if the model predicted it for none of the flights, or not for all that another predicted.
 std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, const std::string& model,
-                                   std::optional<Phase> phase);
+                                   std::optional<flight::Phase> phase);
 
 /// A flight's measured and predicted energy in a phase, or in the whole; std::nullopt where it was not
 /// predicted.
@@ -30,9 +30,9 @@ struct PredictedEnergy {
     EnergyEstimate estimate;
 };
 std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, const std::string& model,
-                                                std::optional<Phase> phase);
+                                                std::optional<flight::Phase> phase);
 
 /// The models that predicted anything, in the order in which they are shown.
 std::vector<std::string> model_names(std::span<const ValidatedFlight> flights);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// How a mission's schedule is made in flight; mission/adaptive_flight.h says what the numbers do.
 struct AdaptivePolicy {
@@ -10,4 +10,4 @@ struct AdaptivePolicy {
     double probability = 0.95;           ///< with which the reserve is to be kept, of every decision
 };
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 /// Greater is better: what lasts, by the charge left; then what gave out, by how long it lasted.
@@ -67,4 +67,4 @@ TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
     return table;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

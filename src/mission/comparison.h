@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// The best first: by state of charge left, then (when empty) by how long the battery lasted; those whose
 /// power it cannot deliver last. Equals keep their order.
@@ -15,4 +15,4 @@ std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries);
 /// the probability to land below the reserve if flights were drawn.
 TextTable comparison_table(const std::vector<MissionSummary>& ranked);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

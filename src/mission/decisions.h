@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// What an adaptive policy decided.
 struct Decisions {
@@ -11,4 +11,4 @@ struct Decisions {
     double mechanical_factor = 1.0;  ///< of mechanical power to the model's, as learned at the end
 };
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 constexpr double same_time_s = 1e-9;
@@ -58,7 +58,7 @@ std::vector<Demand> disturbed(const std::vector<Demand>& demands,
     return result;
 }
 
-Battery disturbed(Battery battery, const std::vector<Disturbance>& disturbances) {
+battery::Battery disturbed(battery::Battery battery, const std::vector<Disturbance>& disturbances) {
     for (const auto& disturbance : disturbances) {
         battery.capacity_ah *= disturbance.capacity_factor;
         battery.resistance_ohm *= disturbance.resistance_factor;
@@ -67,10 +67,11 @@ Battery disturbed(Battery battery, const std::vector<Disturbance>& disturbances)
     return battery;
 }
 
-double at_same_part_s(double time_s, const PerPhase<double>& planned_s, const PerPhase<double>& flown_s) {
+double at_same_part_s(double time_s, const flight::PerPhase<double>& planned_s,
+                      const flight::PerPhase<double>& flown_s) {
     double planned_begin_s = 0.0;
     double flown_begin_s = 0.0;
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const double in_phase_s = time_s - planned_begin_s;
         if (in_phase_s < planned_s[phase])
             return flown_begin_s + in_phase_s * (flown_s[phase] / planned_s[phase]);
@@ -81,7 +82,8 @@ double at_same_part_s(double time_s, const PerPhase<double>& planned_s, const Pe
 }
 
 std::vector<Disturbance> at_same_part(std::vector<Disturbance> disturbances,
-                                      const PerPhase<double>& planned_s, const PerPhase<double>& flown_s) {
+                                      const flight::PerPhase<double>& planned_s,
+                                      const flight::PerPhase<double>& flown_s) {
     for (auto& disturbance : disturbances) {
         disturbance.from_s = at_same_part_s(disturbance.from_s, planned_s, flown_s);
         disturbance.to_s = at_same_part_s(disturbance.to_s, planned_s, flown_s);
@@ -89,8 +91,8 @@ std::vector<Disturbance> at_same_part(std::vector<Disturbance> disturbances,
     return disturbances;
 }
 
-std::vector<Stretch> at_same_part(std::vector<Stretch> schedule, const PerPhase<double>& planned_s,
-                                  const PerPhase<double>& flown_s) {
+std::vector<Stretch> at_same_part(std::vector<Stretch> schedule, const flight::PerPhase<double>& planned_s,
+                                  const flight::PerPhase<double>& flown_s) {
     for (auto& stretch : schedule) {
         const double planned = planned_s[stretch.phase];
         const double flown = flown_s[stretch.phase];
@@ -100,4 +102,4 @@ std::vector<Stretch> at_same_part(std::vector<Stretch> schedule, const PerPhase<
     return schedule;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "mission/demand.h"
+#include "mission/load_segments.h"
 
 #include <limits>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// What happens to a flight that nobody planned for, from one mission time to another.
 struct Disturbance {
@@ -26,17 +26,19 @@ std::vector<Demand> disturbed(const std::vector<Demand>& demands,
                               const std::vector<Disturbance>& disturbances);
 
 /// The pack as it really is.
-Battery disturbed(Battery battery, const std::vector<Disturbance>& disturbances);
+battery::Battery disturbed(battery::Battery battery, const std::vector<Disturbance>& disturbances);
 
 /// Where a time of a mission lies when its phases take other durations: at the same part of the same phase.
-double at_same_part_s(double time_s, const PerPhase<double>& planned_s, const PerPhase<double>& flown_s);
+double at_same_part_s(double time_s, const flight::PerPhase<double>& planned_s,
+                      const flight::PerPhase<double>& flown_s);
 
 /// The same for all their times.
 std::vector<Disturbance> at_same_part(std::vector<Disturbance> disturbances,
-                                      const PerPhase<double>& planned_s, const PerPhase<double>& flown_s);
+                                      const flight::PerPhase<double>& planned_s,
+                                      const flight::PerPhase<double>& flown_s);
 
 /// The same for a schedule.
-std::vector<Stretch> at_same_part(std::vector<Stretch> schedule, const PerPhase<double>& planned_s,
-                                  const PerPhase<double>& flown_s);
+std::vector<Stretch> at_same_part(std::vector<Stretch> schedule, const flight::PerPhase<double>& planned_s,
+                                  const flight::PerPhase<double>& flown_s);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -4,7 +4,7 @@
 #include "mechanical/moments.h"
 #include "mechanical/prediction.h"
 #include "mission/disturbance.h"
-#include "mission/drain_spread.h"
+#include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include <boost/random/normal_distribution.hpp>
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 constexpr double shortest_part = 0.1;    ///< of a planned duration
@@ -25,7 +25,7 @@ void note_source(FlightSpreads& spreads, bool is_drawn, const std::string& sourc
     (is_drawn ? spreads.drawn : spreads.not_drawn).push_back(fmt::format("{} ({})", source, basis));
 }
 
-void find_level(const Mission& mission, Phase phase, FlightSpreads& spreads) {
+void find_level(const Mission& mission, flight::Phase phase, FlightSpreads& spreads) {
     const auto source = fmt::format("{} level", to_string(phase));
     auto& sd_w = spreads.level_sd_w[phase];
     const auto& model = mission.mechanical->phases[phase];
@@ -33,7 +33,7 @@ void find_level(const Mission& mission, Phase phase, FlightSpreads& spreads) {
     if (const auto stated_w = stated_level_sd_w(mission, phase)) {
         sd_w = *stated_w;
         basis = fmt::format("sd {:.4g} W, stated", sd_w);
-    } else if (phase == Phase::cruise && mission.cruise_level) {
+    } else if (phase == flight::Phase::cruise && mission.cruise_level) {
         sd_w = mission.cruise_level->sd_w.value();
         basis = fmt::format("sd {:.4g} W, of the flights about what the conditions say", sd_w);
     } else if (const auto& spread = model.level_spread) {
@@ -47,7 +47,7 @@ void find_level(const Mission& mission, Phase phase, FlightSpreads& spreads) {
     note_source(spreads, sd_w > 0.0, source, basis);
 }
 
-void find_duration(const Mission& mission, Phase phase, FlightSpreads& spreads) {
+void find_duration(const Mission& mission, flight::Phase phase, FlightSpreads& spreads) {
     const auto source = fmt::format("{} duration", to_string(phase));
     auto& sd_s = spreads.duration_sd_s[phase];
     std::vector<double> flown_s;
@@ -61,7 +61,7 @@ void find_duration(const Mission& mission, Phase phase, FlightSpreads& spreads) 
         sd_s = *stated_s;
         basis = fmt::format("sd {:.4g} s, stated", sd_s);
     } else if (flown_s.size() >= 2) {
-        const double relative = sample_sd(flown_s) / mean_of(flown_s);
+        const double relative = mechanical::sample_sd(flown_s) / mechanical::mean_of(flown_s);
         sd_s = mission.duration_s[phase] * relative *
                std::sqrt(1.0 + forecast_of(*mission.mechanical, phase).weight_square_sum);
         basis = fmt::format("sd {:.4g} s, of {} flights", sd_s, flown_s.size());
@@ -110,14 +110,14 @@ void find_battery(const Mission& mission, FlightSpreads& spreads) {
 }
 
 /// `value` moved by `z` deviations of an interval.
-double moved(double value, const std::optional<Interval>& interval, double z, double least) {
+double moved(double value, const std::optional<battery::Interval>& interval, double z, double least) {
     if (!interval) return value;
     const double sd = (z < 0.0 ? value - interval->low : interval->high - value) / sd_per_half_95;
     return std::max(least, value + z * sd);
 }
 
 /// The same in the logarithm.
-double moved_logarithm(double value, const std::optional<Interval>& interval, double z) {
+double moved_logarithm(double value, const std::optional<battery::Interval>& interval, double z) {
     if (!interval || interval->low <= 0.0) return moved(value, interval, z, least_part * value);
     const double sd = std::log(z < 0.0 ? value / interval->low : interval->high / value) / sd_per_half_95;
     return value * std::exp(z * sd);
@@ -138,7 +138,7 @@ class Normals {
 };
 
 /// Every number is drawn, needed or not: missions that differ in one source have the others in common.
-void draw_battery(const Uncertainty& stated, Normals& normal, Battery& battery) {
+void draw_battery(const Uncertainty& stated, Normals& normal, battery::Battery& battery) {
     const auto& intervals = battery.intervals;
     const double capacity_z = normal();
     const double voltage_z = normal();
@@ -169,7 +169,7 @@ void draw_battery(const Uncertainty& stated, Normals& normal, Battery& battery) 
     }
 }
 
-void draw_compute(const Uncertainty& stated, Normals& normal, ComputeModel& compute) {
+void draw_compute(const Uncertainty& stated, Normals& normal, compute::ComputeModel& compute) {
     for (std::size_t i = 0; i < compute.components.size(); ++i) {
         auto& profile = compute.components[i].profile;
         const double common_z = normal();
@@ -186,7 +186,7 @@ void draw_compute(const Uncertainty& stated, Normals& normal, ComputeModel& comp
 
 FlightSpreads find_spreads(const Mission& mission) {
     FlightSpreads spreads;
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
         if (mission.mechanical) find_level(mission, phase, spreads);
         find_duration(mission, phase, spreads);
@@ -215,7 +215,7 @@ Mission draw_flight(const Mission& mission, const FlightSpreads& spreads, std::u
                     std::uint64_t index) {
     Normals normal(seed, index);
     auto flight = mission;
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const double level_z = normal();
         const double duration_z = normal();
         if (flight.mechanical)
@@ -230,4 +230,4 @@ Mission draw_flight(const Mission& mission, const FlightSpreads& spreads, std::u
     return flight;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// How the flights of a mission differ, from what the mission states and else from what its models know.
 struct FlightSpreads {
-    PerPhase<double> level_sd_w;  ///< of a phase's mean mechanical power
-    PerPhase<double> duration_sd_s;
+    flight::PerPhase<double> level_sd_w;  ///< of a phase's mean mechanical power
+    flight::PerPhase<double> duration_sd_s;
     std::vector<std::string> drawn;      ///< what is drawn, and what that rests on
     std::vector<std::string> not_drawn;  ///< what is taken as it is, for want of a spread
 };
@@ -37,4 +37,4 @@ bool has_spread(const Mission& mission);
 Mission draw_flight(const Mission& mission, const FlightSpreads& spreads, std::uint64_t seed,
                     std::uint64_t index);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

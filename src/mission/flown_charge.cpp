@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 constexpr double coarse_step_s = 1.0;
@@ -22,14 +22,14 @@ bool never_charges(const Demand& demand) {
     return least_w >= 0.0;
 }
 
-double drained_percent(const Battery& battery, const Demand& demand, double until_s) {
+double drained_percent(const battery::Battery& battery, const Demand& demand, double until_s) {
     const double energy_j = mechanical_energy_j(demand, until_s) + compute_energy_j(demand, until_s);
     return units::percent_of(energy_j / battery.voltage_v, units::coulomb_from_ah(battery.capacity_ah));
 }
 
 }  // namespace
 
-Discharge after_drop(Discharge state, const Demand& demand) {
+battery::Discharge after_drop(battery::Discharge state, const Demand& demand) {
     state.soc_percent -= demand.soc_drop_percent;
     if (state.soc_percent <= 0.0) {
         state.soc_percent = 0.0;
@@ -38,7 +38,7 @@ Discharge after_drop(Discharge state, const Demand& demand) {
     return state;
 }
 
-Discharge after_demand(const Mission& mission, const Demand& demand, Discharge state) {
+battery::Discharge after_demand(const Mission& mission, const Demand& demand, battery::Discharge state) {
     if (state.ended_at_s() || state.undeliverable) return state;
     if (demand.soc_drop_percent > 0.0) state = after_drop(state, demand);
     if (state.ended_at_s()) return state;
@@ -57,4 +57,4 @@ Discharge after_demand(const Mission& mission, const Demand& demand, Discharge s
                      {coarse_step_s, mission.cutoff_voltage_v});
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 Mission with_schedule(const Mission& mission, std::vector<Stretch> schedule) {
     auto flown = mission;
@@ -22,4 +22,4 @@ double missing_percent(const Mission& mission, const MissionSummary& summary, do
                                        full_energy_wh(mission.battery));
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// The mission with a schedule, no longer to be planned.
 Mission with_schedule(const Mission& mission, std::vector<Stretch> schedule);
@@ -13,4 +13,4 @@ Mission with_schedule(const Mission& mission, std::vector<Stretch> schedule);
 /// battery gave out as a part of what a full one holds. Negative if there is more.
 double missing_percent(const Mission& mission, const MissionSummary& summary, double wanted_percent);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

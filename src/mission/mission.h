@@ -15,19 +15,19 @@
 #include <string_view>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// A flight, the software that runs in it, and the battery that feeds both.
 struct Mission {
     std::string file;
     std::string name;
-    std::optional<MechanicalModel> mechanical;  ///< none: computing alone
-    PhaseClock phase_clock = PhaseClock::stretched;
+    std::optional<mechanical::MechanicalModel> mechanical;  ///< none: computing alone
+    mechanical::PhaseClock phase_clock = mechanical::PhaseClock::stretched;
     /// The cruise's mean power under the stated conditions; `mechanical` has this level then.
-    std::optional<ConstantPower> cruise_level = {};
-    PerPhase<double> duration_s;  ///< as flown; 0 leaves a phase out
-    Battery battery;
-    ComputeModel compute;
+    std::optional<mechanical::ConstantPower> cruise_level = {};
+    flight::PerPhase<double> duration_s;  ///< as flown; 0 leaves a phase out
+    battery::Battery battery;
+    compute::ComputeModel compute;
     std::vector<std::optional<Utility>> utilities;  ///< one a component (or none at all)
     /// In order, covers each instant of each phase exactly once; of a mission that is yet to be planned, only
     /// what is fixed beforehand.
@@ -81,4 +81,4 @@ Mission read_mission(const std::filesystem::path& path, const MissionReading& re
 Mission parse_mission(std::string_view text, const std::filesystem::path& path,
                       const MissionReading& reading = {});
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 std::optional<double> mean_worth(const Mission& mission, double until_s) {
     const auto& utilities = mission.utilities;
     if (std::none_of(utilities.begin(), utilities.end(), [](const auto& u) { return u.has_value(); })) {
         return std::nullopt;
     }
-    PerPhase<double> begins_s;
+    flight::PerPhase<double> begins_s;
     double duration_s = 0.0;
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         begins_s[phase] = duration_s;
         duration_s += mission.duration_s[phase];
     }
@@ -24,4 +24,4 @@ std::optional<double> mean_worth(const Mission& mission, double until_s) {
     return sum / duration_s;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,17 +1,17 @@
 #include "mission/plan.h"
 
-#include "mission/drain_spread.h"
 #include "mission/flown_schedule.h"
-#include "mission/simulated_plan.h"
+#include "mission/planning/plan_by_simulation.h"
+#include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 constexpr int most_rounds = 20;
 
-std::optional<std::size_t> choice_of(const Planner& planner, const Configuration& run) {
+std::optional<std::size_t> choice_of(const Planner& planner, const compute::Configuration& run) {
     const auto& known = planner.drains.configurations;
     const auto found = std::find(known.begin(), known.end(), run);
     if (found == known.end()) return std::nullopt;
@@ -122,4 +122,4 @@ MissionSummary labelled_summary(const MissionPlan& plan) {
     return summary;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,19 +1,20 @@
 #pragma once
 
-#include "mission/planner.h"
+#include "mission/planning/knapsack.h"
+#include "mission/planning/planner.h"
 #include "mission/simulation.h"
-#include "mission/slot_choice.h"
 
 #include <optional>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// Where a plan begins: before the flight, or in it.
 struct PlanStart {
     double time_s = 0.0;  ///< of the mission
     double soc_percent = 100.0;
-    std::optional<Configuration> running;  ///< for the dwell time; ignored if it is none of the planner's
+    std::optional<compute::Configuration>
+        running;  ///< for the dwell time; ignored if it is none of the planner's
     double running_for_s = 0.0;
     double mechanical_factor = 1.0;  ///< of what mechanical power drains, to what the model foresees
 };
@@ -53,4 +54,4 @@ MissionPlan plan_mission(const Mission& mission, const std::optional<double>& pr
 /// What the flown mission comes to, labelled as optimal (its bound is within 0.1 %) or planned.
 MissionSummary labelled_summary(const MissionPlan& plan);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// What a planner may choose for one component.
 struct ComponentChoices {
@@ -17,4 +17,4 @@ struct PlanSettings {
     std::vector<ComponentChoices> choices;  ///< one a component
 };
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

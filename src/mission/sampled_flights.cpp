@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 constexpr double same_time_s = 1e-6;  ///< as in simulation.cpp: empty at the very end has lasted
@@ -31,8 +31,8 @@ struct Landing {
 };
 
 /// Follows the charge through a demand and notes it at `times_s`, of which `noted` have been already.
-Discharge follow(const Mission& mission, const Demand& demand, Discharge charge,
-                 const std::vector<double>& times_s, std::vector<double>& noted_percent) {
+battery::Discharge follow(const Mission& mission, const Demand& demand, battery::Discharge charge,
+                          const std::vector<double>& times_s, std::vector<double>& noted_percent) {
     auto part = demand;
     while (noted_percent.size() < times_s.size() && times_s[noted_percent.size()] < demand.to_s) {
         part.to_s = std::max(part.from_s, times_s[noted_percent.size()]);
@@ -50,7 +50,7 @@ Landing land(const Mission& flown, const std::vector<Disturbance>& disturbances,
     auto mission = flown;
     mission.battery = disturbed(flown.battery, disturbances);
     Landing landing;
-    Discharge charge;
+    battery::Discharge charge;
     charge.soc_percent = mission.initial_soc_percent;
     const auto demands = disturbed(demands_of(mission), disturbances);
     for (const auto& demand : demands) charge = follow(mission, demand, charge, times_s, landing.soc_percent);
@@ -118,7 +118,7 @@ double quantile(const std::vector<double>& sorted, double percent) {
 }
 
 /// Wilson's interval of a share `p` of n.
-Interval wilson_interval(double p, double n) {
+battery::Interval wilson_interval(double p, double n) {
     const double z2 = z_95 * z_95;
     const double middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
     const double reach = z_95 / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
@@ -178,8 +178,8 @@ SampledFlights sample_flights(const Flyable& flyable, const std::vector<Disturba
     std::vector<double> final_percent;
     final_percent.reserve(landings.size());
     for (const auto& landing : landings) final_percent.push_back(landing.final_soc_percent);
-    flights.final_soc_mean_percent = mean_of(final_percent);
-    flights.final_soc_sd_percent = sample_sd(final_percent);
+    flights.final_soc_mean_percent = mechanical::mean_of(final_percent);
+    flights.final_soc_sd_percent = mechanical::sample_sd(final_percent);
     std::sort(final_percent.begin(), final_percent.end());
     for (std::size_t i = 0; i < shown_quantiles_percent.size(); ++i)
         flights.final_soc_quantiles_percent[i] = quantile(final_percent, shown_quantiles_percent[i]);
@@ -214,4 +214,4 @@ std::string to_csv(const std::vector<SocBand>& bands) {
     return text;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

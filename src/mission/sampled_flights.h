@@ -1,13 +1,13 @@
 #pragma once
 
-#include "mission/flyable.h"
+#include "mission/prepared_mission.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 struct SamplingOptions {
     std::size_t samples = 1000;
@@ -28,4 +28,4 @@ std::string describe(const SampledFlights& flights);
 /// time_s,soc_p05_percent,soc_p50_percent,soc_p95_percent
 std::string to_csv(const std::vector<SocBand>& bands);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

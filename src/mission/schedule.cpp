@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
-std::string spell(Phase phase, double from_s, double to_s) {
+std::string spell(flight::Phase phase, double from_s, double to_s) {
     return fmt::format("{} from {} s to {} s", to_string(phase), from_s, to_s);
 }
 
@@ -20,7 +20,7 @@ struct Filler {
 };
 
 struct Fillers {
-    PerPhase<Filler> of_phase;
+    flight::PerPhase<Filler> of_phase;
     Filler of_mission;
 };
 
@@ -68,7 +68,8 @@ void refuse_unused(const Filler& filler) {
                      "add an entry with `otherwise = true`; `run = {}` runs nothing");
 }
 
-std::vector<const ScheduleEntry*> explicit_entries(const std::vector<ScheduleEntry>& entries, Phase phase) {
+std::vector<const ScheduleEntry*> explicit_entries(const std::vector<ScheduleEntry>& entries,
+                                                   flight::Phase phase) {
     std::vector<const ScheduleEntry*> found;
     for (const auto& entry : entries) {
         if (!entry.otherwise && entry.phase == phase) found.push_back(&entry);
@@ -78,7 +79,7 @@ std::vector<const ScheduleEntry*> explicit_entries(const std::vector<ScheduleEnt
     return found;
 }
 
-void refuse_overlaps(const std::vector<ScheduleEntry>& entries, Phase phase, double tolerance_s) {
+void refuse_overlaps(const std::vector<ScheduleEntry>& entries, flight::Phase phase, double tolerance_s) {
     const auto sorted = explicit_entries(entries, phase);
     for (std::size_t i = 1; i < sorted.size(); ++i) {
         if (sorted[i]->from_s < sorted[i - 1]->to_s - tolerance_s) refuse_overlap(*sorted[i - 1], *sorted[i]);
@@ -86,7 +87,7 @@ void refuse_overlaps(const std::vector<ScheduleEntry>& entries, Phase phase, dou
 }
 
 /// Appends the stretches of one phase, whose explicit entries do not overlap.
-void lay_out_phase(const std::vector<ScheduleEntry>& entries, Phase phase, double duration_s,
+void lay_out_phase(const std::vector<ScheduleEntry>& entries, flight::Phase phase, double duration_s,
                    Fillers& fillers, std::vector<Stretch>& stretches) {
     const double tolerance_s = same_time_tolerance_s(duration_s);
     double covered_s = 0.0;
@@ -115,14 +116,15 @@ void lay_out_phase(const std::vector<ScheduleEntry>& entries, Phase phase, doubl
 
 }  // namespace
 
-std::vector<Stretch> lay_out(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s) {
+std::vector<Stretch> lay_out(const std::vector<ScheduleEntry>& entries,
+                             const flight::PerPhase<double>& duration_s) {
     if (entries.empty()) throw std::invalid_argument("a schedule has at least one entry");
     auto fillers = find_fillers(entries);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         refuse_overlaps(entries, phase, same_time_tolerance_s(duration_s[phase]));
     }
     std::vector<Stretch> stretches;
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         if (duration_s[phase] > 0.0) lay_out_phase(entries, phase, duration_s[phase], fillers, stretches);
     }
     for (const auto& filler : fillers.of_phase.values) refuse_unused(filler);
@@ -131,14 +133,14 @@ std::vector<Stretch> lay_out(const std::vector<ScheduleEntry>& entries, const Pe
 }
 
 std::vector<Stretch> lay_out_fixed(const std::vector<ScheduleEntry>& entries,
-                                   const PerPhase<double>& duration_s) {
+                                   const flight::PerPhase<double>& duration_s) {
     for (const auto& entry : entries) {
         if (!entry.otherwise) continue;
         throw InputError(entry.where, "`otherwise` leaves nothing to plan",
                          "take it out: what no other entry fixes is planned");
     }
     std::vector<Stretch> stretches;
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const double tolerance_s = same_time_tolerance_s(duration_s[phase]);
         refuse_overlaps(entries, phase, tolerance_s);
         double covered_s = 0.0;
@@ -153,4 +155,4 @@ std::vector<Stretch> lay_out_fixed(const std::vector<ScheduleEntry>& entries,
     return stretches;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,8 +1,8 @@
 #include "mission/simulation.h"
 
 #include "base/units.h"
-#include "mission/demand.h"
 #include "mission/flown_charge.h"
+#include "mission/load_segments.h"
 #include "mission/mission_utility.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 constexpr double most_rows = 1e7;
@@ -44,8 +44,8 @@ std::vector<double> output_times(const Demand& demand, double output_s) {
 }
 
 /// A row, unless the last one says the same already: not every end of a stretch is a jump.
-void add_row(SocCurve& curve, const Battery& battery, const Demand& demand, double time_s,
-             const Discharge& state) {
+void add_row(SocCurve& curve, const battery::Battery& battery, const Demand& demand, double time_s,
+             const battery::Discharge& state) {
     SocRow row;
     row.time_s = time_s;
     row.phase = demand.phase;
@@ -67,10 +67,10 @@ void add_row(SocCurve& curve, const Battery& battery, const Demand& demand, doub
 }
 
 /// Follows the battery from `state` through one demand and adds its rows.
-Discharge run_demand(const Mission& mission, const Demand& demand, const SimulationSteps& steps,
-                     Discharge state, SocCurve& curve) {
+battery::Discharge run_demand(const Mission& mission, const Demand& demand, const SimulationSteps& steps,
+                              battery::Discharge state, SocCurve& curve) {
     const auto& battery = mission.battery;
-    const DischargeOptions options{steps.integration_s, mission.cutoff_voltage_v};
+    const battery::DischargeOptions options{steps.integration_s, mission.cutoff_voltage_v};
     const auto load = [&](double time_s) { return power_w(demand, time_s); };
     const auto times = output_times(demand, steps.output_s);
     if (demand.soc_drop_percent > 0.0 && !state.ended_at_s()) {
@@ -86,8 +86,8 @@ Discharge run_demand(const Mission& mission, const Demand& demand, const Simulat
                 return state;
             }
             if (const auto ended_at_s = state.ended_at_s()) {
-                const Discharge before{state.soc_percent, std::nullopt, std::nullopt, std::nullopt,
-                                       state.rc_voltage_v};
+                const battery::Discharge before{state.soc_percent, std::nullopt, std::nullopt, std::nullopt,
+                                                state.rc_voltage_v};
                 add_row(curve, battery, demand, *ended_at_s, before);  // the last row with a current,
                 add_row(curve, battery, demand, *ended_at_s, state);   // and the first without
             }
@@ -109,7 +109,8 @@ void add_energies(const std::vector<Demand>& demands, double delivered_until_s, 
     summary.energy_wh = summary.mechanical_energy_wh + summary.compute_energy_wh;
 }
 
-MissionSummary summarize(const Mission& mission, const std::vector<Demand>& demands, const Discharge& end) {
+MissionSummary summarize(const Mission& mission, const std::vector<Demand>& demands,
+                         const battery::Discharge& end) {
     MissionSummary summary;
     summary.mission = mission.name;
     summary.duration_s = demands.back().to_s;
@@ -141,7 +142,7 @@ Simulation simulate(const Mission& planned, const SimulationSteps& steps,
     if (demands.empty() || mission.plan) throw std::invalid_argument("simulate: the mission has no schedule");
     require_output_step(steps.output_s, demands.back().to_s);
     SocCurve curve;
-    Discharge state{mission.initial_soc_percent, std::nullopt, std::nullopt};
+    battery::Discharge state{mission.initial_soc_percent, std::nullopt, std::nullopt};
     for (const auto& demand : demands) {
         state = run_demand(mission, demand, steps, state, curve);
         if (state.undeliverable) break;
@@ -186,4 +187,4 @@ std::string to_csv(const SocCurve& curve) {
     return text;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

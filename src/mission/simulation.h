@@ -4,17 +4,17 @@
 #include "mission/decisions.h"
 #include "mission/disturbance.h"
 #include "mission/mission.h"
-#include "mission/sampled_soc.h"
+#include "mission/sampling/sampled_soc.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 struct SocRow {
     double time_s = 0.0;  ///< since the mission began
-    Phase phase = Phase::takeoff;
+    flight::Phase phase = flight::Phase::takeoff;
     double mechanical_w = 0.0;  ///< what the mission demands, whatever the battery has left
     double compute_w = 0.0;
     double power_w = 0.0;    ///< both together
@@ -44,7 +44,7 @@ struct MissionSummary {
     double duration_s = 0.0;
     std::optional<double> depleted_at_s;  ///< when the battery was empty, if before the mission's end
     std::optional<double> cut_off_at_s;   ///< when its voltage fell below the cut-off, if before the end
-    std::optional<Undeliverable> undeliverable;
+    std::optional<battery::Undeliverable> undeliverable;
     /// Mean worth a second over the whole mission (of a linear utility of FPS with weight 1: mean FPS), where
     /// the mission states utilities. What would run after the battery's end is worth nothing.
     std::optional<double> utility;
@@ -81,4 +81,4 @@ std::string describe(const MissionSummary& summary);
 /// time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v
 std::string to_csv(const SocCurve& curve);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

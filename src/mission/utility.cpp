@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 double interpolated(const Utility& utility, double q) {
@@ -33,7 +33,8 @@ double worth(const Utility& utility, const std::vector<double>& qos) {
     throw std::logic_error("worth: no such shape");
 }
 
-double worth(const std::vector<std::optional<Utility>>& utilities, const Configuration& configuration) {
+double worth(const std::vector<std::optional<Utility>>& utilities,
+             const compute::Configuration& configuration) {
     double sum = 0.0;
     for (const auto& running : configuration) {
         if (running.component >= utilities.size() || !utilities[running.component]) continue;
@@ -42,4 +43,4 @@ double worth(const std::vector<std::optional<Utility>>& utilities, const Configu
     return sum;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

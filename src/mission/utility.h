@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 
 /// How worth grows with the quality of service q. All are monotone.
 enum class UtilityShape {
@@ -30,6 +30,7 @@ double worth(const Utility& utility, const std::vector<double>& qos);
 
 /// What a configuration is worth a second: the sum over the components that run and have a utility.
 /// `utilities` has one entry a component of the model (or none at all).
-double worth(const std::vector<std::optional<Utility>>& utilities, const Configuration& configuration);
+double worth(const std::vector<std::optional<Utility>>& utilities,
+             const compute::Configuration& configuration);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

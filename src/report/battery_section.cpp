@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "report/battery_figures.h"
+#include "report/figures/battery_figures.h"
 #include "report/html.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 /// What the error says, without the place of a file that the reader did not write.
@@ -32,31 +32,32 @@ void add_record(ReportBattery& battery, const ReportFlight& flight) {
         return;
     }
     try {
-        battery.records.push_back(discharge_record(flight.series));
+        battery.records.push_back(battery::discharge_record(flight.series));
     } catch (const InputError& error) {
         battery.silent.push_back({flight.name, reason_of(error, flight.name)});
     }
 }
 
 /// `most` of the records, the first and the last among them.
-std::vector<DischargeRecord> spread_evenly(std::vector<DischargeRecord> records, std::size_t most) {
+std::vector<battery::DischargeRecord> spread_evenly(std::vector<battery::DischargeRecord> records,
+                                                    std::size_t most) {
     if (records.size() <= most) return records;
-    std::vector<DischargeRecord> chosen;
+    std::vector<battery::DischargeRecord> chosen;
     for (std::size_t i = 0; i < most; ++i) {
         chosen.push_back(std::move(records[most == 1 ? 0 : i * (records.size() - 1) / (most - 1)]));
     }
     return chosen;
 }
 
-TextTable parameters_table(const BatteryIdentification& identified) {
+TextTable parameters_table(const battery::BatteryIdentification& identified) {
     TextTable table{{"parameter", "value", "95 %, low", "95 %, high", "known from"}, {}};
-    const auto add = [&](const std::string& name, double value, const std::optional<Interval>& interval,
-                         const std::string& origin) {
-        const auto end = [&](double Interval::*side) {
+    const auto add = [&](const std::string& name, double value,
+                         const std::optional<battery::Interval>& interval, const std::string& origin) {
+        const auto end = [&](double battery::Interval::*side) {
             return interval ? fmt::format("{:.4g}", (*interval).*side) : std::string("-");
         };
-        table.rows.push_back(
-            {name, fmt::format("{:.4g}", value), end(&Interval::low), end(&Interval::high), origin});
+        table.rows.push_back({name, fmt::format("{:.4g}", value), end(&battery::Interval::low),
+                              end(&battery::Interval::high), origin});
     };
     const std::string voltages = "voltage under load";
     add("series resistance [ohm]", identified.fit.resistance_ohm, identified.errors.resistance_ohm, voltages);
@@ -132,7 +133,7 @@ std::string silent_html(const ReportBattery& battery) {
 void add_identified(Section& section, const ReportBattery& battery) {
     const auto& identified = *battery.identified;
     section.html += paragraph(rests_on(battery));
-    if (identified.capacity.origin == CapacityOrigin::chart) {
+    if (identified.capacity.origin == battery::CapacityOrigin::chart) {
         section.html += paragraph(
             "No flight tells the capacity, as none runs empty: it is a guess after the usual chart of LiPo "
             "cells. Give what the pack says with --capacity.",
@@ -155,8 +156,8 @@ void add_identified(Section& section, const ReportBattery& battery) {
 
 }  // namespace
 
-ReportBattery identify_for_report(std::span<const ReportFlight> flights, const IdentificationOptions& options,
-                                  std::size_t most) {
+ReportBattery identify_for_report(std::span<const ReportFlight> flights,
+                                  const battery::IdentificationOptions& options, std::size_t most) {
     ReportBattery battery;
     for (const auto& flight : flights) add_record(battery, flight);
     battery.usable = battery.records.size();
@@ -193,4 +194,4 @@ Section battery_section(const ReportBattery& battery) {
     return section;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

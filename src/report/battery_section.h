@@ -2,14 +2,14 @@
 
 #include "battery/identification.h"
 #include "report/report_flight.h"
-#include "report/section.h"
+#include "report/sections/section.h"
 
 #include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 /// A flight that says nothing of the battery.
 struct BatterySilence {
@@ -19,22 +19,22 @@ struct BatterySilence {
 
 /// The battery that flights were flown on, as far as they tell it.
 struct ReportBattery {
-    std::vector<DischargeRecord> records;  ///< of the flights that it rests on
+    std::vector<battery::DischargeRecord> records;  ///< of the flights that it rests on
     std::vector<BatterySilence> silent;
     std::size_t usable = 0;  ///< flights that could be used; more than records where their number is limited
-    std::optional<BatteryIdentification> identified;
-    std::vector<LeftOutCheck> left_out;  ///< one a record, or empty
-    std::string no_answer;               ///< why it was not identified
+    std::optional<battery::BatteryIdentification> identified;
+    std::vector<battery::LeftOutCheck> left_out;  ///< one a record, or empty
+    std::string no_answer;                        ///< why it was not identified
 };
 
 /// Identifies the battery from the flights that have measured current and voltage: from `most` of them,
 /// spread evenly, where there are more (the work grows with their square). Throws UsageError as
 /// identify_battery.
-ReportBattery identify_for_report(std::span<const ReportFlight> flights, const IdentificationOptions& options,
-                                  std::size_t most);
+ReportBattery identify_for_report(std::span<const ReportFlight> flights,
+                                  const battery::IdentificationOptions& options, std::size_t most);
 
 /// Measured against modelled voltage, the open-circuit curve, parameters with intervals and how well flights
 /// are foretold that the fit has not seen; or why there is no such battery.
 Section battery_section(const ReportBattery& battery);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 std::string dumped(const VegaJson& json) {
@@ -102,4 +102,4 @@ std::string script_json(const VegaJson& json) {
     return safe;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 using VegaJson = nlohmann::ordered_json;
 
@@ -66,4 +66,4 @@ std::string valid_utf8(std::string_view text);
 /// As JSON that may stand in an HTML script element, whatever its texts hold.
 std::string script_json(const VegaJson& json);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 constexpr int not_there = 127;
@@ -84,4 +84,4 @@ FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& 
     return files;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "report/section.h"
+#include "report/sections/section.h"
 #include "report/web_files.h"
 
 #include <filesystem>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 /// Which files were made of every figure, beside its specification.
 struct FigureFiles {
@@ -21,4 +21,4 @@ struct FigureFiles {
 FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
                           const std::filesystem::path& folder);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -2,30 +2,30 @@
 
 #include "base/units.h"
 #include "flight/phase_statistics.h"
-#include "report/flight_edges.h"
-#include "report/flight_figure.h"
+#include "report/figures/flight_figure.h"
+#include "report/figures/track_figure.h"
 #include "report/html.h"
-#include "report/phase_words.h"
-#include "report/track_figure.h"
+#include "report/sections/flight_edges.h"
+#include "report/sections/phase_words.h"
 
 #include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 /// What the phases of a sortie add up to.
 struct SortieSums {
-    PerPhase<const PhaseSpan*> spans{};
-    PerPhase<double> mean_w;
+    flight::PerPhase<const flight::PhaseSpan*> spans{};
+    flight::PerPhase<double> mean_w;
     double energy_wh = 0.0;
     std::optional<double> counter_wh = 0.0;
     std::size_t gaps = 0;
 };
 
-SortieSums sums_of(const FlightSeries& series, const Sortie& sortie) {
+SortieSums sums_of(const flight::FlightSeries& series, const flight::Sortie& sortie) {
     SortieSums sums;
     for (const auto& span : sortie.phases) {
         const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
@@ -50,11 +50,11 @@ std::string closure_percent(const SortieSums& sums) {
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
     const auto sums = sums_of(flight.series, flight.phases.sorties[sortie]);
     std::vector<std::string> cells{flight.name, fmt::format("{}", sortie + 1)};
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto* span = sums.spans[phase];
         cells.push_back(span == nullptr ? "-" : fmt::format("{:.0f}", span->duration_s()));
     }
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         cells.push_back(sums.spans[phase] == nullptr ? "-" : fmt::format("{:.1f}", sums.mean_w[phase]));
     }
     cells.push_back(fmt::format("{:.3f}", sums.energy_wh));
@@ -116,8 +116,8 @@ double seconds_in_air(const ReportFlight& flight) {
     return time_s;
 }
 
-void add_flight(Section& section, const ReportFlight& flight, const std::optional<MechanicalModel>& model,
-                std::size_t index, bool is_open) {
+void add_flight(Section& section, const ReportFlight& flight,
+                const std::optional<mechanical::MechanicalModel>& model, std::size_t index, bool is_open) {
     const auto id = flight_id(index);
     section.html += fmt::format(
         "<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{:.0f} s in the air</span></summary>\n", id,
@@ -135,7 +135,8 @@ void add_flight(Section& section, const ReportFlight& flight, const std::optiona
 
 }  // namespace
 
-Section flights_section(std::span<const ReportFlight> flights, const std::optional<MechanicalModel>& model) {
+Section flights_section(std::span<const ReportFlight> flights,
+                        const std::optional<mechanical::MechanicalModel>& model) {
     Section section{"flights", "Flights", "", {}};
     const auto rejected = std::count_if(flights.begin(), flights.end(),
                                         [](const ReportFlight& flight) { return !flight.rejected.empty(); });
@@ -156,4 +157,4 @@ Section flights_section(std::span<const ReportFlight> flights, const std::option
     return section;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

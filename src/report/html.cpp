@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 bool is_number_or_dash(const std::string& cell) {
@@ -103,4 +103,4 @@ std::string list_html(const std::vector<std::string>& lines) {
     return html + "</ul>\n";
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 /// `text` as HTML text or attribute value: valid UTF-8, without markup or control characters.
 std::string escaped(std::string_view text);
@@ -30,4 +30,4 @@ std::string paragraph(std::string_view text, std::string_view css_class = "");
 /// A list of plain texts; empty for none.
 std::string list_html(const std::vector<std::string>& lines);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

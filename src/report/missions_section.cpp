@@ -2,19 +2,19 @@
 
 #include "mechanical/table_one.h"
 #include "mission/comparison.h"
+#include "report/figures/profile_figure.h"
+#include "report/figures/qos_map_figure.h"
+#include "report/figures/schedule_figure.h"
 #include "report/html.h"
 #include "report/model_section.h"
-#include "report/plan_section.h"
-#include "report/profile_figure.h"
-#include "report/qos_map_figure.h"
-#include "report/schedule_figure.h"
+#include "report/sections/plan_section.h"
 
 #include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 using Missions = std::span<const SimulatedMission>;
@@ -35,9 +35,9 @@ std::vector<Section> model_sections(Missions missions, const PublishedFigures& p
     return sections;
 }
 
-bool same_software(const ComputeModel& a, const ComputeModel& b) {
+bool same_software(const compute::ComputeModel& a, const compute::ComputeModel& b) {
     return std::equal(a.components.begin(), a.components.end(), b.components.begin(), b.components.end(),
-                      [](const Component& one, const Component& other) {
+                      [](const compute::Component& one, const compute::Component& other) {
                           return one.name == other.name && one.profile.axes == other.profile.axes &&
                                  one.profile.power_w == other.profile.power_w;
                       });
@@ -45,10 +45,10 @@ bool same_software(const ComputeModel& a, const ComputeModel& b) {
 
 Section profile_section(Missions missions) {
     Section section{"computing", "Computing profile", "", {}};
-    std::vector<const ComputeModel*> seen;
+    std::vector<const compute::ComputeModel*> seen;
     for (const auto& simulated : missions) {
         const auto& compute = simulated.mission.compute;
-        const bool known = std::any_of(seen.begin(), seen.end(), [&](const ComputeModel* other) {
+        const bool known = std::any_of(seen.begin(), seen.end(), [&](const compute::ComputeModel* other) {
             return same_software(*other, compute);
         });
         if (compute.components.empty() || known) continue;
@@ -59,7 +59,7 @@ Section profile_section(Missions missions) {
 }
 
 /// The ranking with its columns named for people.
-TextTable ranking_of(std::vector<MissionSummary> summaries) {
+TextTable ranking_of(std::vector<mission::MissionSummary> summaries) {
     static const std::map<std::string, std::string> words{
         {"final_soc_percent", "final state of charge [%]"},
         {"energy_wh", "energy [Wh]"},
@@ -80,7 +80,7 @@ TextTable ranking_of(std::vector<MissionSummary> summaries) {
 Section schedule_section(Missions missions, const PublishedFigures& published) {
     Section section{"schedules", "Schedules", "", {}};
     add_figure(section, schedule_figure(missions, published, "schedules-soc"));
-    std::vector<MissionSummary> summaries;
+    std::vector<mission::MissionSummary> summaries;
     std::vector<std::string> failures;
     for (const auto& simulated : missions) {
         auto summary = simulated.simulation.summary;
@@ -101,11 +101,12 @@ Section schedule_section(Missions missions, const PublishedFigures& published) {
 
 Section map_section(Missions missions, const PublishedFigures& published) {
     Section section{"quality-of-service", "Quality of service", "", {}};
-    std::vector<const Mission*> seen;
+    std::vector<const mission::Mission*> seen;
     for (const auto& simulated : missions) {
         const auto& mission = simulated.mission;
-        const bool known = std::any_of(seen.begin(), seen.end(),
-                                       [&](const Mission* other) { return have_same_map(*other, mission); });
+        const bool known = std::any_of(seen.begin(), seen.end(), [&](const mission::Mission* other) {
+            return have_same_map(*other, mission);
+        });
         if (known) continue;
         const auto map = qos_map(mission);
         if (!map) continue;
@@ -135,4 +136,4 @@ std::vector<Section> mission_sections(Missions missions, const PublishedFigures&
     return sections;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "report/published_figures.h"
-#include "report/section.h"
+#include "report/figures/published_figures.h"
+#include "report/sections/section.h"
 #include "report/simulated_mission.h"
 
 #include <span>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 /// The missions' mechanical models and profiled software, each once; their schedules as Fig. 3 with the
 /// ranking; and the map over the quality of service as Fig. 4 of each flight and software with two parameters
@@ -15,4 +15,4 @@ namespace flightwatt {
 std::vector<Section> mission_sections(std::span<const SimulatedMission> missions,
                                       const PublishedFigures& published);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -1,12 +1,12 @@
 #include "report/model_section.h"
 
 #include "base/units.h"
+#include "report/figures/validation_figure.h"
 #include "report/html.h"
-#include "report/validation_figure.h"
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 Section model_section(const ReportModel& model, const PublishedFigures& published, const std::string& id) {
     Section section{id, "Mechanical model: " + valid_utf8(model.model.name), "", {}};
@@ -20,7 +20,7 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
             table_html(*model.table_one, {"Coefficients of the model as the paper's Table I", false, {}});
         std::string legend =
             "Coefficients in W. xi is the angular frequency on a time axis of 28 units a phase.";
-        if (!model.bands[Phase::cruise].time_s.empty()) {
+        if (!model.bands[flight::Phase::cruise].time_s.empty()) {
             legend += " +- is half the 95 % interval of the mean of these flights.";
         }
         section.html += paragraph(legend, "soft");
@@ -28,7 +28,7 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
     return section;
 }
 
-Section validation_section(const std::vector<ValidatedFlight>& flights) {
+Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights) {
     Section section{"validation", "Validation against the baselines", "", {}};
     section.html += paragraph(
         "Each flight is left out in turn, the model is fitted to the others and predicts its energy from its "
@@ -48,4 +48,4 @@ Section validation_section(const std::vector<ValidatedFlight>& flights) {
     return section;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

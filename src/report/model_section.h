@@ -2,20 +2,20 @@
 
 #include "base/text_table.h"
 #include "mechanical/validation.h"
-#include "report/model_figure.h"
-#include "report/section.h"
+#include "report/figures/model_figure.h"
+#include "report/sections/section.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 /// A mechanical model and what is known of it.
 struct ReportModel {
-    MechanicalModel model;
-    std::string origin;              ///< "fitted to these flights", or the file it was read from
-    PerPhase<CurveBand> bands = {};  ///< without times: not known
+    mechanical::MechanicalModel model;
+    std::string origin;                      ///< "fitted to these flights", or the file it was read from
+    flight::PerPhase<CurveBand> bands = {};  ///< without times: not known
     std::optional<TextTable> table_one = {};
     std::vector<std::string> notes = {};  ///< what a reader should know of it
 };
@@ -24,6 +24,6 @@ struct ReportModel {
 Section model_section(const ReportModel& model, const PublishedFigures& published, const std::string& id);
 
 /// How well flights that it has not seen are predicted, beside the baselines. `flights` is not empty.
-Section validation_section(const std::vector<ValidatedFlight>& flights);
+Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

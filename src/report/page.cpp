@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 /// A script's text cannot end its element: inside of strings and regular expressions "<\/" is "</".
@@ -70,4 +70,4 @@ std::string page_html(const PageHead& head, const std::vector<Section>& sections
     return html + inline_script(web.libraries) + inline_script(web.script) + "</body>\n</html>\n";
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "report/section.h"
+#include "report/sections/section.h"
 #include "report/web_files.h"
 
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 /// What the page begins with.
 struct PageHead {
@@ -20,4 +20,4 @@ struct PageHead {
 /// forbids it every request.
 std::string page_html(const PageHead& head, const std::vector<Section>& sections, const WebFiles& web);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 /// What the autopilot says of an edge of a phase.
 struct EdgeVerdict {
@@ -17,14 +17,14 @@ struct EdgeVerdict {
 /// One log as the report shows it.
 struct ReportFlight {
     std::string name;
-    std::string log;       ///< where it was read from
-    std::string rejected;  ///< why it could not be used; empty if it could
-    FlightSeries series;   ///< of a log that was not rejected
-    FlightPhases phases;   ///< with the evidence at their edges
+    std::string log;              ///< where it was read from
+    std::string rejected;         ///< why it could not be used; empty if it could
+    flight::FlightSeries series;  ///< of a log that was not rejected
+    flight::FlightPhases phases;  ///< with the evidence at their edges
     std::vector<std::string> warnings;
     std::vector<std::string> left_out;  ///< what the model was not fitted to, and why
     std::vector<EdgeVerdict> verdicts = {};
     std::string unusable_power = {};  ///< why its power record is used for nothing; empty if it is
 };
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

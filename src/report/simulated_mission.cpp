@@ -1,8 +1,8 @@
 #include "report/simulated_mission.h"
 
 #include "mission/flight_draws.h"
-#include "mission/flyable.h"
 #include "mission/plan.h"
+#include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
 #include "report/figure.h"
 
@@ -12,19 +12,19 @@
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 /// Flights drawn a mission: the chance of landing below the reserve is then known to 1.6 percent points.
 constexpr std::size_t flights_drawn = 1000;
 
 /// Draws flights where something says how they differ; the answer is the same at every run.
-void sample_for_report(const Flyable& flyable, MissionSummary& summary) {
+void sample_for_report(const mission::Flyable& flyable, mission::MissionSummary& summary) {
     if (has_spread(flyable.mission)) summary.samples = sample_flights(flyable, {}, {flights_drawn, 1, 0});
 }
 
 /// Flies a mission, planned first where it is yet to be, or in flight where a policy does.
-SimulatedMission fly_for_report(const Mission& mission, const SimulationSteps& steps) {
+SimulatedMission fly_for_report(const mission::Mission& mission, const mission::SimulationSteps& steps) {
     SimulatedMission flown;
     if (!mission.plan || mission.adaptive) {
         const auto flyable = make_flyable(mission);
@@ -45,13 +45,13 @@ SimulatedMission fly_for_report(const Mission& mission, const SimulationSteps& s
 
 }  // namespace
 
-std::vector<SimulatedMission> simulate_for_report(const std::vector<Mission>& missions) {
+std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::Mission>& missions) {
     constexpr double rows = 300.0;
     std::vector<SimulatedMission> simulated;
     std::map<std::string, int> seen;
     for (const auto& mission : missions) {
         const auto& durations_s = mission.duration_s.values;
-        SimulationSteps steps;
+        mission::SimulationSteps steps;
         steps.output_s = std::accumulate(durations_s.begin(), durations_s.end(), 0.0) / rows;
         auto title = valid_utf8(mission.name);
         if (const int times = ++seen[title]; times > 1) title += fmt::format(" ({})", times);
@@ -61,7 +61,7 @@ std::vector<SimulatedMission> simulate_for_report(const std::vector<Mission>& mi
     return simulated;
 }
 
-std::string describe(const ComputeModel& compute, const Configuration& run) {
+std::string describe(const compute::ComputeModel& compute, const compute::Configuration& run) {
     std::string text;
     for (const auto& running : run) {
         const auto& component = compute.components[running.component];
@@ -73,4 +73,4 @@ std::string describe(const ComputeModel& compute, const Configuration& run) {
     return text.empty() ? "nothing" : text;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 /// How a schedule that was planned stands to all others.
 struct PlannedSchedule {
@@ -17,8 +17,8 @@ struct PlannedSchedule {
 
 /// A mission with what came of it.
 struct SimulatedMission {
-    Mission mission;
-    Simulation simulation;
+    mission::Mission mission;
+    mission::Simulation simulation;
     std::string title;  ///< the mission's name; " (2)" follows where another one has it
     std::optional<PlannedSchedule> planned = std::nullopt;  ///< of a mission that gave no schedule
 };
@@ -26,9 +26,9 @@ struct SimulatedMission {
 /// Runs the missions, planned first where they are yet to be, with as many rows a curve as a screen shows.
 /// The curve of a mission whose power the battery cannot deliver ends there. The report flies missions
 /// nowhere else.
-std::vector<SimulatedMission> simulate_for_report(const std::vector<Mission>& missions);
+std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::Mission>& missions);
 
 /// What a configuration runs: "detection fps 10, encryption key_bits 240", or "nothing".
-std::string describe(const ComputeModel& compute, const Configuration& run);
+std::string describe(const compute::ComputeModel& compute, const compute::Configuration& run);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 std::filesystem::path web_folder() {
     std::filesystem::path folder;
@@ -40,4 +40,4 @@ WebFiles read_web_files(const std::filesystem::path& folder) {
     return files;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

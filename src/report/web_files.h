@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace flightwatt {
+namespace flightwatt::report {
 
 /// What the page is made of besides its contents.
 struct WebFiles {
@@ -21,4 +21,4 @@ std::filesystem::path web_folder();
 /// Throws InputError where a file is missing, saying how to install the libraries.
 WebFiles read_web_files(const std::filesystem::path& folder);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -12,7 +12,7 @@
 #include <boost/iostreams/filtering_stream.hpp>
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 namespace {
 
 namespace io = boost::iostreams;
@@ -74,4 +74,4 @@ DataFile::DataFile(const std::filesystem::path& path) {
     if (text_.empty()) throw InputError({path.string()}, "is empty once decompressed");
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

@@ -6,7 +6,7 @@
 
 #include <boost/iostreams/device/mapped_file.hpp>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 
 /// The text of a .data file: mapped, or decompressed into memory (.gz, .bz2, .xz, .zst, told by content).
 /// Throws InputError for a missing file, a folder, an empty file, a ZIP archive or broken compression.
@@ -21,4 +21,4 @@ class DataFile {
     std::string_view text_;
 };
 
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 namespace {
 
 /// Attributes are upper case, lower case, or both in one file.
@@ -190,4 +190,4 @@ std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& 
     return std::nullopt;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

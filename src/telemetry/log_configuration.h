@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 
 /// Where the autopilot's current came from.
 enum class CurrentOrigin {
@@ -44,4 +44,4 @@ std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& 
 /// "20_07_03__12_17_45" for "logs/20_07_03__12_17_45.data.gz": the name without folder and endings.
 std::string flight_name(const std::filesystem::path& data_file);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

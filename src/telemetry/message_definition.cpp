@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 namespace {
 
 /// A built-in layout: "name:unit" a field, "-" for no unit.
@@ -139,4 +139,4 @@ const std::vector<MessageDefinition>& builtin_definitions(std::string_view messa
     return found == layouts.end() ? none : found->second;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 
 /// One field of a message as the flight's own .log declares it. Arrays are one field.
 struct FieldDefinition {
@@ -42,4 +42,4 @@ std::optional<std::size_t> field_index(const MessageDefinition& definition, std:
 /// layout of `message` that Paparazzi has had, told apart by their numbers of fields. Empty if unknown.
 const std::vector<MessageDefinition>& builtin_definitions(std::string_view message);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

@@ -3,15 +3,15 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "telemetry/data_file.h"
-#include "telemetry/line_scanner.h"
-#include "telemetry/log_reader.h"
+#include "telemetry/text/line_scanner.h"
+#include "telemetry/text/log_reader.h"
 
 #include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 
 const Column* MessageTable::column(std::string_view field) const {
     const auto found =
@@ -75,4 +75,4 @@ std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_
     return census;
 }
 
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 
 /// A message that is wanted, and which of its fields (those that the flight's definition has are read).
 struct MessageRequest {
@@ -76,4 +76,4 @@ TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path&
 /// holds when it lacks what is wanted.
 std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_view text);
 
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

@@ -1,7 +1,7 @@
 #include "base/atomic_file.h"
 
 #include "base/error.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <algorithm>
 

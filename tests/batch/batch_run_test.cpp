@@ -1,8 +1,8 @@
 #include "batch/batch_run.h"
 
 #include "base/error.h"
-#include "rejected.h"
-#include "sample_logs.h"
+#include "helpers/rejected.h"
+#include "helpers/sample_logs.h"
 
 #include <filesystem>
 #include <fstream>
@@ -12,7 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 using test::batch;
@@ -78,7 +78,7 @@ TEST_F(BatchOfTwo, RemembersWhatAFitTakes) {
         const auto& a = anew[i].selection.flights[0];
         const auto& b = remembered[i].selection.flights[0];
         EXPECT_EQ(a.flight, b.flight);
-        for (const auto phase : all_phases) {
+        for (const auto phase : flight::all_phases) {
             EXPECT_EQ(a.phases[phase]->duration_s, b.phases[phase]->duration_s);
             EXPECT_EQ(a.phases[phase]->tau, b.phases[phase]->tau);
             EXPECT_EQ(a.phases[phase]->power_w, b.phases[phase]->power_w);
@@ -261,4 +261,4 @@ TEST(Batch, ReportsNamesThatAreNotUtf8TheSameWayTwice) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -1,7 +1,7 @@
 #include "batch/flight_record.h"
 
 #include "flight/flight_reader.h"
-#include "sample_logs.h"
+#include "helpers/sample_logs.h"
 
 #include <string>
 
@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 /// A record with every field away from its default.
@@ -24,7 +24,7 @@ FlightRecord full_record() {
     record.power_source = "ENERGY.power";
     record.current_origin = "computed from throttle";
     record.verdicts = {{147.0, "agrees with TAKEOFF (-0.4 s)"}};
-    RecordedPhase takeoff{1, Phase::takeoff, 147.0, 178.1, 0.5, 1.0 / 3.0, false, {}};
+    RecordedPhase takeoff{1, flight::Phase::takeoff, 147.0, 178.1, 0.5, 1.0 / 3.0, false, {}};
     takeoff.statistics.samples = 25;
     takeoff.statistics.mean_power_w = 83.1;
     takeoff.statistics.energy_wh = 0.1;
@@ -32,7 +32,7 @@ FlightRecord full_record() {
     takeoff.statistics.longest_gap_s = 22.5;
     auto landing = takeoff;
     landing.sortie = 2;
-    landing.phase = Phase::landing;
+    landing.phase = flight::Phase::landing;
     landing.complete = true;
     landing.statistics.counter_energy_wh = 0.7;
     record.phases = {takeoff, landing};
@@ -53,7 +53,7 @@ TEST(FlightRecord, SurvivesJson) {
     EXPECT_EQ(read->verdicts[0].time_s, 147.0);
     EXPECT_EQ(read->verdicts[0].text, "agrees with TAKEOFF (-0.4 s)");
     ASSERT_EQ(read->phases.size(), 2U);
-    EXPECT_EQ(read->phases[0].phase, Phase::takeoff);
+    EXPECT_EQ(read->phases[0].phase, flight::Phase::takeoff);
     EXPECT_EQ(read->phases[0].end_gap_s, 1.0 / 3.0);
     EXPECT_FALSE(read->phases[0].complete);
     EXPECT_EQ(read->phases[0].statistics.counter_energy_wh, std::nullopt);
@@ -91,8 +91,8 @@ TEST(FlightRecord, HoldsNamesThatAreNotUtf8) {
 }
 
 TEST(FlightRecord, GivesThePhasesBack) {
-    const auto series = read_flight(test::sample(1));
-    const auto phases = segment(series);
+    const auto series = flight::read_flight(test::sample(1));
+    const auto phases = flight::segment(series);
     const auto record = record_of(series, phases);
     EXPECT_TRUE(record.accepted);
     EXPECT_EQ(record.flight, "opterra_synthetic_01");
@@ -115,9 +115,9 @@ TEST(FlightRecord, GivesThePhasesBack) {
 TEST(FlightRecord, KeepsSortiesApart) {
     const auto phases = phases_of(full_record());
     ASSERT_EQ(phases.sorties.size(), 2U);
-    EXPECT_EQ(phases.sorties[0].phases[0].phase, Phase::takeoff);
-    EXPECT_EQ(phases.sorties[1].phases[0].phase, Phase::landing);
+    EXPECT_EQ(phases.sorties[0].phases[0].phase, flight::Phase::takeoff);
+    EXPECT_EQ(phases.sorties[1].phases[0].phase, flight::Phase::landing);
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

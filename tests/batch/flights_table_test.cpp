@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
-RecordedPhase phase(std::size_t sortie, Phase which, double start_s, double end_s) {
+RecordedPhase phase(std::size_t sortie, flight::Phase which, double start_s, double end_s) {
     RecordedPhase recorded{sortie, which, start_s, end_s, 0.5, 0.5, true, {}};
     recorded.statistics.samples = 10;
     recorded.statistics.mean_power_w = 25.0;
@@ -25,14 +25,15 @@ BatchFlight two_sorties() {
     flight.record.accepted = true;
     flight.record.aircraft_id = "7";
     flight.record.power_source = "ENERGY.power";
-    flight.record.phases = {phase(1, Phase::takeoff, 10, 30), phase(2, Phase::cruise, 100, 400),
-                            phase(2, Phase::landing, 400, 450)};
+    flight.record.phases = {phase(1, flight::Phase::takeoff, 10, 30),
+                            phase(2, flight::Phase::cruise, 100, 400),
+                            phase(2, flight::Phase::landing, 400, 450)};
     flight.record.phases[2].complete = false;
     flight.record.phases[2].statistics.counter_energy_wh.reset();
-    FlightSamples first{flight.record.flight, {}};
-    first.phases[Phase::takeoff] = PhaseSamples{};
-    FlightSamples second{flight.record.flight + "#2", {}};
-    second.phases[Phase::cruise] = PhaseSamples{};
+    mechanical::FlightSamples first{flight.record.flight, {}};
+    first.phases[flight::Phase::takeoff] = mechanical::PhaseSamples{};
+    mechanical::FlightSamples second{flight.record.flight + "#2", {}};
+    second.phases[flight::Phase::cruise] = mechanical::PhaseSamples{};
     flight.selection.flights = {first, second};
     return flight;
 }
@@ -85,4 +86,4 @@ TEST(FlightsTable, HasARowASortie) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -1,7 +1,7 @@
 #include "batch/folder_lock.h"
 
 #include "base/error.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <filesystem>
 #include <optional>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 TEST(FolderLock, KeepsASecondRunOut) {
@@ -40,4 +40,4 @@ TEST(FolderLock, FailsWhereThereIsNoFolder) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -1,6 +1,6 @@
 // The program itself, killed and interrupted in the middle of a batch: what it ends with must not tell.
 
-#include "sample_logs.h"
+#include "helpers/sample_logs.h"
 
 #include <chrono>
 #include <csignal>
@@ -19,7 +19,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 using test::contents;
@@ -133,4 +133,4 @@ TEST_F(KilledBatch, GoesOnAfterCtrlC) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -1,6 +1,6 @@
 #include "batch/log_files.h"
 
-#include "rejected.h"
+#include "helpers/rejected.h"
 
 #include <filesystem>
 #include <string>
@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 using test::rejected;
@@ -114,4 +114,4 @@ TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

@@ -1,15 +1,15 @@
 // The project's promise, from end to end: the sample logs give the paper's Table I back, however they are
 // kept.
 
-#include "sample_logs.h"
+#include "helpers/sample_logs.h"
 
 #include "base/units.h"
 #include "flight/flight_reader.h"
 #include "flight/phase_statistics.h"
-#include "flight/series_csv.h"
+#include "flight/series_file.h"
+#include "helpers/rejected.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/phase_curve.h"
-#include "rejected.h"
 
 #include <filesystem>
 #include <stdexcept>
@@ -26,21 +26,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 namespace io = boost::iostreams;
 
-MechanicalModel fit_of(const std::vector<BatchFlight>& flights) {
-    std::vector<FlightSamples> samples;
+mechanical::MechanicalModel fit_of(const std::vector<BatchFlight>& flights) {
+    std::vector<mechanical::FlightSamples> samples;
     for (const auto& flight : flights) {
         samples.insert(samples.end(), flight.selection.flights.begin(), flight.selection.flights.end());
     }
     return fit_mechanical_model(samples);
 }
 
-void expect_weights_that_sum_to_one(const MechanicalModel& model) {
-    for (const auto phase : all_phases) {
+void expect_weights_that_sum_to_one(const mechanical::MechanicalModel& model) {
+    for (const auto phase : flight::all_phases) {
         double sum = 0.0;
         for (const auto& flight : model.flights) {
             if (!flight.phases[phase]) continue;
@@ -54,12 +54,12 @@ void expect_weights_that_sum_to_one(const MechanicalModel& model) {
 
 TEST(SampleLogs, GiveTableOneBack) {
     const auto published =
-        read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
+        mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
     const auto flights = test::batch(test::source_dir() / "logs", test::scratch_dir() / "out");
     ASSERT_EQ(flights.size(), 14U) << "six of them ordinary, eight hazards that are not fitted";
     const auto model = fit_of(flights);
-    const PerPhase<double> largest_rms_w{{0.10, 0.10, 0.30}};
-    for (const auto phase : all_phases) {
+    const flight::PerPhase<double> largest_rms_w{{0.10, 0.10, 0.30}};
+    for (const auto phase : flight::all_phases) {
         const auto& is = model.phases[phase];
         const auto& should = published.phases[phase];
         EXPECT_LE(curve_rms_difference_w(is, should), largest_rms_w[phase]) << to_string(phase);
@@ -109,13 +109,14 @@ TEST(SampleLogs, AreTheSameCompressed) {
     write_compressed(io::bzip2_compressor(), test::sample(3), data.string() + ".bz2");
     write_compressed(io::lzma_compressor(), test::sample(3), data.string() + ".xz");
     write_compressed(io::zstd_compressor(), test::sample(3), data.string() + ".zst");
-    const auto plain = read_flight(test::sample(3));
+    const auto plain = flight::read_flight(test::sample(3));
     for (const auto* ending : {".gz", ".bz2", ".xz", ".zst"}) {
-        const auto series = read_flight(data.string() + ending);
+        const auto series = flight::read_flight(data.string() + ending);
         EXPECT_EQ(series.flight, "opterra_synthetic_03");
         EXPECT_EQ(series.warnings, plain.warnings);
         EXPECT_EQ(to_csv(series), to_csv(plain)) << ending;
-        EXPECT_EQ(phases_csv(series, segment(series)), phases_csv(plain, segment(plain))) << ending;
+        EXPECT_EQ(flight::phases_csv(series, flight::segment(series)), phases_csv(plain, segment(plain)))
+            << ending;
     }
 }
 
@@ -131,12 +132,13 @@ TEST(SampleLogs, OfSeveralAircraftAskWhich) {
         text += line + "\n";
     }
     const auto both = test::write_text(folder / "opterra_synthetic_01.data", text);
-    EXPECT_EQ(test::rejected([&] { read_flight(both); }, folder),
+    EXPECT_EQ(test::rejected([&] { flight::read_flight(both); }, folder),
               "opterra_synthetic_01.data: several aircraft flew: 7, 8; choose one with --aircraft ID");
-    const auto seventh = read_flight(both, "7");
-    const auto alone = read_flight(test::sample(1));
-    EXPECT_EQ(phases_csv(seventh, segment(seventh)), phases_csv(alone, segment(alone)));
-    EXPECT_EQ(read_flight(both, "8").power_w, read_flight(test::sample(2)).power_w);
+    const auto seventh = flight::read_flight(both, "7");
+    const auto alone = flight::read_flight(test::sample(1));
+    EXPECT_EQ(flight::phases_csv(seventh, flight::segment(seventh)),
+              flight::phases_csv(alone, flight::segment(alone)));
+    EXPECT_EQ(flight::read_flight(both, "8").power_w, flight::read_flight(test::sample(2)).power_w);
 }
 
 /// Where lift-off and touchdown are, read off plots (shared/formats.md, tolerance 5 s), and cruise power.
@@ -170,7 +172,7 @@ TEST(RealFlights, GoThroughTheWholeBatch) {
     EXPECT_EQ(found, known.size());
 }
 
-double weight_of(const MechanicalModel& model, const std::string& flight, Phase phase) {
+double weight_of(const mechanical::MechanicalModel& model, const std::string& flight, flight::Phase phase) {
     for (const auto& part : model.flights) {
         if (part.flight == flight) return part.phases[phase].value().weight;
     }
@@ -183,7 +185,7 @@ TEST(RealFlights, ConvergeToAModel) {
     const auto model = fit_of(flights);
     ASSERT_EQ(model.flights.size(), 3U);
     expect_weights_that_sum_to_one(model);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         EXPECT_EQ(fitted.flights, 3U) << to_string(phase);
         // The weighted average of the flights' measured energy is what the model's curve needs.
@@ -202,8 +204,8 @@ TEST(RealFlights, ConvergeToAModel) {
     // It is written as a model that can be read again.
     const auto file = test::scratch_dir() / "model.toml";
     write_file_atomically(file, to_toml(model));
-    EXPECT_EQ(to_toml(read_mechanical_model(file)), to_toml(model));
+    EXPECT_EQ(to_toml(mechanical::read_mechanical_model(file)), to_toml(model));
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

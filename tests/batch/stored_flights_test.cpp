@@ -1,14 +1,14 @@
 #include "batch/stored_flights.h"
 
 #include "flight/phase_statistics.h"
-#include "flight/series_csv.h"
-#include "rejected.h"
-#include "sample_logs.h"
+#include "flight/series_file.h"
+#include "helpers/rejected.h"
+#include "helpers/sample_logs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::batch {
 namespace {
 
 using testing::HasSubstr;
@@ -45,4 +45,4 @@ TEST(StoredFlights, RefuseWhatIsNoBatchFolder) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::batch

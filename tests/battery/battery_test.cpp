@@ -1,12 +1,12 @@
 #include "battery/battery.h"
 
-#include "rejected.h"
+#include "helpers/rejected.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 namespace {
 
 using test::rejected;
@@ -77,4 +77,4 @@ TEST(Battery, RefusesWhatIsNoBattery) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

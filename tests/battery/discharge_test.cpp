@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 namespace {
 
 const Battery real_pack{"", 11.1, 0.05, 3.2};
@@ -120,4 +120,4 @@ TEST(Discharge, RefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

@@ -4,8 +4,8 @@
 
 #include "base/error.h"
 #include "flight/flight_reader.h"
-#include "rejected.h"
-#include "synthetic_discharge.h"
+#include "helpers/rejected.h"
+#include "helpers/synthetic_discharge.h"
 
 #include <array>
 #include <cmath>
@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 namespace {
 
 using test::known_pack;
@@ -146,7 +146,7 @@ TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
     std::vector<DischargeRecord> records;
     for (const auto* name : {"01", "02", "03", "04", "05", "06"}) {
         records.push_back(discharge_record(
-            read_flight(test::source_dir() / "logs" / (std::string("opterra_synthetic_") + name + ".data"))));
+            flight::read_flight(test::source_dir() / "logs" / (std::string("opterra_synthetic_") + name + ".data"))));
     }
     const auto found = identify_battery(records, {3.2, {}, ""});
     EXPECT_LE(found.errors.resistance_ohm.low, 0.06);
@@ -166,7 +166,7 @@ TEST(Identification, ForetellsRealFlights) {
     std::vector<DischargeRecord> records;
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
         records.push_back(
-            discharge_record(read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
+            discharge_record(flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
         EXPECT_GT(records.back().resting_voltage_v, 12.3);  // a pack of 11.1 V that starts full
     }
     for (const auto& check : leave_each_out(records, {})) {
@@ -184,4 +184,4 @@ TEST(Identification, ForetellsRealFlights) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

@@ -2,13 +2,13 @@
 
 #include "battery/battery.h"
 #include "battery/discharge.h"
-#include "rejected.h"
+#include "helpers/rejected.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::battery {
 namespace {
 
 using test::rejected;
@@ -172,4 +172,4 @@ TEST(Thevenin, SaysWhenItCannotDeliver) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::battery

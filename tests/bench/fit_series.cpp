@@ -4,7 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "base/units.h"
-#include "mechanical/phase_fit.h"
+#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <array>
@@ -23,13 +23,13 @@ using namespace flightwatt;
 constexpr double duration_s = 600.0;
 constexpr std::size_t samples = 6000;
 
-PhaseSamples make_series(double periods, std::mt19937_64& random) {
-    const FourierModel model{units::rad_from_turns(periods) / duration_s,
-                             27.22,
-                             {4 * 0.3737, 4 * 0.6513, 4 * 0.5039},
-                             {4 * 1.194, 4 * 0.2954, 4 * -0.2864}};
+mechanical::PhaseSamples make_series(double periods, std::mt19937_64& random) {
+    const mechanical::FourierModel model{units::rad_from_turns(periods) / duration_s,
+                                         27.22,
+                                         {4 * 0.3737, 4 * 0.6513, 4 * 0.5039},
+                                         {4 * 1.194, 4 * 0.2954, 4 * -0.2864}};
     std::normal_distribution<double> noise(0.0, 1.5);
-    PhaseSamples series{"series", duration_s, {}, {}};
+    mechanical::PhaseSamples series{"series", duration_s, {}, {}};
     for (std::size_t i = 0; i < samples; ++i) {
         const double time_s = duration_s * (static_cast<double>(i) + 0.5) / static_cast<double>(samples);
         series.tau.push_back(time_s / duration_s);
@@ -39,12 +39,12 @@ PhaseSamples make_series(double periods, std::mt19937_64& random) {
 }
 
 /// The least seconds of nine fits, and the periods that they found.
-std::pair<double, double> timed_fit(const PhaseSamples& series) {
+std::pair<double, double> timed_fit(const mechanical::PhaseSamples& series) {
     double best_s = 1e9;
     double periods = 0.0;
     for (int round = 0; round < 9; ++round) {
         const auto start = std::chrono::steady_clock::now();
-        const auto fit = fit_phase(Phase::cruise, std::span(&series, 1));
+        const auto fit = fit_phase(flight::Phase::cruise, std::span(&series, 1));
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
         best_s = std::min(best_s, taken.count());
         periods = fit.theta_rad / units::rad_per_turn;

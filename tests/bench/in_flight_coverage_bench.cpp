@@ -2,7 +2,7 @@
 // usage: in_flight_coverage_bench [FITS]: flights left out of each row, about; 1000 if not said
 
 #include "base/number.h"
-#include "mechanical/generated_flights.h"
+#include "helpers/generated_flights.h"
 #include "mechanical/validation_score.h"
 
 #include <cmath>
@@ -25,14 +25,14 @@ void print_row(std::size_t flights, double until_s, std::size_t left_out) {
     for (unsigned set = 0; set < sets; ++set) {
         auto generated = test::generated(flights, first_seed + set, until_s);
         for (auto& flight : generated) {  // the cruise alone is asked about
-            flight.samples.phases[Phase::takeoff].reset();
-            flight.samples.phases[Phase::landing].reset();
+            flight.samples.phases[flight::Phase::takeoff].reset();
+            flight.samples.phases[flight::Phase::landing].reset();
         }
         const auto validated = leave_one_out(generated);
-        const auto during = score_of(validated, "in_flight", Phase::cruise).value();
+        const auto during = score_of(validated, "in_flight", flight::Phase::cruise).value();
         covered += during.coverage_95.value() / sets;
         during_wh += during.mean_absolute_error_wh / sets;
-        before_wh += score_of(validated, "fourier", Phase::cruise)->mean_absolute_error_wh / sets;
+        before_wh += score_of(validated, "fourier", flight::Phase::cruise)->mean_absolute_error_wh / sets;
     }
     const auto count = static_cast<double>(sets * flights);
     const double error = std::sqrt(covered * (1.0 - covered) / count);

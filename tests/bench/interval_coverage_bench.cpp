@@ -3,7 +3,7 @@
 
 #include "base/number.h"
 #include "base/units.h"
-#include "mechanical/interval_coverage.h"
+#include "helpers/interval_coverage.h"
 
 #include <cmath>
 #include <cstdio>
@@ -21,7 +21,7 @@ double binomial_error(double part, std::size_t count) {
 }
 
 /// The points of one fit's curve are not independent: their part has the error of so many fits at most.
-void print_row(Phase phase, const test::CoverageCase& made, const test::Coverage& coverage) {
+void print_row(flight::Phase phase, const test::CoverageCase& made, const test::Coverage& coverage) {
     const auto percent = [](double part) { return units::percent_of(part, 1.0); };
     fmt::print(
         "{:<8} {:>7.2f}  {:>15.1f}  {:>14}  {:>5.1f} +- {:.1f}  {:>5.1f} +- {:.1f}  {:>11.2f}  {:>8}  "
@@ -42,7 +42,7 @@ void run(std::size_t fits) {
     fmt::print(
         "phase    noise W  autocorrelation  flights a fit  curve, %      a0, %         error ratio  at bound "
         " without answer\n");
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         for (const double noise_w : {0.05, 0.24, 1.0}) {
             for (const double autocorrelation : {0.0, 0.4, 0.7}) {
                 for (const std::size_t together : {1U, 4U}) {

@@ -2,7 +2,7 @@
 
 #include "base/number.h"
 #include "flight/telemetry_series.h"
-#include "telemetry/line_scanner.h"
+#include "telemetry/text/line_scanner.h"
 
 #include <algorithm>
 #include <array>
@@ -11,17 +11,17 @@
 
 namespace flightwatt::bench {
 
-std::vector<MessageRequest> energy_messages() {
+std::vector<telemetry::MessageRequest> energy_messages() {
     constexpr std::array<std::string_view, 5> names{"ENERGY", "ESTIMATOR", "NAVIGATION", "PPRZ_MODE",
                                                     "TAKEOFF"};
-    auto requests = flight_messages();
-    std::erase_if(requests, [&](const MessageRequest& request) {
+    auto requests = flight::flight_messages();
+    std::erase_if(requests, [&](const telemetry::MessageRequest& request) {
         return std::find(names.begin(), names.end(), request.message) == names.end();
     });
     return requests;
 }
 
-std::size_t row_count(const TelemetryLog& log) {
+std::size_t row_count(const telemetry::TelemetryLog& log) {
     std::size_t rows = 0;
     for (const auto& sender : log.senders) {
         for (const auto& table : sender.tables) rows += table.time_s.size();
@@ -31,8 +31,8 @@ std::size_t row_count(const TelemetryLog& log) {
 
 WordCount count_words(std::string_view text) {
     WordCount count;
-    count.lines = scan_lines(text, [&](const ScannedLine& line) {
-        WordCursor words(line);
+    count.lines = telemetry::scan_lines(text, [&](const telemetry::ScannedLine& line) {
+        telemetry::WordCursor words(line);
         std::string_view word;
         while (words.next(word)) {
             ++count.words;
@@ -44,8 +44,8 @@ WordCount count_words(std::string_view text) {
 
 NumberCount count_numbers(std::string_view text) {
     NumberCount count;
-    count.lines = scan_lines(text, [&](const ScannedLine& line) {
-        WordCursor words(line);
+    count.lines = telemetry::scan_lines(text, [&](const telemetry::ScannedLine& line) {
+        telemetry::WordCursor words(line);
         std::string_view word;
         for (int i = 0; words.next(word); ++i) {
             if (i == 1 || i == 2) continue;  // the sender and the message's name

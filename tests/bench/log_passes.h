@@ -12,10 +12,10 @@
 namespace flightwatt::bench {
 
 /// What FlightWatt asks of ENERGY, ESTIMATOR, NAVIGATION, PPRZ_MODE and TAKEOFF when it reads a flight.
-std::vector<MessageRequest> energy_messages();
+std::vector<telemetry::MessageRequest> energy_messages();
 
 /// All rows of all senders and messages.
-std::size_t row_count(const TelemetryLog& log);
+std::size_t row_count(const telemetry::TelemetryLog& log);
 
 struct WordCount {
     std::size_t lines = 0;

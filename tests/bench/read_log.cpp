@@ -34,9 +34,10 @@ std::size_t status_kb(std::string_view name) {
     throw InputError({"/proc/self/status"}, fmt::format("has no {} in kB", name));
 }
 
-TelemetryLog parse_energy(const std::filesystem::path& path, std::string_view text) {
-    std::optional<LogConfiguration> configuration;
-    if (const auto log_file = find_log_file(path)) configuration = read_log_configuration(*log_file);
+telemetry::TelemetryLog parse_energy(const std::filesystem::path& path, std::string_view text) {
+    std::optional<telemetry::LogConfiguration> configuration;
+    if (const auto log_file = telemetry::find_log_file(path))
+        configuration = telemetry::read_log_configuration(*log_file);
     return parse_telemetry(text, path, std::move(configuration), energy_messages());
 }
 
@@ -44,7 +45,7 @@ TelemetryLog parse_energy(const std::filesystem::path& path, std::string_view te
 /// the same at the peak, whenever that is, as it is at the end.
 void print_memory(const std::filesystem::path& path) {
     constexpr std::size_t page_size = 4096;
-    const DataFile data(path);
+    const telemetry::DataFile data(path);
     std::size_t breaks = 0;
     for (std::size_t i = 0; i < data.text().size(); i += page_size) breaks += data.text()[i] == '\n' ? 1 : 0;
     const auto log = parse_energy(path, data.text());
@@ -59,10 +60,10 @@ int run(std::string_view pass, const std::filesystem::path& path) {
         const auto log = read_telemetry(path, energy_messages());
         fmt::print("lines {} rows {}\n", log.lines, row_count(log));
     } else if (pass == "words") {
-        const auto count = count_words(DataFile(path).text());
+        const auto count = count_words(telemetry::DataFile(path).text());
         fmt::print("lines {} words {} characters {}\n", count.lines, count.words, count.characters);
     } else if (pass == "numbers") {
-        const auto count = count_numbers(DataFile(path).text());
+        const auto count = count_numbers(telemetry::DataFile(path).text());
         fmt::print("lines {} numbers {} others {} sum {}\n", count.lines, count.numbers, count.others,
                    count.sum);
     } else if (pass == "memory") {

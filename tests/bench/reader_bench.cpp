@@ -8,15 +8,16 @@
 namespace flightwatt::bench {
 namespace {
 
-void count_bytes(benchmark::State& state, const DataFile& data) {
+void count_bytes(benchmark::State& state, const telemetry::DataFile& data) {
     state.SetBytesProcessed(static_cast<std::int64_t>(data.text().size()) * state.iterations());
 }
 
 void energy_messages_of_a_log(benchmark::State& state) {
     const auto path = benchmark_log();
-    const DataFile data(path);
-    std::optional<LogConfiguration> configuration;
-    if (const auto log_file = find_log_file(path)) configuration = read_log_configuration(*log_file);
+    const telemetry::DataFile data(path);
+    std::optional<telemetry::LogConfiguration> configuration;
+    if (const auto log_file = telemetry::find_log_file(path))
+        configuration = telemetry::read_log_configuration(*log_file);
     for (auto _ : state) {
         benchmark::DoNotOptimize(parse_telemetry(data.text(), path, configuration, energy_messages()));
     }
@@ -25,14 +26,14 @@ void energy_messages_of_a_log(benchmark::State& state) {
 BENCHMARK(energy_messages_of_a_log)->Unit(benchmark::kMillisecond);
 
 void every_message_into_words(benchmark::State& state) {
-    const DataFile data(benchmark_log());
+    const telemetry::DataFile data(benchmark_log());
     for (auto _ : state) benchmark::DoNotOptimize(count_words(data.text()));
     count_bytes(state, data);
 }
 BENCHMARK(every_message_into_words)->Unit(benchmark::kMillisecond);
 
 void every_message_as_numbers(benchmark::State& state) {
-    const DataFile data(benchmark_log());
+    const telemetry::DataFile data(benchmark_log());
     for (auto _ : state) benchmark::DoNotOptimize(count_numbers(data.text()));
     count_bytes(state, data);
 }

@@ -1,7 +1,7 @@
 #include "base/units.h"
-#include "mission/demand.h"
-#include "mission/drain_table.h"
-#include "mission/planner.h"
+#include "mission/load_segments.h"
+#include "mission/planning/depletion_table.h"
+#include "mission/planning/planner.h"
 #include "mission/simulation.h"
 
 #include <algorithm>
@@ -22,21 +22,22 @@ namespace {
 
 constexpr int runge_kutta_steps = 43;
 
-Mission paper_mission() {
-    return read_mission(std::filesystem::path(FLIGHTWATT_SOURCE_DIR) / "missions" / "paper" / "plan.toml",
-                        {true, std::nullopt});
+mission::Mission paper_mission() {
+    return mission::read_mission(
+        std::filesystem::path(FLIGHTWATT_SOURCE_DIR) / "missions" / "paper" / "plan.toml",
+        {true, std::nullopt});
 }
 
 /// The paper's mission with everything that a schedule needs looked up beforehand.
 struct Problem {
-    Mission mission = paper_mission();
-    Planner planner = make_planner(mission);
-    std::vector<MissionSlot> slots = slots_of(mission);
+    mission::Mission mission = paper_mission();
+    mission::Planner planner = make_planner(mission);
+    std::vector<mission::MissionSlot> slots = slots_of(mission);
     std::size_t fixed_choice = planner.worth_per_s.size() - 1;
 
     /// A free slot runs any of the choices, or the weakest: how often, differs between schedules, so that
     /// some last the mission. Stretches that run the same are not joined.
-    void draw(std::mt19937& random, std::vector<TabledStretch>& schedule) const {
+    void draw(std::mt19937& random, std::vector<mission::TabledStretch>& schedule) const {
         std::uniform_real_distribution<double> uniform(0.0, 1.0);
         const double part = uniform(random);
         schedule.clear();
@@ -47,9 +48,9 @@ struct Problem {
     }
 };
 
-std::vector<std::vector<TabledStretch>> draw_schedules(const Problem& problem, std::size_t count) {
+std::vector<std::vector<mission::TabledStretch>> draw_schedules(const Problem& problem, std::size_t count) {
     std::mt19937 random(1);
-    std::vector<std::vector<TabledStretch>> schedules(count);
+    std::vector<std::vector<mission::TabledStretch>> schedules(count);
     for (auto& schedule : schedules) problem.draw(random, schedule);
     return schedules;
 }
@@ -59,7 +60,7 @@ class ScheduleRate {
   public:
     explicit ScheduleRate(const Problem& problem) : battery_(problem.mission.battery) {
         double begins_s = 0.0;
-        for (const auto phase : all_phases) {
+        for (const auto phase : flight::all_phases) {
             curves_[phase] = problem.mission.mechanical->phases[phase].fourier;
             begins_s_[phase] = begins_s;
             begins_s += problem.mission.duration_s[phase];
@@ -70,7 +71,7 @@ class ScheduleRate {
         }
     }
 
-    void take(const std::vector<TabledStretch>& schedule) {
+    void take(const std::vector<mission::TabledStretch>& schedule) {
         schedule_ = &schedule;
         now_ = 0;
     }
@@ -88,18 +89,21 @@ class ScheduleRate {
     double end_s() const { return end_s_; }
 
   private:
-    double begin_s(const TabledStretch& stretch) const { return begins_s_[stretch.phase] + stretch.from_s; }
+    double begin_s(const mission::TabledStretch& stretch) const {
+        return begins_s_[stretch.phase] + stretch.from_s;
+    }
 
-    Battery battery_;
-    PerPhase<FourierModel> curves_;
-    PerPhase<double> begins_s_;
+    battery::Battery battery_;
+    flight::PerPhase<mechanical::FourierModel> curves_;
+    flight::PerPhase<double> begins_s_;
     std::vector<double> choice_w_;
     double end_s_ = 0.0;
-    const std::vector<TabledStretch>* schedule_ = nullptr;
+    const std::vector<mission::TabledStretch>* schedule_ = nullptr;
     std::size_t now_ = 0;
 };
 
-double soc_by_odeint(ScheduleRate& rate, const std::vector<TabledStretch>& schedule, double initial_percent) {
+double soc_by_odeint(ScheduleRate& rate, const std::vector<mission::TabledStretch>& schedule,
+                     double initial_percent) {
     namespace odeint = boost::numeric::odeint;
     odeint::runge_kutta4<double, double, double, double, odeint::vector_space_algebra> stepper;
     rate.take(schedule);
@@ -111,7 +115,8 @@ double soc_by_odeint(ScheduleRate& rate, const std::vector<TabledStretch>& sched
 
 /// The greatest difference to the simulation (Runge-Kutta from jump to jump, 0.1 s), over some of the
 /// schedules.
-double worst_difference(const Problem& problem, const std::vector<std::vector<TabledStretch>>& schedules,
+double worst_difference(const Problem& problem,
+                        const std::vector<std::vector<mission::TabledStretch>>& schedules,
                         const std::vector<double>& soc) {
     double worst = 0.0;
     std::size_t lasting = 0;

@@ -3,7 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-namespace flightwatt {
+namespace flightwatt::cli {
 namespace {
 
 std::filesystem::path golden_dir() { return test::source_dir() / "tests" / "cli" / "golden"; }
@@ -135,4 +135,4 @@ TEST(Golden, RejectsBadInputsInOneLine) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::cli

@@ -4,7 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -1,11 +1,11 @@
 #include "compute/compute_model.h"
 
 #include "compute/profile_reader.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 ComputeModel paper_model() {
@@ -39,4 +39,4 @@ TEST(ComputeModel, HoldsThePaperProfile) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

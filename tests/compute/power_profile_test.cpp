@@ -1,12 +1,12 @@
 #include "compute/power_profile.h"
 
-#include "rejected.h"
+#include "helpers/rejected.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 using test::rejected;
@@ -123,4 +123,4 @@ TEST(PowerProfile, RefusesDuplicates) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "compute/profile_reader.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <cmath>
 #include <iostream>
@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 using Points = std::vector<std::vector<double>>;
@@ -174,4 +174,4 @@ TEST(Trials, ErrorOnTheRealGridIsWhatWasEstimated) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

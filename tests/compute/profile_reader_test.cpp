@@ -1,10 +1,10 @@
 #include "compute/profile_reader.h"
 
-#include "rejected.h"
+#include "helpers/rejected.h"
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 using test::rejected;
@@ -176,4 +176,4 @@ TEST(ProfileReader, ReadsTheRealTrackingProfileInAllItsForms) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

@@ -1,11 +1,11 @@
 #include "compute/profile_specification.h"
 
-#include "rejected.h"
+#include "helpers/rejected.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -134,4 +134,4 @@ TEST(PowprofilerSpecification, RunsTwoRanges) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

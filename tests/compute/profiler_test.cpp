@@ -4,17 +4,17 @@
 
 #include "base/csv.h"
 #include "base/number.h"
-#include "compute/power_recording.h"
+#include "compute/powprofiler/power_recording.h"
 #include "compute/profile_reader.h"
 #include "compute/profile_tables.h"
-#include "running_program.h"
+#include "helpers/running_program.h"
 
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::compute {
 namespace {
 
 using testing::HasSubstr;
@@ -225,7 +225,7 @@ TEST_F(Profiler, RunsPowprofilersConfiguration) {
     }
     ProfilerOptions options;
     options.folder = folder / "out";
-    const auto outcome = flightwatt::profile(spec, options);
+    const auto outcome = flightwatt::compute::profile(spec, options);
     ASSERT_EQ(outcome.components.size(), 1U);
     ASSERT_EQ(outcome.components[0].nodes.size(), 4U);
     for (const auto& node : outcome.components[0].nodes) {
@@ -296,4 +296,4 @@ TEST(PlannedRuns, AreShuffledRepeatByRepeatByTheSeed) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::compute

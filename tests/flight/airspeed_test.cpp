@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 TEST(Airspeed, MeanCubeCountsGusts) {
@@ -18,4 +18,4 @@ TEST(Airspeed, IsUnknownWhereItWasHardlyMeasured) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

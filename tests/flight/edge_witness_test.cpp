@@ -1,12 +1,12 @@
 #include "flight/edge_witness.h"
 
 #include "flight/flight_reader.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 Sortie sortie_at(double lift_off_s, double takeoff_end_s, double landing_start_s, double touchdown_s) {
@@ -80,4 +80,4 @@ TEST(EdgeWitness, AgreesWithTakeoffMessagesOfTheRealFlights) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

@@ -3,8 +3,8 @@
 #include "base/csv.h"
 #include "flight/flight_reader.h"
 #include "flight/segmentation.h"
-#include "flight/synthetic_flight.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
+#include "synthetic/synthetic_flight.h"
 
 #include <filesystem>
 #include <set>
@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 struct FoundPhase {
@@ -53,7 +53,7 @@ void expect_as_flown(const std::filesystem::path& data, const CsvTable& truth) {
 
 TEST(HazardLogs, AreSegmentedAsTheyWereFlown) {
     std::set<std::string> expected;
-    for (const auto& hazard : hazards()) expected.insert("hazard_01_" + hazard.first);
+    for (const auto& hazard : synthetic::hazards()) expected.insert("hazard_01_" + hazard.first);
     std::set<std::string> seen;
     for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "logs" / "hazards")) {
         if (entry.path().extension() != ".data") continue;
@@ -66,4 +66,4 @@ TEST(HazardLogs, AreSegmentedAsTheyWereFlown) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

@@ -2,11 +2,11 @@
 
 #include "base/units.h"
 #include "flight/flight_reader.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 FlightSeries ramp() {
@@ -61,4 +61,4 @@ TEST(PhaseStatistics, AgreesWithTheOnBoardCounterOfTheRealFlights) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

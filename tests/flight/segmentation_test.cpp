@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "flight/flight_reader.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <algorithm>
 #include <functional>
@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 using testing::HasSubstr;
@@ -292,4 +292,4 @@ TEST(Segmentation, MatchesWhatWasReadOffPlotsOfTheRealFlights) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "flight/flight_reader.h"
-#include "flight/series_csv.h"
-#include "test_paths.h"
+#include "flight/series_file.h"
+#include "helpers/test_paths.h"
 
 #include <fstream>
 
@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 using testing::Contains;
@@ -194,4 +194,4 @@ TEST_F(ReadFlight, RefusesTheRealLogsThatMeasuredNoPower) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

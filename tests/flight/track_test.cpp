@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::flight {
 namespace {
 
 using testing::ElementsAre;
@@ -34,4 +34,4 @@ TEST(Track, IsLinearBetweenItsPointsAndConstantBeyond) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::flight

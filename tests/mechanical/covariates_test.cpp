@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 /// A cruise of constant power at a height.
@@ -50,7 +50,7 @@ TEST(PowerByCovariate, IsUnknownWithoutTheCovariateOrItsSpread) {
 }
 
 TEST(CovariatesOf, TakesWhatWasKnownBeforeTheCruiseAndEarlyInIt) {
-    FlightSeries series;
+    flight::FlightSeries series;
     for (int i = 0; i < 300; ++i) {
         series.time_s.push_back(i);
         series.voltage_v.push_back(i < 100 ? 12.5 : 11.0);
@@ -58,12 +58,12 @@ TEST(CovariatesOf, TakesWhatWasKnownBeforeTheCruiseAndEarlyInIt) {
         series.wind_speed_track.time_s.push_back(i);
         series.wind_speed_track.value.push_back(i <= 130 + 60 ? 3.0 : 9.0);
     }
-    Sortie sortie;
+    flight::Sortie sortie;
     sortie.height_m = 85.0;
     sortie.phases.resize(2);
-    sortie.phases[0].phase = Phase::takeoff;
+    sortie.phases[0].phase = flight::Phase::takeoff;
     sortie.phases[0].start.time_s = 100.0;
-    sortie.phases[1].phase = Phase::cruise;
+    sortie.phases[1].phase = flight::Phase::cruise;
     sortie.phases[1].start.time_s = 130.0;
     const auto covariates = covariates_of(series, sortie);
     EXPECT_EQ(covariates[Covariate::height], 85.0);
@@ -78,4 +78,4 @@ TEST(Covariate, IsFoundByItsName) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

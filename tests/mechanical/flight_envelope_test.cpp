@@ -1,12 +1,12 @@
 #include "mechanical/flight_envelope.h"
 
-#include "mechanical/flight_weights.h"
+#include "mechanical/fit/flight_weights.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 /// Flights of constant power.
@@ -54,4 +54,4 @@ TEST(FlightEnvelope, ComparesFlightsAtEqualPartsOfThePhase) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

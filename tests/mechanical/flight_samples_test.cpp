@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 using testing::Each;
@@ -15,8 +15,8 @@ using testing::IsEmpty;
 constexpr std::size_t needed = 8;
 
 /// A sample a second from 0 to 300 s; the power tells the time.
-FlightSeries series_of_300_s() {
-    FlightSeries series;
+flight::FlightSeries series_of_300_s() {
+    flight::FlightSeries series;
     series.flight = "flight";
     for (int second = 0; second <= 300; ++second) {
         series.time_s.push_back(second);
@@ -25,24 +25,24 @@ FlightSeries series_of_300_s() {
     return series;
 }
 
-PhaseSpan span(Phase phase, double start_s, double end_s) {
-    PhaseSpan result;
+flight::PhaseSpan span(flight::Phase phase, double start_s, double end_s) {
+    flight::PhaseSpan result;
     result.phase = phase;
     result.start.time_s = start_s;
     result.end.time_s = end_s;
     return result;
 }
 
-Sortie whole_sortie(double start_s) {
-    Sortie sortie;
-    sortie.phases = {span(Phase::takeoff, start_s, start_s + 20),
-                     span(Phase::cruise, start_s + 20, start_s + 80),
-                     span(Phase::landing, start_s + 80, start_s + 100)};
+flight::Sortie whole_sortie(double start_s) {
+    flight::Sortie sortie;
+    sortie.phases = {span(flight::Phase::takeoff, start_s, start_s + 20),
+                     span(flight::Phase::cruise, start_s + 20, start_s + 80),
+                     span(flight::Phase::landing, start_s + 80, start_s + 100)};
     return sortie;
 }
 
-FlightSelection select(const std::vector<Sortie>& sorties) {
-    FlightPhases phases;
+FlightSelection select(const std::vector<flight::Sortie>& sorties) {
+    flight::FlightPhases phases;
     phases.sorties = sorties;
     return select_samples(series_of_300_s(), phases, needed);
 }
@@ -52,7 +52,7 @@ TEST(FlightSamples, AreThePowerOfEachPhaseOnItsOwnTime) {
     EXPECT_THAT(selection.left_out, IsEmpty());
     ASSERT_EQ(selection.flights.size(), 1U);
     EXPECT_EQ(selection.flights[0].flight, "flight");
-    const auto& takeoff = selection.flights[0].phases[Phase::takeoff].value();
+    const auto& takeoff = selection.flights[0].phases[flight::Phase::takeoff].value();
     EXPECT_EQ(takeoff.flight, "flight");
     EXPECT_EQ(takeoff.duration_s, 20.0);
     ASSERT_EQ(takeoff.tau.size(), 21U);  // both ends belong to it
@@ -61,23 +61,23 @@ TEST(FlightSamples, AreThePowerOfEachPhaseOnItsOwnTime) {
         EXPECT_DOUBLE_EQ(takeoff.tau[i], static_cast<double>(i) / 20.0);
         EXPECT_DOUBLE_EQ(takeoff.power_w[i], 1010.0 + static_cast<double>(i));
     }
-    const auto& cruise = selection.flights[0].phases[Phase::cruise].value();
+    const auto& cruise = selection.flights[0].phases[flight::Phase::cruise].value();
     EXPECT_EQ(cruise.duration_s, 60.0);
     EXPECT_EQ(cruise.power_w.front(), 1030.0);
     EXPECT_EQ(cruise.power_w.back(), 1090.0);
-    EXPECT_EQ(selection.flights[0].phases[Phase::landing].value().power_w.front(), 1090.0);
+    EXPECT_EQ(selection.flights[0].phases[flight::Phase::landing].value().power_w.front(), 1090.0);
 }
 
 TEST(FlightSamples, LieWithinEdgesBetweenTwoOfThem) {
-    Sortie sortie;
-    sortie.phases = {span(Phase::takeoff, 10.25, 30.75)};
+    flight::Sortie sortie;
+    sortie.phases = {span(flight::Phase::takeoff, 10.25, 30.75)};
     const auto selection = select({sortie});
-    const auto& takeoff = selection.flights.at(0).phases[Phase::takeoff].value();
+    const auto& takeoff = selection.flights.at(0).phases[flight::Phase::takeoff].value();
     ASSERT_EQ(takeoff.tau.size(), 20U);
     EXPECT_DOUBLE_EQ(takeoff.tau.front(), 0.75 / 20.5);
     EXPECT_DOUBLE_EQ(takeoff.tau.back(), 19.75 / 20.5);
     EXPECT_THAT(takeoff.tau, Each(testing::AllOf(testing::Ge(0.0), testing::Le(1.0))));
-    EXPECT_FALSE(selection.flights[0].phases[Phase::cruise].has_value());
+    EXPECT_FALSE(selection.flights[0].phases[flight::Phase::cruise].has_value());
 }
 
 TEST(FlightSamples, CountEverySortieAsAFlight) {
@@ -85,8 +85,8 @@ TEST(FlightSamples, CountEverySortieAsAFlight) {
     ASSERT_EQ(selection.flights.size(), 2U);
     EXPECT_EQ(selection.flights[0].flight, "flight");
     EXPECT_EQ(selection.flights[1].flight, "flight#2");
-    EXPECT_EQ(selection.flights[1].phases[Phase::cruise]->flight, "flight#2");
-    EXPECT_EQ(selection.flights[1].phases[Phase::takeoff]->power_w.front(), 1150.0);
+    EXPECT_EQ(selection.flights[1].phases[flight::Phase::cruise]->flight, "flight#2");
+    EXPECT_EQ(selection.flights[1].phases[flight::Phase::takeoff]->power_w.front(), 1150.0);
 }
 
 TEST(FlightSamples, LeaveOutWhatTheLogCuts) {
@@ -95,11 +95,11 @@ TEST(FlightSamples, LeaveOutWhatTheLogCuts) {
     const auto selection = select({sortie});
     ASSERT_EQ(selection.left_out.size(), 1U);
     EXPECT_EQ(selection.left_out[0].flight, "flight");
-    EXPECT_EQ(selection.left_out[0].phase, Phase::landing);
+    EXPECT_EQ(selection.left_out[0].phase, flight::Phase::landing);
     EXPECT_EQ(selection.left_out[0].reason, "the log begins or ends inside of it");
     ASSERT_EQ(selection.flights.size(), 1U);
-    EXPECT_TRUE(selection.flights[0].phases[Phase::cruise].has_value());
-    EXPECT_FALSE(selection.flights[0].phases[Phase::landing].has_value());
+    EXPECT_TRUE(selection.flights[0].phases[flight::Phase::cruise].has_value());
+    EXPECT_FALSE(selection.flights[0].phases[flight::Phase::landing].has_value());
 }
 
 TEST(FlightSamples, LeaveOutWhatBeginsOrEndsInALongGap) {
@@ -113,16 +113,16 @@ TEST(FlightSamples, LeaveOutWhatBeginsOrEndsInALongGap) {
     for (const auto& left_out : selection.left_out) reasons.push_back(left_out.reason);
     EXPECT_THAT(reasons, ElementsAre("its end lies in a gap of 15.0 s", "its start lies in a gap of 12.0 s"));
     ASSERT_EQ(selection.flights.size(), 1U);
-    EXPECT_TRUE(selection.flights[0].phases[Phase::takeoff].has_value());
+    EXPECT_TRUE(selection.flights[0].phases[flight::Phase::takeoff].has_value());
 }
 
 TEST(FlightSamples, LeaveOutWhatHasTooFew) {
-    Sortie sortie;
-    sortie.phases = {span(Phase::takeoff, 10, 17), span(Phase::cruise, 17, 23)};
+    flight::Sortie sortie;
+    sortie.phases = {span(flight::Phase::takeoff, 10, 17), span(flight::Phase::cruise, 17, 23)};
     const auto selection = select({sortie});
-    EXPECT_EQ(selection.flights.at(0).phases[Phase::takeoff]->tau.size(), needed);
+    EXPECT_EQ(selection.flights.at(0).phases[flight::Phase::takeoff]->tau.size(), needed);
     ASSERT_EQ(selection.left_out.size(), 1U);
-    EXPECT_EQ(selection.left_out[0].phase, Phase::cruise);
+    EXPECT_EQ(selection.left_out[0].phase, flight::Phase::cruise);
     EXPECT_EQ(selection.left_out[0].reason, "7 samples, 8 are needed");
 }
 
@@ -137,4 +137,4 @@ TEST(FlightSamples, AreNoneWhereNothingIsLeft) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 TEST(FourierBasis, HoldsCosinesAndSinesOfMultiples) {
@@ -35,4 +35,4 @@ TEST(FourierBasis, IsOrthogonalOverWholePeriodsAndCollinearBelowOne) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,14 +1,14 @@
 // Intervals are honest: they hold the truth as often as they say (scripts/bench_coverage: the large run).
 
-#include "mechanical/interval_coverage.h"
+#include "helpers/interval_coverage.h"
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 void expect_honest(const test::CoverageCase& made, unsigned seed) {
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto coverage = test::coverage_of(phase, made, seed);
         EXPECT_GE(coverage.covered, 0.92) << to_string(phase);
         EXPECT_LE(coverage.covered, 0.98) << to_string(phase);
@@ -21,7 +21,7 @@ TEST(IntervalCoverage, OfTwoHundredFlightsEachAlone) { expect_honest({}, 1); }
 TEST(IntervalCoverage, OfTwoHundredFlightsInFours) { expect_honest({.flights = 800, .together = 4}, 2); }
 
 double cruise_coverage(const test::CoverageCase& made) {
-    return test::coverage_of(Phase::cruise, made, 3).covered;
+    return test::coverage_of(flight::Phase::cruise, made, 3).covered;
 }
 
 TEST(IntervalCoverage, OfLongPhasesWhoseNoiseIsNotIndependent) {
@@ -39,4 +39,4 @@ TEST(IntervalCoverage, OfRobustFitsWithOutliers) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

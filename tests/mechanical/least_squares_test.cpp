@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 // NIST Statistical Reference Datasets, linear regression, "Longley" (condition number 5e9; higher
@@ -81,4 +81,4 @@ TEST(LeastSquares, RefusesWhatTheValuesDoNotDetermine) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

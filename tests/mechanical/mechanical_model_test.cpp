@@ -1,15 +1,15 @@
 #include "mechanical/mechanical_model.h"
 
 #include "base/csv.h"
-#include "mechanical/made_up_flights.h"
-#include "test_paths.h"
+#include "helpers/made_up_flights.h"
+#include "helpers/test_paths.h"
 
 #include <cmath>
 #include <tuple>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 /// The paper's figure, digitised: RMS difference to the model's curve [W].
@@ -35,14 +35,14 @@ TEST(MechanicalModel, IsTheSeriesOfEquationOne) {
 TEST(MechanicalModel, TableOneIsTheCurveOfFigureTwo) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto model = test::published_model();
-    EXPECT_LT(rms_from_figure_w(model.phases[Phase::takeoff].fourier, "fig2_takeoff.csv"), 0.03);
-    EXPECT_LT(rms_from_figure_w(model.phases[Phase::cruise].fourier, "fig2_cruise.csv"), 0.03);
-    EXPECT_LT(rms_from_figure_w(model.phases[Phase::landing].fourier, "fig2_landing.csv"), 0.03);
+    EXPECT_LT(rms_from_figure_w(model.phases[flight::Phase::takeoff].fourier, "fig2_takeoff.csv"), 0.03);
+    EXPECT_LT(rms_from_figure_w(model.phases[flight::Phase::cruise].fourier, "fig2_cruise.csv"), 0.03);
+    EXPECT_LT(rms_from_figure_w(model.phases[flight::Phase::landing].fourier, "fig2_landing.csv"), 0.03);
 }
 
 TEST(MechanicalModel, EnergyIsTheIntegralOfPower) {
     const auto published = test::published_model();
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto& [fourier, duration_s] =
             std::tie(published.phases[phase].fourier, published.phases[phase].duration_s);
         constexpr int steps = 20000;  // Simpson's rule
@@ -52,22 +52,22 @@ TEST(MechanicalModel, EnergyIsTheIntegralOfPower) {
         integral *= duration_s / steps / 3.0;
         EXPECT_NEAR(energy_j(fourier, duration_s), integral, 1e-9 * integral) << to_string(phase);
     }
-    EXPECT_DOUBLE_EQ(energy_j(published.phases[Phase::cruise].fourier, 0.0), 0.0);
+    EXPECT_DOUBLE_EQ(energy_j(published.phases[flight::Phase::cruise].fourier, 0.0), 0.0);
 }
 
 TEST(MechanicalModel, PublishedPhasesTakeTheirKnownEnergies) {
     const auto published = test::published_model();
-    const auto energy = [&](Phase phase) {
+    const auto energy = [&](flight::Phase phase) {
         return energy_j(published.phases[phase].fourier, published.phases[phase].duration_s);
     };
     // As summed up from the figures: four digits are theirs.
-    EXPECT_NEAR(energy(Phase::takeoff), 803.9, 1e-4 * 803.9);
-    EXPECT_NEAR(energy(Phase::cruise), 16385.9, 1e-4 * 16385.9);
-    EXPECT_NEAR(energy(Phase::landing), 1686.2, 1e-4 * 1686.2);
+    EXPECT_NEAR(energy(flight::Phase::takeoff), 803.9, 1e-4 * 803.9);
+    EXPECT_NEAR(energy(flight::Phase::cruise), 16385.9, 1e-4 * 16385.9);
+    EXPECT_NEAR(energy(flight::Phase::landing), 1686.2, 1e-4 * 1686.2);
 }
 
 TEST(MechanicalModel, AStretchedPhaseEndsWhereTheModelEnds) {
-    const auto phase = test::published_model().phases[Phase::landing];
+    const auto phase = test::published_model().phases[flight::Phase::landing];
     const auto stretched = flown_model(phase, 2.0 * phase.duration_s, PhaseClock::stretched);
     EXPECT_NEAR(power_w(stretched, 2.0 * phase.duration_s), power_w(phase.fourier, phase.duration_s), 1e-12);
     EXPECT_NEAR(energy_j(stretched, 2.0 * phase.duration_s), 2.0 * energy_j(phase.fourier, phase.duration_s),
@@ -77,4 +77,4 @@ TEST(MechanicalModel, AStretchedPhaseEndsWhereTheModelEnds) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -1,15 +1,15 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "mechanical/made_up_flights.h"
+#include "helpers/made_up_flights.h"
+#include "helpers/test_paths.h"
 #include "mechanical/mechanical_model.h"
-#include "test_paths.h"
 
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 using testing::HasSubstr;
@@ -76,13 +76,13 @@ MechanicalModel made_up_model() {
     model.name = "quoted \"name\"";
     model.description = "one line\nand another";
     model.weighting = "agreement";
-    model.phases[Phase::cruise].rms_w = 0.1 + 0.2;  // a number that needs all its digits
-    model.phases[Phase::cruise].range = FrequencyRange{3.0, 40.0, "low"};
-    model.phases[Phase::cruise].samples = 545;
-    model.phases[Phase::cruise].flights = 2;
+    model.phases[flight::Phase::cruise].rms_w = 0.1 + 0.2;  // a number that needs all its digits
+    model.phases[flight::Phase::cruise].range = FrequencyRange{3.0, 40.0, "low"};
+    model.phases[flight::Phase::cruise].samples = 545;
+    model.phases[flight::Phase::cruise].flights = 2;
     model.flights = {{"first", {}}, {"second", {}}};
-    model.flights[0].phases[Phase::cruise] = PhaseContribution{0.25, 580.0, 0.5, 300};
-    model.flights[1].phases[Phase::cruise] = PhaseContribution{0.75, 610.0, 1.0 / 3.0, 245};
+    model.flights[0].phases[flight::Phase::cruise] = PhaseContribution{0.25, 580.0, 0.5, 300};
+    model.flights[1].phases[flight::Phase::cruise] = PhaseContribution{0.75, 610.0, 1.0 / 3.0, 245};
     return model;
 }
 
@@ -93,29 +93,29 @@ TEST(MechanicalModelToml, ReadsBackWhatItWrote) {
     EXPECT_EQ(again.name, model.name);
     EXPECT_EQ(again.description, model.description);
     EXPECT_EQ(again.weighting, model.weighting);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         expect_equal(again.phases[phase].fourier, model.phases[phase].fourier);
         EXPECT_EQ(again.phases[phase].duration_s, model.phases[phase].duration_s);
         EXPECT_EQ(again.phases[phase].rms_w, model.phases[phase].rms_w);
     }
-    const auto& cruise = again.phases[Phase::cruise];
+    const auto& cruise = again.phases[flight::Phase::cruise];
     EXPECT_EQ(cruise.samples, 545U);
     EXPECT_EQ(cruise.flights, 2U);
     ASSERT_TRUE(cruise.range);
     EXPECT_EQ(cruise.range->high_rad, 40.0);
     EXPECT_EQ(cruise.range->at_bound, "low");
-    EXPECT_FALSE(again.phases[Phase::takeoff].range);
+    EXPECT_FALSE(again.phases[flight::Phase::takeoff].range);
     ASSERT_EQ(again.flights.size(), 2U);
     EXPECT_EQ(again.flights[1].flight, "second");
-    EXPECT_FALSE(again.flights[1].phases[Phase::takeoff]);
-    EXPECT_EQ(again.flights[1].phases[Phase::cruise]->rms_w, 1.0 / 3.0);
+    EXPECT_FALSE(again.flights[1].phases[flight::Phase::takeoff]);
+    EXPECT_EQ(again.flights[1].phases[flight::Phase::cruise]->rms_w, 1.0 / 3.0);
     EXPECT_EQ(to_toml(again), text);
 }
 
 TEST(MechanicalModelToml, ReadsASoundFile) {
     const auto model = read_mechanical_model(written(sound_text));
-    EXPECT_EQ(model.phases[Phase::takeoff].fourier.sin_w, (std::vector<double>{3.0, 4.0}));
-    EXPECT_EQ(model.phases[Phase::landing].samples, 12U);
+    EXPECT_EQ(model.phases[flight::Phase::takeoff].fourier.sin_w, (std::vector<double>{3.0, 4.0}));
+    EXPECT_EQ(model.phases[flight::Phase::landing].samples, 12U);
 }
 
 TEST(MechanicalModelToml, RefusesAMissingKeyAndNamesTheNearestThatIsThere) {
@@ -164,4 +164,4 @@ TEST(MechanicalModelToml, RefusesAFileThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -3,7 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "mechanical/made_up_flights.h"
+#include "helpers/made_up_flights.h"
 #include "mechanical/table_one.h"
 #include "mechanical/table_one_latex.h"
 
@@ -13,14 +13,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 using testing::HasSubstr;
 
 std::vector<FlightSamples> made_up_flights(std::size_t count, double noise_w) {
     std::vector<FlightSamples> flights(count);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto samples = test::record_flights(phase, count, noise_w, 1);
         for (std::size_t i = 0; i < count; ++i) {
             flights[i].flight = samples[i].flight;
@@ -42,7 +42,7 @@ TEST(ModelErrors, ChangeNothingElseOfTheModel) {
     add_errors(fit);
     auto model = fit.model;
     EXPECT_NE(to_toml(model), plain);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         EXPECT_TRUE(model.phases[phase].errors && model.phases[phase].spread);
         model.phases[phase].errors.reset();
         model.phases[phase].spread.reset();
@@ -56,8 +56,10 @@ TEST(ModelErrors, AreReadBackFromTheModelFile) {
     const auto text = to_toml(fit.model);
     const auto again = read_mechanical_model(written(text));
     EXPECT_EQ(to_toml(again), text);
-    EXPECT_EQ(again.phases[Phase::cruise].errors->cos_w, fit.model.phases[Phase::cruise].errors->cos_w);
-    EXPECT_EQ(again.phases[Phase::landing].spread->high_w, fit.model.phases[Phase::landing].spread->high_w);
+    EXPECT_EQ(again.phases[flight::Phase::cruise].errors->cos_w,
+              fit.model.phases[flight::Phase::cruise].errors->cos_w);
+    EXPECT_EQ(again.phases[flight::Phase::landing].spread->high_w,
+              fit.model.phases[flight::Phase::landing].spread->high_w);
 }
 
 TEST(ModelErrors, AFileWithImpossibleErrorsIsRefused) {
@@ -65,7 +67,7 @@ TEST(ModelErrors, AFileWithImpossibleErrorsIsRefused) {
     add_errors(fit);
     const auto refusal = [&](auto change) -> std::string {
         auto model = fit.model;
-        change(model.phases[Phase::cruise]);
+        change(model.phases[flight::Phase::cruise]);
         try {
             read_mechanical_model(written(to_toml(model)));
         } catch (const InputError& error) {
@@ -110,7 +112,7 @@ TEST(ModelErrors, CurvesAreATableOfBothBands) {
 
 TEST(TableOne, CanHaveIntervals) {
     auto model = test::published_model();
-    model.phases[Phase::cruise].errors = PhaseErrors{
+    model.phases[flight::Phase::cruise].errors = PhaseErrors{
         1e-5, 0.05, {0.01, 0.02, 0.03}, {0.04, 0.05, 0.06}, 0.02, 1e9, false, 0.9, 2.0, 0.1, 400.0};
     const auto table = table_one(model, TableIntervals::present);
     ASSERT_EQ(table.header.size(), 7U);
@@ -119,7 +121,7 @@ TEST(TableOne, CanHaveIntervals) {
     EXPECT_EQ(table.rows[6][4], "0.12");
     EXPECT_EQ(table.rows[7][4], "0.00042");  // of xi = omega * 600 / 28
     EXPECT_EQ(table.rows[0][2], "-");        // no errors known
-    model.phases[Phase::cruise].errors->frequency_is_given = true;
+    model.phases[flight::Phase::cruise].errors->frequency_is_given = true;
     EXPECT_EQ(table_one(model, TableIntervals::present).rows[7][4], "-");
     const auto beside = table_one_beside(test::published_model(), model, TableIntervals::present);
     EXPECT_EQ(beside.header.size(), 10U);
@@ -171,4 +173,4 @@ TEST(TableOneLatex, ScalesATableThatIsWiderThanAPage) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

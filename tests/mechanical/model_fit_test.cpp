@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "mechanical/made_up_flights.h"
+#include "helpers/made_up_flights.h"
 #include "mechanical/phase_curve.h"
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 using testing::HasSubstr;
 
 std::vector<FlightSamples> made_up_flights(std::size_t count, double noise_w, unsigned seed) {
     std::vector<FlightSamples> flights(count);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto samples = test::record_flights(phase, count, noise_w, seed);
         for (std::size_t i = 0; i < count; ++i) {
             flights[i].flight = samples[i].flight;
@@ -42,21 +42,25 @@ TEST(ModelFit, RegeneratesThePublishedModel) {
     const auto published = test::published_model();
     for (unsigned seed = 1; seed <= 10; ++seed) {
         const auto model = fit_mechanical_model(made_up_flights(6, 0.2, seed));
-        EXPECT_LE(curve_rms_difference_w(model.phases[Phase::takeoff], published.phases[Phase::takeoff]),
+        EXPECT_LE(curve_rms_difference_w(model.phases[flight::Phase::takeoff],
+                                         published.phases[flight::Phase::takeoff]),
                   0.10);
-        EXPECT_LE(curve_rms_difference_w(model.phases[Phase::cruise], published.phases[Phase::cruise]), 0.10);
-        EXPECT_LE(curve_rms_difference_w(model.phases[Phase::landing], published.phases[Phase::landing]),
+        EXPECT_LE(curve_rms_difference_w(model.phases[flight::Phase::cruise],
+                                         published.phases[flight::Phase::cruise]),
+                  0.10);
+        EXPECT_LE(curve_rms_difference_w(model.phases[flight::Phase::landing],
+                                         published.phases[flight::Phase::landing]),
                   0.30);
         // Noise of 0.2 W leaves the level of a series of less than a period open in the shorter phases.
-        EXPECT_NEAR(model.phases[Phase::cruise].fourier.a0_w, published.phases[Phase::cruise].fourier.a0_w,
-                    0.27);
+        EXPECT_NEAR(model.phases[flight::Phase::cruise].fourier.a0_w,
+                    published.phases[flight::Phase::cruise].fourier.a0_w, 0.27);
     }
 }
 
 TEST(ModelFit, RegeneratesEveryCoefficientOfExactFlights) {
     const auto published = test::published_model();
     const auto model = fit_mechanical_model(made_up_flights(4, 0.0, 1));
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto& is = model.phases[phase].fourier;
         const auto& was = published.phases[phase].fourier;
         EXPECT_NEAR(is.a0_w, was.a0_w, 1e-5);
@@ -77,7 +81,7 @@ TEST(ModelFit, SaysHowItWasMade) {
               "fitted to 3 flights: Fourier series of order 3 a phase, weights: agreement; "
               "flightwatt " FLIGHTWATT_VERSION);
     ASSERT_EQ(model.flights.size(), 3U);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         const auto& result = model.phases[phase];
         double weights = 0.0;
         double duration_s = 0.0;
@@ -115,12 +119,12 @@ TEST(ModelFit, IsReadBackFromItsFile) {
 
 TEST(ModelFit, AFlightMayLackAPhase) {
     auto flights = made_up_flights(3, 0.2, 4);
-    flights[1].phases[Phase::landing].reset();
+    flights[1].phases[flight::Phase::landing].reset();
     const auto model = fit_mechanical_model(flights);
-    EXPECT_EQ(model.phases[Phase::landing].flights, 2U);
-    EXPECT_EQ(model.phases[Phase::cruise].flights, 3U);
-    EXPECT_FALSE(model.flights[1].phases[Phase::landing]);
-    EXPECT_EQ(model.flights[2].phases[Phase::landing]->weight, 0.5);
+    EXPECT_EQ(model.phases[flight::Phase::landing].flights, 2U);
+    EXPECT_EQ(model.phases[flight::Phase::cruise].flights, 3U);
+    EXPECT_FALSE(model.flights[1].phases[flight::Phase::landing]);
+    EXPECT_EQ(model.flights[2].phases[flight::Phase::landing]->weight, 0.5);
 }
 
 TEST(ModelFit, TheOrderOfTheFlightsDoesNotMatter) {
@@ -128,7 +132,7 @@ TEST(ModelFit, TheOrderOfTheFlightsDoesNotMatter) {
     const auto model = fit_mechanical_model(flights);
     std::reverse(flights.begin(), flights.end());
     const auto turned = fit_mechanical_model(flights);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         EXPECT_NEAR(curve_rms_difference_w(model.phases[phase], turned.phases[phase]), 0.0, 1e-6);
         EXPECT_NEAR(model.flights[0].phases[phase]->weight, turned.flights[3].phases[phase]->weight, 1e-6);
     }
@@ -138,11 +142,12 @@ TEST(ModelFit, WeightsByHandReachTheAverage) {
     const auto flights = made_up_flights(2, 0.2, 6);
     ModelFitOptions options;
     options.weights = {Weighting::by_hand,
-                       {{"flight1", {}, 1.0}, {"flight2", {}, 0.0}, {"flight2", Phase::cruise, 3.0}}};
+                       {{"flight1", {}, 1.0}, {"flight2", {}, 0.0}, {"flight2", flight::Phase::cruise, 3.0}}};
     const auto model = fit_mechanical_model(flights, options);
     EXPECT_EQ(model.weighting, "by hand");
-    EXPECT_EQ(model.phases[Phase::takeoff].duration_s, flights[0].phases[Phase::takeoff]->duration_s);
-    EXPECT_EQ(model.flights[1].phases[Phase::cruise]->weight, 0.75);
+    EXPECT_EQ(model.phases[flight::Phase::takeoff].duration_s,
+              flights[0].phases[flight::Phase::takeoff]->duration_s);
+    EXPECT_EQ(model.flights[1].phases[flight::Phase::cruise]->weight, 0.75);
     options.weights.by_hand.push_back({"flight3", {}, 1.0});
     EXPECT_THAT(message_of<UsageError>(flights, options), HasSubstr("'flight3'"));
 }
@@ -151,15 +156,15 @@ TEST(ModelFit, RefusesWhatHasNoAnswer) {
     auto flights = made_up_flights(2, 0.2, 7);
     EXPECT_THAT(message_of<NoAnswerError>({}), HasSubstr("no flight has a takeoff to fit"));
     auto without = flights;
-    for (auto& flight : without) flight.phases[Phase::landing].reset();
+    for (auto& flight : without) flight.phases[flight::Phase::landing].reset();
     EXPECT_THAT(message_of<NoAnswerError>(without), HasSubstr("no flight has a landing to fit"));
     auto twice = flights;
     twice[1].flight = twice[0].flight;
     EXPECT_THAT(message_of<UsageError>(twice), HasSubstr("'flight1' is given twice"));
-    flights[0].phases[Phase::takeoff]->tau.resize(5);
-    flights[0].phases[Phase::takeoff]->power_w.resize(5);
+    flights[0].phases[flight::Phase::takeoff]->tau.resize(5);
+    flights[0].phases[flight::Phase::takeoff]->power_w.resize(5);
     EXPECT_THAT(message_of<NoAnswerError>(flights), HasSubstr("flight 'flight1' has 5 samples in takeoff"));
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

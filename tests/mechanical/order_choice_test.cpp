@@ -1,13 +1,13 @@
 #include "mechanical/order_choice.h"
 
 #include "base/error.h"
-#include "mechanical/made_up_flights.h"
+#include "helpers/made_up_flights.h"
 
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 /// Cruises whose series has that order, with 0.1 W of noise.
@@ -27,11 +27,11 @@ std::vector<PhaseSamples> flights_of_order(std::size_t order, std::size_t count,
 
 TEST(OrderChoice, FindsTheOrderThatTheFlightsWereMadeOf) {
     for (const std::size_t order : {0U, 1U, 2U, 3U, 5U}) {
-        const auto several = choose_order(Phase::cruise, flights_of_order(order, 4, 1), {}, {});
+        const auto several = choose_order(flight::Phase::cruise, flights_of_order(order, 4, 1), {}, {});
         EXPECT_EQ(several.order, static_cast<int>(order)) << "leave one flight out";
         EXPECT_EQ(several.how, "leave one flight out");
         EXPECT_EQ(several.folds, 4U);
-        const auto alone = choose_order(Phase::cruise, flights_of_order(order, 1, 2), {}, {});
+        const auto alone = choose_order(flight::Phase::cruise, flights_of_order(order, 1, 2), {}, {});
         EXPECT_EQ(alone.order, static_cast<int>(order)) << "blocks of time";
         EXPECT_EQ(alone.how, "blocks of time");
         EXPECT_EQ(alone.folds, 5U);
@@ -39,7 +39,7 @@ TEST(OrderChoice, FindsTheOrderThatTheFlightsWereMadeOf) {
 }
 
 TEST(OrderChoice, ShowsTheErrorOfEveryOrder) {
-    const auto choice = choose_order(Phase::cruise, flights_of_order(3, 3, 1), {}, {});
+    const auto choice = choose_order(flight::Phase::cruise, flights_of_order(3, 3, 1), {}, {});
     ASSERT_EQ(choice.errors.size(), 7U);
     for (int order = 0; order <= 6; ++order) {
         const auto& error = choice.errors[static_cast<std::size_t>(order)];
@@ -55,7 +55,7 @@ TEST(OrderChoice, ShowsTheErrorOfEveryOrder) {
 }
 
 TEST(OrderChoice, PassesOverOrdersThatTheSamplesAreTooFewFor) {
-    auto flights = test::record_flights(Phase::landing, 3, 0.1, 1);
+    auto flights = test::record_flights(flight::Phase::landing, 3, 0.1, 1);
     for (auto& flight : flights) {
         flight.tau.clear();
         flight.power_w.clear();
@@ -64,13 +64,14 @@ TEST(OrderChoice, PassesOverOrdersThatTheSamplesAreTooFewFor) {
             flight.power_w.push_back(20.0 + i % 3);
         }
     }
-    const auto choice = choose_order(Phase::landing, flights, {.low_rad = std::numbers::pi / 2.0}, {});
+    const auto choice =
+        choose_order(flight::Phase::landing, flights, {.low_rad = std::numbers::pi / 2.0}, {});
     EXPECT_TRUE(choice.errors[0].rms_w);
     EXPECT_FALSE(choice.errors[6].rms_w);
     EXPECT_NE(choice.errors[6].reason.find("9 samples"), std::string::npos) << choice.errors[6].reason;
     EXPECT_LE(choice.order, 3);
-    EXPECT_THROW(choose_order(Phase::cruise, {}, {}, {}), NoAnswerError);
+    EXPECT_THROW(choose_order(flight::Phase::cruise, {}, {}, {}), NoAnswerError);
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

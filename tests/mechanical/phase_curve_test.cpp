@@ -1,17 +1,17 @@
 #include "mechanical/phase_curve.h"
 
-#include "mechanical/made_up_flights.h"
+#include "helpers/made_up_flights.h"
 
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 TEST(PhaseCurve, IsTheSeriesAtTheMiddlesOfEqualParts) {
-    const auto phase = test::published_model().phases[Phase::takeoff];
+    const auto phase = test::published_model().phases[flight::Phase::takeoff];
     const auto curve = curve_w(phase.fourier, phase.duration_s, 7);
     ASSERT_EQ(curve.size(), 7U);
     EXPECT_DOUBLE_EQ(curve[0], power_w(phase.fourier, 2.0));
@@ -19,7 +19,7 @@ TEST(PhaseCurve, IsTheSeriesAtTheMiddlesOfEqualParts) {
 }
 
 TEST(PhaseCurve, DifferenceIsThatOfTheCurvesWhateverTheSeconds) {
-    const auto phase = test::published_model().phases[Phase::takeoff];
+    const auto phase = test::published_model().phases[flight::Phase::takeoff];
     EXPECT_EQ(curve_rms_difference_w(phase, phase), 0.0);
     auto slower = phase;
     slower.duration_s *= 3.0;
@@ -39,4 +39,4 @@ TEST(PhaseCurve, ResolvesTheFastestHarmonic) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -2,17 +2,17 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "made_up_flights.h"
+#include "helpers/made_up_flights.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 PhaseForecast forecast(const LevelSpread& spread) {
-    PhaseForecast cruise{test::published_model().phases[Phase::cruise], 0.25};
+    PhaseForecast cruise{test::published_model().phases[flight::Phase::cruise], 0.25};
     cruise.model.level_spread = spread;
     return cruise;
 }
@@ -126,7 +126,7 @@ TEST(Prediction, FollowsTheCovariateOfTheLevelLawWhereAsked) {
 }
 
 TEST(Prediction, SaysWhenTheModelHasNoSpread) {
-    const PhaseForecast cruise{test::published_model().phases[Phase::cruise], 1.0};
+    const PhaseForecast cruise{test::published_model().phases[flight::Phase::cruise], 1.0};
     EXPECT_THROW(predict_rest(cruise, flown(300.0, 20.0), 900.0, LevelSource::curve), NoAnswerError);
     EXPECT_FALSE(interval_95(predict_before_flight(cruise, 600.0)).has_value());
 }
@@ -139,4 +139,4 @@ TEST(Prediction, OfNothingLeftIsNothing) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

@@ -2,13 +2,13 @@
 
 #include "base/csv.h"
 #include "base/number.h"
-#include "mechanical/made_up_flights.h"
+#include "helpers/made_up_flights.h"
 #include "mechanical/phase_curve.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 using testing::ElementsAre;
@@ -39,22 +39,22 @@ TEST(TableOne, IsTheTableInTheFileOfFacts) {
 
 TEST(TableOne, LeavesRoomForPhasesOfOtherOrders) {
     auto model = test::published_model();
-    model.phases[Phase::cruise].fourier.cos_w.resize(1);
-    model.phases[Phase::cruise].fourier.sin_w.resize(1);
+    model.phases[flight::Phase::cruise].fourier.cos_w.resize(1);
+    model.phases[flight::Phase::cruise].fourier.sin_w.resize(1);
     const auto table = table_one(model);
     ASSERT_EQ(table.rows.size(), 8U);
     EXPECT_THAT(table.rows[2], ElementsAre("b1", "-1.963", "1.194", "1.276"));
     EXPECT_THAT(table.rows[3], ElementsAre("a2", "0.3876", "-", "0.9357"));
     EXPECT_EQ(table.rows[7][2], "0.1799");
-    model.phases[Phase::landing].fourier.cos_w.clear();
-    model.phases[Phase::landing].fourier.sin_w.clear();
+    model.phases[flight::Phase::landing].fourier.cos_w.clear();
+    model.phases[flight::Phase::landing].fourier.sin_w.clear();
     EXPECT_EQ(table_one(model).rows[7][3], "-");  // a constant has no frequency
 }
 
 TEST(TableOne, StandsBesideTheRegenerated) {
     const auto published = test::published_model();
     auto regenerated = published;
-    auto& cruise = regenerated.phases[Phase::cruise];
+    auto& cruise = regenerated.phases[flight::Phase::cruise];
     cruise.fourier.a0_w *= 1.01;
     cruise.duration_s = 500.0;
     cruise.fourier.omega_rad_per_s *= 600.0 / 500.0;
@@ -75,4 +75,4 @@ TEST(TableOne, StandsBesideTheRegenerated) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

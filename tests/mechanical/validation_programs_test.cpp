@@ -1,7 +1,7 @@
 // flightwatt-validate and flightwatt-predict as a user runs them.
 
 #include "base/atomic_file.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <cstdlib>
 #include <fstream>
@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
-namespace flightwatt {
+namespace flightwatt::mechanical {
 namespace {
 
 using testing::HasSubstr;
@@ -188,4 +188,4 @@ TEST(Predict, RefusesWhatCannotBePredicted) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mechanical

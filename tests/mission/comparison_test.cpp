@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 MissionSummary outcome(const std::string& name, std::optional<double> soc,
@@ -58,4 +58,4 @@ TEST(Comparison, MakesATable) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,17 +1,17 @@
-#include "mission/disturbance_toml.h"
+#include "helpers/rejected.h"
+#include "mission/disturbance_file.h"
 #include "mission/simulation.h"
-#include "rejected.h"
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 using test::rejected;
 using test::scratch_dir;
 using test::write_text;
 
-const PerPhase<double> durations{{100.0, 600.0, 50.0}};
+const flight::PerPhase<double> durations{{100.0, 600.0, 50.0}};
 
 std::vector<Disturbance> read(const std::string& text) {
     return read_disturbances(write_text(scratch_dir() / "d.toml", text), durations);
@@ -27,13 +27,13 @@ std::string refused(const std::string& entry) {
 Mission steady_flight() {
     Mission mission;
     mission.name = "steady";
-    mission.duration_s[Phase::cruise] = 1000.0;
+    mission.duration_s[flight::Phase::cruise] = 1000.0;
     mission.battery = {"", 10.0, 0.0, 1.0};
-    mission.compute.components.push_back({"load", make_power_profile("load", {}, {{{}, 15.0, {}}})});
-    mission.schedule = {{Phase::cruise, 0.0, 1000.0, {{0, {}}}}};
-    mission.mechanical = MechanicalModel();
-    mission.mechanical->phases[Phase::cruise].fourier = {0.01, 5.0, {}, {}};
-    mission.mechanical->phases[Phase::cruise].duration_s = 1000.0;
+    mission.compute.components.push_back({"load", compute::make_power_profile("load", {}, {{{}, 15.0, {}}})});
+    mission.schedule = {{flight::Phase::cruise, 0.0, 1000.0, {{0, {}}}}};
+    mission.mechanical = mechanical::MechanicalModel();
+    mission.mechanical->phases[flight::Phase::cruise].fourier = {0.01, 5.0, {}, {}};
+    mission.mechanical->phases[flight::Phase::cruise].duration_s = 1000.0;
     return mission;
 }
 
@@ -114,7 +114,7 @@ TEST(Disturbance, DropsBelowEmptyEndTheFlight) {
 }
 
 TEST(Disturbance, KeepsToTheSamePartOfAPhase) {
-    const PerPhase<double> flown{{100.0, 900.0, 25.0}};
+    const flight::PerPhase<double> flown{{100.0, 900.0, 25.0}};
     EXPECT_DOUBLE_EQ(at_same_part_s(50.0, durations, flown), 50.0);
     EXPECT_DOUBLE_EQ(at_same_part_s(400.0, durations, flown), 550.0);
     EXPECT_DOUBLE_EQ(at_same_part_s(725.0, durations, flown), 1012.5);
@@ -122,4 +122,4 @@ TEST(Disturbance, KeepsToTheSamePartOfAPhase) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

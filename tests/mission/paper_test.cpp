@@ -2,15 +2,15 @@
 // missions in missions/paper/.
 
 #include "base/csv.h"
+#include "helpers/test_paths.h"
 #include "mission/comparison.h"
-#include "test_paths.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 Mission paper(const std::string& name) {
@@ -126,4 +126,4 @@ TEST(Paper, MeetsEveryCellOfFigure4) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

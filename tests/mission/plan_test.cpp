@@ -2,9 +2,9 @@
 
 #include "base/atomic_file.h"
 #include "base/units.h"
-#include "mission/drain_spread.h"
-#include "mission/planned_mission_toml.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
+#include "mission/planned_mission_file.h"
+#include "mission/sampling/level_deviation.h"
 
 #include <chrono>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 Mission paper(const std::string& name) {
@@ -74,8 +74,8 @@ TEST(Plan, SpendsWhatTheReserveLeaves) {
         EXPECT_GT(*plan.summary.utility, last);
         last = *plan.summary.utility;
         for (const auto& stretch : plan.flown.schedule) {
-            const bool middle = stretch.phase == Phase::cruise && stretch.from_s == 240.0;
-            EXPECT_EQ(stretch.run == (Configuration{{0, {32.0}}, {1, {448.0}}}), middle);
+            const bool middle = stretch.phase == flight::Phase::cruise && stretch.from_s == 240.0;
+            EXPECT_EQ(stretch.run == (compute::Configuration{{0, {32.0}}, {1, {448.0}}}), middle);
         }
     }
 }
@@ -145,10 +145,12 @@ TEST(Plan, MayBeMadeAnewInFlight) {
     ASSERT_TRUE(rest.feasible);
     EXPECT_GE(rest.final_soc_percent, 2.0 - 1e-9);
     EXPECT_EQ(rest.schedule.front().from_s, 300.0 - 28.0);
-    EXPECT_EQ(rest.schedule.front().run, (Configuration{{0, {32.0}}, {1, {448.0}}}));  // still fixed
+    EXPECT_EQ(rest.schedule.front().run, (compute::Configuration{{0, {32.0}}, {1, {448.0}}}));  // still fixed
     double worth_before = 0.0;
     for (const auto& s : whole.schedule) {
-        const double begins_s = s.phase == Phase::takeoff ? 0.0 : s.phase == Phase::cruise ? 28.0 : 628.0;
+        const double begins_s = s.phase == flight::Phase::takeoff  ? 0.0
+                                : s.phase == flight::Phase::cruise ? 28.0
+                                                                   : 628.0;
         const double before_s = std::min(begins_s + s.to_s, 300.0) - (begins_s + s.from_s);
         if (before_s > 0.0) worth_before += before_s * s.run.front().qos.front();
     }
@@ -165,7 +167,7 @@ TEST(Plan, ReplansWithWhatRuns) {
     auto mission = paper_with_reserve(2.0);
     mission.plan->dwell_s = 60.0;
     const auto planner = make_planner(mission);
-    const Configuration strong{{0, {32.0}}, {1, {32.0}}};
+    const compute::Configuration strong{{0, {32.0}}, {1, {32.0}}};
     const auto rest = plan_rest(mission, planner, {28.0, 95.0, strong, 20.0}, 2.0);
     ASSERT_FALSE(rest.schedule.empty());
     EXPECT_EQ(rest.schedule.front().run, strong);
@@ -175,7 +177,7 @@ TEST(Plan, ReplansWithWhatRuns) {
 TEST(Plan, AnswersWhereTheBatteryIsCharged) {
     auto mission = paper_with_reserve(0.0);
     mission.initial_soc_percent = 100.0;
-    mission.mechanical->phases[Phase::takeoff].fourier.a0_w = -60.0;  // down a slope: full at once
+    mission.mechanical->phases[flight::Phase::takeoff].fourier.a0_w = -60.0;  // down a slope: full at once
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_GE(*plan.summary.final_soc_percent, 0.0);
@@ -198,7 +200,7 @@ TEST(Plan, KeepsAMarginForFlightsThatDiffer) {
     auto mission = paper_with_reserve(2.0);
     mission.uncertainty.level_sd_percent = {};
     EXPECT_THROW(plan_mission(mission, 0.95), InputError);
-    for (const auto phase : all_phases) {
+    for (const auto phase : flight::all_phases) {
         mission.mechanical->phases[phase].flights = 5;
         mission.mechanical->phases[phase].level_spread = {5, 0.2, 0.1, 20.0};
     }
@@ -264,4 +266,4 @@ TEST(Planner, CutsSlotsAtFixedStretchesAndPhases) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,15 +1,15 @@
 // Utilities and [plan] of a mission file.
 
+#include "helpers/rejected.h"
+#include "mission/file/utility_toml.h"
 #include "mission/mission.h"
 #include "mission/mission_utility.h"
-#include "mission/utility_toml.h"
-#include "rejected.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 using test::rejected;
@@ -166,8 +166,8 @@ TEST(PlanToml, IsRefusedWhereAScheduleIsDue) {
 
 TEST(MissionReading, FliesAnotherCruise) {
     const auto mission = parse_mission(head + with_utility("{}"), mission_folder() / "m.toml", {true, 123.0});
-    EXPECT_EQ(mission.duration_s[Phase::cruise], 123.0);
+    EXPECT_EQ(mission.duration_s[flight::Phase::cruise], 123.0);
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,7 +1,7 @@
 // flightwatt-simulate and flightwatt-compare as a user runs them.
 
 #include "base/atomic_file.h"
-#include "rejected.h"
+#include "helpers/rejected.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 using test::write_text;
@@ -211,4 +211,4 @@ TEST(Compare, ReproducesThePaper) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,15 +1,15 @@
 #include "mission/sampled_flights.h"
 
+#include "helpers/rejected.h"
 #include "mission/flight_draws.h"
 #include "mission/flown_charge.h"
-#include "rejected.h"
 
 #include <cmath>
 
 #include <boost/math/distributions/normal.hpp>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 Mission paper(const std::string& name) {
@@ -20,14 +20,14 @@ Mission paper(const std::string& name) {
 Mission gaussian_drain(double reserve_soc_percent) {
     Mission mission;
     mission.name = "steady";
-    mission.duration_s[Phase::cruise] = 1000.0;
+    mission.duration_s[flight::Phase::cruise] = 1000.0;
     mission.battery = {"", 10.0, 0.0, 1.0};
-    mission.schedule = {{Phase::cruise, 0.0, 1000.0, {}}};
-    mission.mechanical = MechanicalModel();
-    mission.mechanical->phases[Phase::cruise].fourier = {0.01, 20.0, {}, {}};
-    mission.mechanical->phases[Phase::cruise].duration_s = 1000.0;
+    mission.schedule = {{flight::Phase::cruise, 0.0, 1000.0, {}}};
+    mission.mechanical = mechanical::MechanicalModel();
+    mission.mechanical->phases[flight::Phase::cruise].fourier = {0.01, 20.0, {}, {}};
+    mission.mechanical->phases[flight::Phase::cruise].duration_s = 1000.0;
     mission.reserve_soc_percent = reserve_soc_percent;
-    mission.uncertainty.level_sd_percent[Phase::cruise] = 5.0;
+    mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     return mission;
 }
 
@@ -64,8 +64,8 @@ TEST(SampledFlights, CountEmptyBatteriesAsBelowAnyReserve) {
 
 TEST(SampledFlights, AreTheSameForASeed) {
     auto mission = paper("phased");
-    mission.uncertainty.level_sd_percent[Phase::cruise] = 3.0;
-    mission.uncertainty.duration_sd_s[Phase::cruise] = 10.0;
+    mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 3.0;
+    mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 10.0;
     const auto first = sampled(mission, 500, 7);
     const auto again = sampled(mission, 500, 7);
     EXPECT_EQ(first.final_soc_mean_percent, again.final_soc_mean_percent);
@@ -81,8 +81,8 @@ TEST(SampledFlights, AreTheSameForASeed) {
 
 TEST(SampledFlights, LetDurationsDrainInProportion) {
     auto mission = gaussian_drain(10.0);
-    mission.uncertainty.level_sd_percent[Phase::cruise].reset();
-    mission.uncertainty.duration_sd_s[Phase::cruise] = 50.0;
+    mission.uncertainty.level_sd_percent[flight::Phase::cruise].reset();
+    mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 50.0;
     const auto flights = sampled(mission, 20000, 1);
     EXPECT_NEAR(flights.final_soc_sd_percent, 0.05 * 20.0 / 0.36, 0.06);
 }
@@ -99,7 +99,7 @@ TEST(SampledFlights, GiveBandsOverTime) {
 
 TEST(SampledFlights, LetAnAdaptivePolicyAnswerEachFlight) {
     auto adaptive = paper("adaptive-replanned");
-    adaptive.uncertainty.level_sd_percent[Phase::cruise] = 5.0;
+    adaptive.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     auto beforehand = adaptive;
     beforehand.adaptive.reset();
     EXPECT_LT(sampled(adaptive, 100, 1).probability_below_reserve, 0.1);
@@ -121,21 +121,21 @@ TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
 TEST(FlightDraws, TakeWhatTheModelsKnow) {
     auto mission = paper("phased");
     mission.uncertainty.level_sd_percent = {};
-    auto& cruise = mission.mechanical->phases[Phase::cruise];
-    cruise.level_spread = LevelSpread{3, 1.0, 0.0, 1.0};
+    auto& cruise = mission.mechanical->phases[flight::Phase::cruise];
+    cruise.level_spread = mechanical::LevelSpread{3, 1.0, 0.0, 1.0};
     cruise.flights = 3;
     for (const double duration_s : {570.0, 600.0, 630.0}) {
-        FlightContribution flight;
-        flight.phases[Phase::cruise] = PhaseContribution{1.0 / 3.0, duration_s, 1.0, 100};
+        mechanical::FlightContribution flight;
+        flight.phases[flight::Phase::cruise] = mechanical::PhaseContribution{1.0 / 3.0, duration_s, 1.0, 100};
         mission.mechanical->flights.push_back(flight);
     }
     auto& detection = mission.compute.components[0].profile;
     detection.standard_error_w.assign(detection.power_w.size(), 0.5);
-    mission.battery.intervals.capacity_ah = Interval{3.0, 3.3};
+    mission.battery.intervals.capacity_ah = battery::Interval{3.0, 3.3};
     const auto spreads = spreads_of(mission);
     const double new_flight = std::sqrt(1.0 + 1.0 / 3.0);
-    EXPECT_NEAR(spreads.level_sd_w[Phase::cruise], new_flight, 1e-12);
-    EXPECT_NEAR(spreads.duration_sd_s[Phase::cruise], 30.0 * new_flight, 1e-9);
+    EXPECT_NEAR(spreads.level_sd_w[flight::Phase::cruise], new_flight, 1e-12);
+    EXPECT_NEAR(spreads.duration_sd_s[flight::Phase::cruise], 30.0 * new_flight, 1e-9);
     double capacity_below = 0.0;
     double power_square_sum = 0.0;
     constexpr int flights = 4000;
@@ -154,7 +154,7 @@ TEST(FlownCharge, AgreesWithTheSimulation) {
         auto mission = paper("phased");
         mission.battery.resistance_ohm = resistance_ohm;
         mission.battery.capacity_ah = 4.0;
-        Discharge charge;
+        battery::Discharge charge;
         charge.soc_percent = 100.0;
         for (const auto& demand : demands_of(mission)) charge = after_demand(mission, demand, charge);
         EXPECT_NEAR(charge.soc_percent, *simulate(mission).summary.final_soc_percent, 1e-6);
@@ -162,4 +162,4 @@ TEST(FlownCharge, AgreesWithTheSimulation) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,28 +1,28 @@
 #include "mission/schedule.h"
 
-#include "rejected.h"
+#include "helpers/rejected.h"
 
 #include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 using test::rejected;
 
-const PerPhase<double> durations{{28.0, 600.0, 60.0}};
+const flight::PerPhase<double> durations{{28.0, 600.0, 60.0}};
 
-Configuration running(double qos) { return {{0, {qos}}}; }
+compute::Configuration running(double qos) { return {{0, {qos}}}; }
 
 Location line(std::size_t number) { return {"m.toml", number, 1}; }
 
-ScheduleEntry part(Phase phase, double from_s, double to_s, double qos, std::size_t at = 1) {
+ScheduleEntry part(flight::Phase phase, double from_s, double to_s, double qos, std::size_t at = 1) {
     return {phase, false, false, from_s, to_s, running(qos), line(at)};
 }
 
-ScheduleEntry rest(std::optional<Phase> phase, double qos, std::size_t at = 1) {
+ScheduleEntry rest(std::optional<flight::Phase> phase, double qos, std::size_t at = 1) {
     return {phase, true, false, 0.0, 0.0, running(qos), line(at)};
 }
 
@@ -37,21 +37,24 @@ std::string spell(const std::vector<Stretch>& stretches) {
 }
 
 TEST(Schedule, OtherwiseFillsWhatIsLeft) {
-    const auto laid = lay_out({part(Phase::cruise, 240.0, 360.0, 3), rest(std::nullopt, 1)}, durations);
+    const auto laid =
+        lay_out({part(flight::Phase::cruise, 240.0, 360.0, 3), rest(std::nullopt, 1)}, durations);
     EXPECT_EQ(spell(laid),
               "takeoff 0..28=1; cruise 0..240=1; cruise 240..360=3; cruise 360..600=1; landing 0..60=1; ");
 }
 
 TEST(Schedule, AnOtherwiseOfThePhaseComesBeforeThatOfTheMission) {
     const auto laid = lay_out(
-        {rest(std::nullopt, 1), part(Phase::cruise, 0.0, 100.0, 3), rest(Phase::cruise, 2)}, durations);
+        {rest(std::nullopt, 1), part(flight::Phase::cruise, 0.0, 100.0, 3), rest(flight::Phase::cruise, 2)},
+        durations);
     EXPECT_EQ(spell(laid), "takeoff 0..28=1; cruise 0..100=3; cruise 100..600=2; landing 0..60=1; ");
 }
 
 TEST(Schedule, NeedsNoOtherwiseWhereEntriesMeet) {
     const auto laid =
-        lay_out({part(Phase::landing, 0.0, 60.0, 4), part(Phase::cruise, 300.0, 600.0, 3),
-                 part(Phase::cruise, 0.0, 300.0 + 1e-12, 2), part(Phase::takeoff, -1e-13, 28.0 - 1e-13, 1)},
+        lay_out({part(flight::Phase::landing, 0.0, 60.0, 4), part(flight::Phase::cruise, 300.0, 600.0, 3),
+                 part(flight::Phase::cruise, 0.0, 300.0 + 1e-12, 2),
+                 part(flight::Phase::takeoff, -1e-13, 28.0 - 1e-13, 1)},
                 durations);
     EXPECT_EQ(spell(laid), "takeoff 0..28=1; cruise 0..300=2; cruise 300..600=3; landing 0..60=4; ");
     EXPECT_EQ(laid[0].from_s, 0.0);
@@ -68,8 +71,8 @@ TEST(Schedule, CoversEachInstantExactlyOnce) {
     for (int round = 0; round < 200; ++round) {
         // Disjoint stretches between random cuts, every second one left to an `otherwise`, in random order.
         std::vector<ScheduleEntry> entries{rest(std::nullopt, 0)};
-        if (round % 2 == 0) entries.push_back(rest(Phase::cruise, 1));
-        for (const auto phase : all_phases) {
+        if (round % 2 == 0) entries.push_back(rest(flight::Phase::cruise, 1));
+        for (const auto phase : flight::all_phases) {
             std::vector<double> cuts(6);
             for (auto& cut : cuts) cut = std::uniform_real_distribution(0.0, durations[phase])(random);
             std::sort(cuts.begin(), cuts.end());
@@ -80,7 +83,7 @@ TEST(Schedule, CoversEachInstantExactlyOnce) {
         std::shuffle(entries.begin(), entries.end(), random);
         const auto laid = lay_out(entries, durations);
         auto previous = laid.front();
-        EXPECT_EQ(previous.phase, Phase::takeoff);
+        EXPECT_EQ(previous.phase, flight::Phase::takeoff);
         EXPECT_EQ(previous.from_s, 0.0);
         for (std::size_t i = 1; i < laid.size(); ++i) {
             const auto& stretch = laid[i];
@@ -93,24 +96,24 @@ TEST(Schedule, CoversEachInstantExactlyOnce) {
             }
             previous = stretch;
         }
-        EXPECT_EQ(previous.phase, Phase::landing);
-        EXPECT_EQ(previous.to_s, durations[Phase::landing]);
+        EXPECT_EQ(previous.phase, flight::Phase::landing);
+        EXPECT_EQ(previous.to_s, durations[flight::Phase::landing]);
     }
 }
 
 TEST(Schedule, RefusesOverlaps) {
     EXPECT_EQ(rejected([] {
-                  lay_out({part(Phase::cruise, 200.0, 400.0, 1, 9), part(Phase::cruise, 100.0, 250.0, 1, 4),
-                           rest({}, 1)},
+                  lay_out({part(flight::Phase::cruise, 200.0, 400.0, 1, 9),
+                           part(flight::Phase::cruise, 100.0, 250.0, 1, 4), rest({}, 1)},
                           durations);
               }),
               "m.toml:9:1: cruise from 200 s to 250 s is scheduled twice, here and in line 4; let one end "
               "where the other "
               "begins");
-    auto whole = part(Phase::cruise, 0.0, 600.0, 1, 12);
+    auto whole = part(flight::Phase::cruise, 0.0, 600.0, 1, 12);
     whole.whole_phase = true;
     EXPECT_EQ(rejected([&] {
-                  lay_out({part(Phase::cruise, 240.0, 360.0, 1, 8), whole, rest({}, 1)}, durations);
+                  lay_out({part(flight::Phase::cruise, 240.0, 360.0, 1, 8), whole, rest({}, 1)}, durations);
               }),
               "m.toml:12:1: cruise from 240 s to 360 s is scheduled twice, here and in line 8; give the "
               "entry of the whole "
@@ -119,7 +122,8 @@ TEST(Schedule, RefusesOverlaps) {
 
 TEST(Schedule, RefusesAStretchWithinAnother) {
     EXPECT_EQ(rejected([] {
-                  lay_out({part(Phase::cruise, 0.0, 500.0, 1, 2), part(Phase::cruise, 100.0, 200.0, 1, 3)},
+                  lay_out({part(flight::Phase::cruise, 0.0, 500.0, 1, 2),
+                           part(flight::Phase::cruise, 100.0, 200.0, 1, 3)},
                           durations);
               }),
               "m.toml:3:1: cruise from 100 s to 200 s is scheduled twice, here and in line 2; let one end "
@@ -128,19 +132,21 @@ TEST(Schedule, RefusesAStretchWithinAnother) {
 }
 
 TEST(Schedule, RefusesGaps) {
-    EXPECT_EQ(rejected([] {
-                  lay_out({part(Phase::takeoff, 0.0, 28.0, 1, 3), part(Phase::cruise, 0.0, 240.0, 1, 6),
-                           part(Phase::cruise, 360.0, 600.0, 1, 9), rest(Phase::landing, 1, 12)},
-                          durations);
-              }),
-              "m.toml:9:1: nothing is scheduled for cruise from 240 s to 360 s; add an entry with `otherwise "
-              "= true`; "
-              "`run = {}` runs nothing");
-    EXPECT_EQ(rejected([] { lay_out({part(Phase::takeoff, 0.0, 20.0, 1, 3)}, durations); }),
+    EXPECT_EQ(
+        rejected([] {
+            lay_out(
+                {part(flight::Phase::takeoff, 0.0, 28.0, 1, 3), part(flight::Phase::cruise, 0.0, 240.0, 1, 6),
+                 part(flight::Phase::cruise, 360.0, 600.0, 1, 9), rest(flight::Phase::landing, 1, 12)},
+                durations);
+        }),
+        "m.toml:9:1: nothing is scheduled for cruise from 240 s to 360 s; add an entry with `otherwise "
+        "= true`; "
+        "`run = {}` runs nothing");
+    EXPECT_EQ(rejected([] { lay_out({part(flight::Phase::takeoff, 0.0, 20.0, 1, 3)}, durations); }),
               "m.toml:3:1: nothing is scheduled for takeoff from 20 s to 28 s; add an entry with `otherwise "
               "= true`; "
               "`run = {}` runs nothing");
-    EXPECT_EQ(rejected([] { lay_out({part(Phase::takeoff, 0.0, 28.0, 1, 3)}, durations); }),
+    EXPECT_EQ(rejected([] { lay_out({part(flight::Phase::takeoff, 0.0, 28.0, 1, 3)}, durations); }),
               "m.toml:3:1: nothing is scheduled for cruise from 0 s to 600 s; add an entry with `otherwise = "
               "true`; "
               "`run = {}` runs nothing");
@@ -149,13 +155,13 @@ TEST(Schedule, RefusesGaps) {
 TEST(Schedule, RefusesAnOtherwiseTooMany) {
     const std::string nothing =
         "this `otherwise` covers nothing: the other entries leave no time; take it out";
-    EXPECT_EQ(
-        rejected([] {
-            lay_out({part(Phase::cruise, 0.0, 600.0, 1), rest(Phase::cruise, 1, 5)}, {{0.0, 600.0, 0.0}});
-        }),
-        "m.toml:5:1: " + nothing);
     EXPECT_EQ(rejected([] {
-                  lay_out({rest(Phase::cruise, 1, 3), rest({}, 1, 6)}, {{0.0, 600.0, 0.0}});
+                  lay_out({part(flight::Phase::cruise, 0.0, 600.0, 1), rest(flight::Phase::cruise, 1, 5)},
+                          {{0.0, 600.0, 0.0}});
+              }),
+              "m.toml:5:1: " + nothing);
+    EXPECT_EQ(rejected([] {
+                  lay_out({rest(flight::Phase::cruise, 1, 3), rest({}, 1, 6)}, {{0.0, 600.0, 0.0}});
               }),
               "m.toml:6:1: " + nothing);
     EXPECT_EQ(
@@ -164,11 +170,13 @@ TEST(Schedule, RefusesAnOtherwiseTooMany) {
         }),
         "m.toml:6:1: a second `otherwise` for the whole mission, the first is in line 3; keep one of them");
     EXPECT_EQ(rejected([] {
-                  lay_out({rest(Phase::cruise, 1, 3), rest({}, 1, 5), rest(Phase::cruise, 1, 6)}, durations);
+                  lay_out(
+                      {rest(flight::Phase::cruise, 1, 3), rest({}, 1, 5), rest(flight::Phase::cruise, 1, 6)},
+                      durations);
               }),
               "m.toml:6:1: a second `otherwise` for cruise, the first is in line 3; keep one of them");
     EXPECT_THROW(lay_out({}, durations), std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,13 +1,13 @@
 #include "mission/simulation.h"
 
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::mission {
 namespace {
 
 Mission paper(const std::string& name) {
@@ -18,22 +18,22 @@ Mission paper(const std::string& name) {
 Mission constant(double power, double battery_wh) {
     Mission mission;
     mission.name = "constant";
-    mission.duration_s[Phase::cruise] = 3600.0;
+    mission.duration_s[flight::Phase::cruise] = 3600.0;
     mission.battery = {"", 10.0, 0.0, battery_wh / 10.0};
-    mission.compute.components.push_back({"load", make_power_profile("load.csv", {}, {{{}, power, {}}})});
-    mission.schedule = {{Phase::cruise, 0.0, 3600.0, {{0, {}}}}};
+    mission.compute.components.push_back({"load", compute::make_power_profile("load.csv", {}, {{{}, power, {}}})});
+    mission.schedule = {{flight::Phase::cruise, 0.0, 3600.0, {{0, {}}}}};
     return mission;
 }
 
 /// Constant mechanical power in the cruise alone.
-Mission flight(double power, double duration_s, const Battery& battery) {
+Mission flight(double power, double duration_s, const battery::Battery& battery) {
     Mission mission;
     mission.name = "flight";
     mission.mechanical.emplace();
-    mission.mechanical->phases[Phase::cruise] = {{1.0, power, {}, {}}, duration_s, {}, {}, 0, 0};
-    mission.duration_s[Phase::cruise] = duration_s;
+    mission.mechanical->phases[flight::Phase::cruise] = {{1.0, power, {}, {}}, duration_s, {}, {}, 0, 0};
+    mission.duration_s[flight::Phase::cruise] = duration_s;
     mission.battery = battery;
-    mission.schedule = {{Phase::cruise, 0.0, duration_s, {}}};
+    mission.schedule = {{flight::Phase::cruise, 0.0, duration_s, {}}};
     return mission;
 }
 
@@ -49,7 +49,7 @@ TEST(Simulation, MeetsTheClosedFormOfConstantPower) {
 }
 
 TEST(Simulation, MeetsTheClosedFormWithResistance) {
-    const Battery pack{"", 11.1, 0.08, 2.0};
+    const battery::Battery pack{"", 11.1, 0.08, 2.0};
     const auto summary = simulate(flight(150.0, 200.0, pack)).summary;
     EXPECT_NEAR(*summary.final_soc_percent, 100.0 - 100.0 * internal_current_a(pack, 150.0) * 200.0 / 7200.0,
                 1e-9);
@@ -62,8 +62,8 @@ TEST(Simulation, HasARowAtEveryStepAndTwoAtEveryJump) {
     for (const auto& row : rows) times.push_back(row.time_s);
     EXPECT_EQ(times, (std::vector<double>{0,   28,  28,  60,  120, 180, 240, 268, 268, 300, 360,
                                           388, 388, 420, 480, 540, 600, 628, 628, 660, 688}));
-    EXPECT_EQ(rows[1].phase, Phase::takeoff);
-    EXPECT_EQ(rows[2].phase, Phase::cruise);
+    EXPECT_EQ(rows[1].phase, flight::Phase::takeoff);
+    EXPECT_EQ(rows[2].phase, flight::Phase::cruise);
     EXPECT_EQ(rows[1].soc_percent, rows[2].soc_percent);
     EXPECT_NE(rows[7].compute_w, rows[8].compute_w);
     for (const auto& row : rows) {
@@ -74,7 +74,8 @@ TEST(Simulation, HasARowAtEveryStepAndTwoAtEveryJump) {
 
 TEST(Simulation, HasOneRowWhereNothingJumps) {
     auto mission = constant(25.0, 100.0);
-    mission.schedule = {{Phase::cruise, 0.0, 1200.0, {{0, {}}}}, {Phase::cruise, 1200.0, 3600.0, {{0, {}}}}};
+    mission.schedule = {{flight::Phase::cruise, 0.0, 1200.0, {{0, {}}}},
+                        {flight::Phase::cruise, 1200.0, 3600.0, {{0, {}}}}};
     const auto rows = simulate(mission, {1200.0, 0.1}).curve.rows;
     ASSERT_EQ(rows.size(), 4U);
     EXPECT_EQ(rows[1].time_s, 1200.0);
@@ -167,7 +168,7 @@ TEST(Simulation, BeginsWithTheInitialCharge) {
 }
 
 TEST(Simulation, ChargesOnNegativePowerAndStaysBelowFull) {
-    const Battery pack{"", 10.0, 0.01, 1.0};
+    const battery::Battery pack{"", 10.0, 0.01, 1.0};
     auto mission = flight(-10.0, 360.0, pack);
     EXPECT_EQ(*simulate(mission).summary.final_soc_percent, 100.0);
     mission.initial_soc_percent = 50.0;
@@ -195,9 +196,9 @@ TEST(Simulation, ReportsPowerThatTheBatteryCannotDeliver) {
 }
 
 /// 12 V at full, 10 V at empty, 0.1 ohm; 0.06 ohm with 30 s.
-Battery thevenin_pack(double capacity_ah) {
-    Battery pack{"", 0.0, 0.1, capacity_ah};
-    pack.thevenin = TheveninCircuit{{{0.0, 100.0}, {10.0, 12.0}}, 0.06, 30.0};
+battery::Battery thevenin_pack(double capacity_ah) {
+    battery::Battery pack{"", 0.0, 0.1, capacity_ah};
+    pack.thevenin = battery::TheveninCircuit{{{0.0, 100.0}, {10.0, 12.0}}, 0.06, 30.0};
     return pack;
 }
 
@@ -294,4 +295,4 @@ TEST(Simulation, RefusesStepsThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::mission

@@ -1,34 +1,34 @@
 #include "report/battery_section.h"
 
 #include "base/error.h"
-#include "battery/synthetic_discharge.h"
-#include "report/battery_figures.h"
+#include "helpers/synthetic_discharge.h"
+#include "report/figures/battery_figures.h"
 
 #include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 using testing::HasSubstr;
 
-ReportFlight flight_on(const Battery& pack, std::uint64_t seed) {
+ReportFlight flight_on(const battery::Battery& pack, std::uint64_t seed) {
     ReportFlight flight;
     flight.series = test::synthetic_discharge(pack, {}, seed);
     flight.name = flight.series.flight;
     return flight;
 }
 
-std::vector<ReportFlight> flights_on(const Battery& pack, std::uint64_t count) {
+std::vector<ReportFlight> flights_on(const battery::Battery& pack, std::uint64_t count) {
     std::vector<ReportFlight> flights;
     for (std::uint64_t seed = 1; seed <= count; ++seed) flights.push_back(flight_on(pack, seed));
     return flights;
 }
 
-IdentificationOptions with_capacity(const Battery& pack) {
-    IdentificationOptions options;
+battery::IdentificationOptions with_capacity(const battery::Battery& pack) {
+    battery::IdentificationOptions options;
     options.capacity_ah = pack.capacity_ah;
     return options;
 }
@@ -84,10 +84,10 @@ TEST(BatterySection, SaysWhyThereIsNone) {
 }
 
 TEST(BatterySection, RefusesACapacityThatAFlightExceeds) {
-    IdentificationOptions options;
+    battery::IdentificationOptions options;
     options.capacity_ah = 0.01;
     EXPECT_THROW(identify_for_report(flights_on(test::known_pack(), 1), options, 12), UsageError);
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 TEST(FigureData, IsCsvThatReadsBackWhateverTheTexts) {
@@ -43,4 +43,4 @@ TEST(ValidUtf8, ReplacesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -1,12 +1,12 @@
 #include "report/flights_section.h"
 
 #include "flight/flight_reader.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 using testing::HasSubstr;
@@ -14,7 +14,7 @@ using testing::Not;
 
 ReportFlight sample_flight(const std::string& name) {
     ReportFlight flight;
-    flight.series = read_flight(test::source_dir() / "logs" / (name + ".data"));
+    flight.series = flight::read_flight(test::source_dir() / "logs" / (name + ".data"));
     flight.phases = segment(flight.series);
     flight.name = flight.series.flight;
     return flight;
@@ -39,4 +39,4 @@ TEST(FlightsSection, NamesEveryReasonOnceWithItsFlights) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::report

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 TEST(Escaped, LeavesNoMarkup) {
@@ -35,4 +35,4 @@ TEST(FigureHtml, TellsWhatTheFigureSays) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::report

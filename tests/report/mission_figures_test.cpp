@@ -1,24 +1,24 @@
 #include "base/error.h"
+#include "helpers/test_paths.h"
+#include "report/figures/qos_map.h"
 #include "report/missions_section.h"
-#include "report/qos_map.h"
-#include "test_paths.h"
 
 #include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 using testing::HasSubstr;
 
-Mission paper(const std::string& name) {
-    return read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"));
+mission::Mission paper(const std::string& name) {
+    return mission::read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"));
 }
 
 std::vector<SimulatedMission> simulated(const std::vector<std::string>& names) {
-    std::vector<Mission> missions;
+    std::vector<mission::Mission> missions;
     for (const auto& name : names) missions.push_back(paper(name));
     return simulate_for_report(std::move(missions));
 }
@@ -92,4 +92,4 @@ TEST(PublishedFigures, NameWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::report

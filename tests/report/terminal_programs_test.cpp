@@ -1,7 +1,7 @@
 // compare and segment on a terminal of their own, and elsewhere.
 
 #include "base/atomic_file.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
 
 #include <cstdlib>
 #include <string>
@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::report {
 namespace {
 
 using testing::HasSubstr;
@@ -65,4 +65,4 @@ TEST_F(OnATerminal, SegmentDrawsTheAltitude) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::report

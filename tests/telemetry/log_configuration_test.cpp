@@ -1,15 +1,15 @@
 #include "telemetry/log_configuration.h"
 
 #include "base/error.h"
-#include "telemetry/log_writer.h"
-#include "test_paths.h"
+#include "helpers/test_paths.h"
+#include "synthetic/log_writer.h"
 
 #include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 namespace {
 
 using testing::HasSubstr;
@@ -62,7 +62,7 @@ TEST(LogConfiguration, RefusesAFileWithoutUsableDefinitions) {
 }
 
 TEST(LogConfiguration, ReadsWhatTheWriterWrites) {
-    LogDocument document;
+    synthetic::LogDocument document;
     document.data_file = "x.data";
     document.aircraft = {"7", "Opterra", 15.0, {{3, "Takeoff"}}, CurrentOrigin::sensor};
     document.telemetry = {{"ENERGY", {{"power", "float", "W", "", {}}}, ".log"}};
@@ -103,4 +103,4 @@ TEST(FindLogFile, StandsBesideTheData) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

@@ -1,8 +1,8 @@
 #include "telemetry/telemetry_log.h"
 
 #include "base/error.h"
+#include "helpers/test_paths.h"
 #include "telemetry/data_file.h"
-#include "test_paths.h"
 
 #include <cmath>
 #include <fstream>
@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt {
+namespace flightwatt::telemetry {
 namespace {
 
 using testing::ElementsAre;
@@ -179,4 +179,4 @@ TEST(TelemetryLog, ReadsTheRealLogs) {
 }
 
 }  // namespace
-}  // namespace flightwatt
+}  // namespace flightwatt::telemetry

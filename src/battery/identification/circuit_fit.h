@@ -1,0 +1,42 @@
+#pragma once
+
+#include "battery/identification/discharge_record.h"
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flightwatt::battery {
+
+/// A record and the charge [Ah] that was missing from the battery when it began.
+struct AlignedRecord {
+    const DischargeRecord* record = nullptr;
+    double initial_charge_ah = 0.0;
+};
+
+/// A Thévenin circuit fitted to voltages: over charge drawn, because capacity is not needed for that.
+struct CircuitFit {
+    std::vector<double> knots_ah;        ///< rising
+    std::vector<double> open_circuit_v;  ///< at the knots, straight lines between
+    double resistance_ohm = 0.0;
+    double rc_resistance_ohm = 0.0;   ///< 0: no RC pair explains anything
+    double rc_time_constant_s = 0.0;  ///< 0 without an RC pair
+    Eigen::VectorXd residual_v;  ///< measured less fitted; the used samples of the records, in their order
+    double rms_v = 0.0;
+};
+
+/// The fit of least squares with these knots. Given the time constant all else is linear (variable
+/// projection: Golub and Pereyra 1973), so that one alone is searched for: on a grid from two usual intervals
+/// to a quarter of the longest record, then by Brent's method. Throws NoAnswerError where the records do not
+/// determine the curve or the resistance.
+CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector<double>& knots_ah);
+
+/// Derivatives of the fitted voltages, one row a used sample: by the voltages at the knots, resistance,
+/// rc_resistance and the logarithm of rc_time_constant; the last two columns are absent without an RC pair.
+Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit);
+
+/// Open-circuit voltage [V] with this charge drawn; beyond the knots the nearest line goes on.
+double open_circuit_voltage_v(const CircuitFit& fit, double charge_ah);
+
+}  // namespace flightwatt::battery

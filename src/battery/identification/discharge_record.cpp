@@ -1,0 +1,167 @@
+#include "battery/identification/discharge_record.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "flight/phase_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::battery {
+namespace {
+
+constexpr double load_part = 0.15;  // of the greatest current: less is rest, with electronics on
+constexpr double least_load_a = 0.2;
+constexpr double rest_s = 30.0;
+constexpr double idle_throttle_percent = 5.0;
+constexpr double flight_throttle_percent = 20.0;
+constexpr double idle_current_a = 1.0;   // more than electronics draw
+constexpr double fine_counter_a = 0.05;  // error of a mean current by the counter's resolution
+constexpr std::size_t least_samples = 50;
+
+void require_channels(const flight::FlightSeries& series) {
+    const auto refuse = [&](const std::string& reason, const std::string& hint) {
+        throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason), hint);
+    };
+    constexpr auto needed = "a battery is identified from measured voltage and current";
+    if (series.current_origin == "computed from throttle") {
+        refuse(
+            "its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), not measured: it says "
+            "nothing of the battery",
+            "use flights with a current sensor");
+    }
+    if (series.voltage_v.empty()) refuse("has no voltage", needed);
+    if (series.current_a.empty()) refuse("has no current", needed);
+    if (series.time_s.size() < least_samples) {
+        refuse(fmt::format("has {} samples, expected at least {}", series.time_s.size(), least_samples),
+               needed);
+    }
+    for (const auto& [name, values] :
+         {std::pair{"voltage", &series.voltage_v}, {"current", &series.current_a}}) {
+        const auto [low, high] = std::minmax_element(values->begin(), values->end());
+        if (*low == *high) refuse(fmt::format("its {} is {} throughout", name, *low), needed);
+    }
+    if (*std::min_element(series.voltage_v.begin(), series.voltage_v.end()) <= 0.0) {
+        refuse("its voltage is not positive throughout", needed);
+    }
+}
+
+/// Charge drawn by the trapezoids of the current [Ah].
+std::vector<double> integrated_charge_ah(const flight::FlightSeries& series) {
+    std::vector<double> charge(series.time_s.size(), 0.0);
+    for (std::size_t i = 1; i < charge.size(); ++i) {
+        const double mean_a = (series.current_a[i - 1] + series.current_a[i]) / 2.0;
+        charge[i] =
+            charge[i - 1] + units::ah_from_coulomb(mean_a * (series.time_s[i] - series.time_s[i - 1]));
+    }
+    return charge;
+}
+
+/// The least difference between two of the values that is none of rounding.
+double least_difference(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    double least = values.back() - values.front();
+    constexpr double rounding = 1e-9;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        const double difference = values[i] - values[i - 1];
+        if (difference > rounding) least = std::min(least, difference);
+    }
+    return least;
+}
+
+bool has_counter(const flight::FlightSeries& series) {
+    return !series.charge_ah.empty() && series.charge_ah.back() > series.charge_ah.front();
+}
+
+void add_charge(const flight::FlightSeries& series, DischargeRecord& record) {
+    const bool counted = has_counter(series);
+    record.charge_ah = counted ? series.charge_ah : integrated_charge_ah(series);
+    for (auto& charge : record.charge_ah) charge -= counted ? series.charge_ah.front() : 0.0;
+    // A counter in whole mAh says little of a single interval, but bridges gaps.
+    const bool fine = counted && units::coulomb_from_ah(least_difference(series.charge_ah)) <
+                                     fine_counter_a * usual_interval_s(series);
+    const double counted_from_s = fine ? 0.0 : gap_threshold_s(series);
+    record.mean_current_a = series.current_a;
+    for (std::size_t i = 1; i < series.time_s.size(); ++i) {
+        const double interval_s = series.time_s[i] - series.time_s[i - 1];
+        const double charge_ah = record.charge_ah[i] - record.charge_ah[i - 1];
+        record.mean_current_a[i] = counted && interval_s > counted_from_s
+                                       ? units::coulomb_from_ah(charge_ah) / interval_s
+                                       : (series.current_a[i - 1] + series.current_a[i]) / 2.0;
+    }
+}
+
+/// Bursts of current that the motor did not draw.
+void mark_used(const flight::FlightSeries& series, DischargeRecord& record) {
+    record.used.assign(series.time_s.size(), true);
+    const auto& throttle = series.throttle_percent;
+    if (throttle.empty() || *std::max_element(throttle.begin(), throttle.end()) < flight_throttle_percent) {
+        return;
+    }
+    for (std::size_t i = 0; i < throttle.size(); ++i) {
+        record.used[i] =
+            throttle[i] > idle_throttle_percent || std::abs(series.current_a[i]) <= idle_current_a;
+    }
+}
+
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
+    double greatest_a = 0.0;
+    for (std::size_t i = 0; i < record.used.size(); ++i) {
+        if (record.used[i]) greatest_a = std::max(greatest_a, record.current_a[i]);
+    }
+    const double load_a = std::max(least_load_a, load_part * greatest_a);
+    std::size_t end = 0;
+    while (end < record.current_a.size() && record.current_a[end] < load_a) ++end;
+    if (end == 0 || end == record.current_a.size()) {
+        throw InputError(
+            {series.file},
+            fmt::format("{}: {}", series.flight,
+                        end == 0 ? "its log does not begin at rest, so that its initial charge is "
+                                   "unknown"
+                                 : "nothing loads the battery"),
+            "a log that begins before take-off is needed");
+    }
+    std::vector<double> voltages_v;
+    std::vector<double> currents_a;
+    for (std::size_t i = end; i-- > 0 && record.time_s[i] >= record.time_s[end - 1] - rest_s;) {
+        voltages_v.push_back(record.voltage_v[i]);
+        currents_a.push_back(record.current_a[i]);
+    }
+    record.resting_voltage_v = median_of(std::move(voltages_v));
+    record.resting_current_a = median_of(std::move(currents_a));
+}
+
+}  // namespace
+
+DischargeRecord discharge_record(const flight::FlightSeries& series) {
+    require_channels(series);
+    DischargeRecord record;
+    record.flight = series.flight;
+    record.time_s = series.time_s;
+    record.voltage_v = series.voltage_v;
+    record.current_a = series.current_a;
+    add_charge(series, record);
+    mark_used(series, record);
+    add_rest(series, record);
+    record.resolution_v = least_difference(series.voltage_v);
+    return record;
+}
+
+std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s) {
+    std::vector<double> settled(record.time_s.size(), record.resting_current_a);
+    for (std::size_t i = 1; i < settled.size(); ++i) {
+        const double decay = std::exp(-(record.time_s[i] - record.time_s[i - 1]) / time_constant_s);
+        settled[i] = settled[i - 1] * decay + record.mean_current_a[i] * (1.0 - decay);
+    }
+    return settled;
+}
+
+}  // namespace flightwatt::battery

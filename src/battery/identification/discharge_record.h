@@ -1,0 +1,39 @@
+#pragma once
+
+#include "flight/flight_series.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace flightwatt::battery {
+
+/// What a log says of the battery that it was flown on. All channels are as long as `time_s`.
+struct DischargeRecord {
+    std::string flight;
+    std::vector<double> time_s;
+    std::vector<double> voltage_v;
+    std::vector<double> current_a;
+    std::vector<double> mean_current_a;  ///< from the sample before to this one; the first is its current
+    std::vector<double> charge_ah;       ///< drawn since the log began
+    std::vector<bool> used;              ///< false: the record contradicts itself there
+    double resting_voltage_v = 0.0;      ///< before the first load
+    double resting_current_a = 0.0;      ///< what the electronics draw meanwhile
+    double resolution_v = 0.0;           ///< least difference between two voltages
+};
+
+/// Takes the record from a flight. The charge is the on-board counter's, or the current's integral where
+/// there is none. The mean current between samples is the counter's, too, where it is fine enough, and across
+/// gaps (three usual intervals) in any case. The battery rests until the current first exceeds 15 % of its
+/// greatest; its resting voltage and current are the medians of the last 30 s of that. Samples with more than
+/// 1 A while the throttle idles are not used: the autopilot's current has bursts on the ground that the
+/// voltage knows nothing of. Throws InputError, naming the flight, where voltage or current is missing or
+/// constant, where the current was computed from throttle (then it says nothing of the battery), and where
+/// the log does not begin at rest.
+DischargeRecord discharge_record(const flight::FlightSeries& series);
+
+/// The current [A] that has settled in an RC pair of that time constant at every sample: the solution of
+/// tau dx/dt = I - x from the resting current on, exact for a current that is constant between samples.
+std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s);
+
+}  // namespace flightwatt::battery

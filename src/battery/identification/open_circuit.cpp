@@ -1,0 +1,87 @@
+#include "battery/identification/open_circuit.h"
+
+#include "base/units.h"
+#include "battery/lipo_chart.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::battery {
+namespace {
+
+constexpr double empty_cell_v = 3.5;        // at rest: the chart's knee
+constexpr double least_part_percent = 3.0;  // of the chart: less tells no capacity
+constexpr double chart_step_percent = 5.0;
+
+double chart_capacity_ah(double drawn_ah, double cell_voltage_v) {
+    const double used_percent = units::percent_per_whole - lipo_chart_soc_percent(cell_voltage_v);
+    return drawn_ah / std::max(used_percent, least_part_percent) * units::percent_per_whole;
+}
+
+}  // namespace
+
+std::string to_string(CapacityOrigin origin) {
+    switch (origin) {
+        case CapacityOrigin::given:
+            return "given";
+        case CapacityOrigin::flown:
+            return "a flight drew all of it";
+        case CapacityOrigin::chart:
+            return "the LiPo chart";
+    }
+    return "";
+}
+
+Capacity capacity_of(const CircuitFit& fit, int cells, std::optional<double> given_ah) {
+    const double drawn_ah = fit.knots_ah.back();
+    if (given_ah) {
+        if (*given_ah < drawn_ah) {
+            throw UsageError(
+                fmt::format("--capacity is {} Ah, and a flight drew {:.3f} Ah", *given_ah, drawn_ah));
+        }
+        return {*given_ah, CapacityOrigin::given, std::nullopt};
+    }
+    const double last_v = fit.open_circuit_v.back() / cells;
+    if (last_v <= empty_cell_v) return {drawn_ah, CapacityOrigin::flown, std::nullopt};
+    if (units::percent_per_whole - lipo_chart_soc_percent(last_v) < least_part_percent) {
+        throw NoAnswerError(fmt::format(
+            "the flights drew {:.3f} Ah, down to {:.3f} V a cell: too little to tell the capacity; give it "
+            "with --capacity",
+            drawn_ah, last_v));
+    }
+    return {chart_capacity_ah(drawn_ah, last_v), CapacityOrigin::chart,
+            Interval{chart_capacity_ah(drawn_ah, last_v - lipo_chart_uncertainty_v),
+                     chart_capacity_ah(drawn_ah, last_v + lipo_chart_uncertainty_v)}};
+}
+
+ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v,
+                             double capacity_ah, int cells) {
+    const auto soc_at = [&](double charge_ah) {
+        return std::max(0.0, units::percent_per_whole - units::percent_of(charge_ah, capacity_ah));
+    };
+    ExtendedCurve extended;
+    auto& [soc, volts] = extended.curve;
+    const double known_to = soc_at(fit.knots_ah.back());
+    const double last_v = fit.open_circuit_v.back();
+    constexpr double same_percent = 1e-6;
+    const bool extends = known_to > same_percent;
+    extended.known_down_to_percent = extends ? known_to : 0.0;
+    for (double percent = 0.0; extends && percent < known_to - 0.5; percent += chart_step_percent) {
+        const double below_v = lipo_chart_voltage_v(known_to) - lipo_chart_voltage_v(percent);
+        soc.push_back(percent);
+        volts.push_back(std::max(last_v - cells * below_v, last_v / 2.0));
+        extended.standard_error_v.push_back(
+            std::hypot(standard_error_v.back(), cells * lipo_chart_uncertainty_v));
+    }
+    for (std::size_t i = fit.knots_ah.size(); i-- > 0;) {
+        soc.push_back(soc_at(fit.knots_ah[i]));
+        volts.push_back(fit.open_circuit_v[i]);
+        extended.standard_error_v.push_back(standard_error_v[i]);
+    }
+    soc.front() = 0.0;  // the last knot, where it is as good as empty
+    return extended;
+}
+
+}  // namespace flightwatt::battery

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "battery/battery.h"
+#include "battery/identification/circuit_fit.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt::battery {
+
+/// Where a capacity comes from.
+enum class CapacityOrigin {
+    given,  ///< by the user
+    flown,  ///< a flight drew all of it
+    chart   ///< from the part of the LiPo chart that the open-circuit voltage went down
+};
+
+std::string to_string(CapacityOrigin origin);
+
+struct Capacity {
+    double value_ah = 0.0;
+    CapacityOrigin origin = CapacityOrigin::given;
+    std::optional<Interval> interval_ah;  ///< of a chart's: the chart 30 mV a cell off
+};
+
+/// The capacity of a battery whose open-circuit voltage was followed from full down. Throws UsageError if the
+/// given one is less than a flight drew, and NoAnswerError if none is given and the flights hardly drew
+/// anything.
+Capacity capacity_of(const CircuitFit& fit, int cells, std::optional<double> given_ah);
+
+/// The fitted curve over state of charge, full at its first knot; below its last one it goes on in parallel
+/// to the LiPo chart of that many cells.
+struct ExtendedCurve {
+    OpenCircuitVoltage curve;
+    std::vector<double> standard_error_v;  ///< 30 mV a cell more where the chart stands in
+    double known_down_to_percent = 0.0;
+};
+
+ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v,
+                             double capacity_ah, int cells);
+
+}  // namespace flightwatt::battery

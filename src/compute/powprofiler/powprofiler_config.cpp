@@ -1,0 +1,184 @@
+#include "compute/powprofiler/powprofiler_config.h"
+
+#include "base/atomic_file.h"
+#include "base/number.h"
+#include "base/units.h"
+#include "compute/powprofiler/power_recording.h"
+#include "compute/qos_range.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace flightwatt::compute {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+double number_in(std::string_view text, const Location& where) {
+    if (const auto value = parse_number(trimmed(text))) return *value;
+    throw InputError(where, fmt::format("'{}' is not a finite number", trimmed(text)),
+                     "write decimals with a point, values apart with a comma");
+}
+
+std::vector<double> numbers_in(std::string_view text, const Location& where) {
+    std::vector<double> values;
+    while (true) {
+        const auto comma = text.find(',');
+        values.push_back(number_in(text.substr(0, comma), where));
+        if (comma == std::string_view::npos) return values;
+        text.remove_prefix(comma + 1);
+    }
+}
+
+struct Property {
+    std::string_view name;
+    std::string_view value;
+};
+
+Property split_at(std::size_t equals, std::string_view line, const Location& where) {
+    if (equals == std::string_view::npos) {
+        throw InputError(where, fmt::format("'{}' is neither [section] nor name=value", line));
+    }
+    return {trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1))};
+}
+
+/// Of a combination at the last '=': values hold none, file names may. Elsewhere it is the other way round.
+Property combination_of(std::string_view line, const Location& where) {
+    return split_at(line.rfind('='), line, where);
+}
+
+Property property_of(std::string_view line, const Location& where) {
+    return split_at(line.find('='), line, where);
+}
+
+void read_setting(const Property& property, const Location& where, PowprofilerConfig& config) {
+    if (property.name == "h" || property.name == "directory") return;
+    if (property.name != "frequency") {
+        throw InputError(where, fmt::format("unknown setting '{}'", property.name),
+                         "known are frequency, h and directory");
+    }
+    config.sampling_hz = number_in(property.value, where);
+    if (config.sampling_hz <= 0.0) {
+        throw InputError(where, fmt::format("frequency = {} Hz is not positive", config.sampling_hz));
+    }
+}
+
+void read_combination(const Property& property, const Location& where, const std::filesystem::path& folder,
+                      PowprofilerConfig& config) {
+    if (property.name == "name") {
+        config.combinations_name = property.value;
+        return;
+    }
+    auto values = numbers_in(property.value, where);
+    if (!config.combinations.empty() && config.combinations.front().qos.size() != values.size()) {
+        throw InputError(where, fmt::format("{} values, expected {} as in line {}", values.size(),
+                                            config.combinations.front().qos.size(),
+                                            config.combinations.front().where.line));
+    }
+    config.combinations.push_back({folder / property.name, std::move(values), where});
+}
+
+/// "min, max, step" or "min, max, pow(n)".
+std::vector<double> range_of(std::string_view text, const Location& where) {
+    const auto last = text.rfind(',');
+    const auto bounds = numbers_in(text.substr(0, last), where);
+    if (last == std::string_view::npos || bounds.size() != 2) {
+        throw InputError(where, fmt::format("range = {}, expected min, max, step", text));
+    }
+    auto step = trimmed(text.substr(last + 1));
+    const bool power = step.starts_with("pow(") && step.ends_with(")");
+    if (power) step = step.substr(4, step.size() - 5);
+    const double by = number_in(step, where);
+    if (bounds[0] < 0.0 || bounds[1] < bounds[0] || by <= (power ? 1.0 : 0.0)) {
+        throw InputError(where, fmt::format("range = {} is empty or endless", text),
+                         "min is 0 or more, max not less, step more than 0, n of pow(n) more than 1");
+    }
+    return power ? multiplied(bounds[0], bounds[1], by) : evenly_spaced(bounds[0], bounds[1], by);
+}
+
+void read_component(const Property& property, const Location& where, PowprofilerComponent& component) {
+    if (property.name == "src") {
+        component.source = property.value;
+    } else if (property.name == "fixed") {
+        if (property.value.empty()) throw InputError(where, "fixed = nothing, expected an argument");
+        component.arguments.push_back({std::string(property.value), {}});
+    } else if (property.name == "range") {
+        component.arguments.push_back({"", range_of(property.value, where)});
+    } else if (property.name == "runtime") {
+        component.runtime_s = units::second_from_millisecond(number_in(property.value, where));
+        if (*component.runtime_s <= 0.0) throw InputError(where, "runtime is not positive", "it counts ms");
+    } else {
+        throw InputError(where, fmt::format("unknown property '{}' of a component", property.name),
+                         "known are src, range, fixed and runtime");
+    }
+}
+
+constexpr std::string_view component_section = "[component.";  // what its name follows
+
+std::string_view begin_section(std::string_view line, const Location& where, PowprofilerConfig& config) {
+    if (line == "[settings]" || line == "[components]" || line == "[combinations]") return line;
+    const auto name =
+        line.size() > component_section.size() + 1 && line.starts_with(component_section)
+            ? trimmed(line.substr(component_section.size(), line.size() - component_section.size() - 1))
+            : std::string_view();
+    if (name.empty()) {
+        throw InputError(where, fmt::format("unknown section {}", line),
+                         "known are [settings], [components], [component.NAME] and [combinations]");
+    }
+    config.components.push_back({std::string(name), "", {}, {}, where});
+    return component_section;
+}
+
+}  // namespace
+
+PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path) {
+    const auto content = read_file(path);
+    PowprofilerConfig config;
+    config.sampling_hz = powprofiler_sampling_hz;
+    std::string_view rest = content;
+    std::string_view section;
+    Location where{path.string()};
+    while (!rest.empty()) {
+        const auto end = std::min(rest.find('\n'), rest.size());
+        auto line = rest.substr(0, end);
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+        ++where.line;
+        line = trimmed(line.substr(0, line.find('#')));
+        if (line.empty()) continue;
+        if (line.front() == '[' && line.back() == ']') {
+            section = begin_section(line, where, config);
+        } else if (section == component_section) {
+            read_component(property_of(line, where), where, config.components.back());
+        } else if (section == "[settings]") {
+            read_setting(property_of(line, where), where, config);
+        } else if (section == "[combinations]") {
+            read_combination(combination_of(line, where), where, path.parent_path(), config);
+        } else if (section.empty()) {
+            throw InputError(where, fmt::format("'{}' stands before any [section]", line));
+        } else {
+            throw InputError(where,
+                             fmt::format("'{}' stands in {}, before any [component.NAME]", line, section));
+        }
+    }
+    for (const auto& component : config.components) {
+        if (component.source.empty()) {
+            throw InputError(component.where, fmt::format("{} has no src, its program", component.name));
+        }
+    }
+    return config;
+}
+
+void require_combinations(const PowprofilerConfig& config, const std::filesystem::path& path) {
+    if (!config.combinations.empty()) return;
+    throw InputError({path.string()}, "has no [combinations], lines of file.csv=value,value",
+                     "[components] say how to profile, not what came out");
+}
+
+}  // namespace flightwatt::compute

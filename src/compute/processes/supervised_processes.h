@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace flightwatt::compute {
+
+/// A command that has ended, or that could not be started.
+struct EndedCommand {
+    std::size_t command = 0;  ///< which of those given, from 0
+    int start_error = 0;      ///< errno, if it could not be started
+    int wait_status = 0;      ///< as waitpid() gives it
+    std::chrono::steady_clock::time_point time;
+};
+
+/// "exit code 3", "killed by SIGSEGV", "cannot be started: No such file or directory".
+std::string to_string(const EndedCommand& ended);
+
+/// What was found when the commands were ended.
+struct EndReport {
+    std::size_t others = 0;  ///< processes that were alive beside the commands themselves
+    bool killed = false;     ///< SIGTERM was not enough
+    std::size_t left = 0;    ///< processes that not even SIGKILL ended
+};
+
+/// Commands (no shell) that run at the same time, each in a process group of its own, below a supervisor: a
+/// process of ours that adopts whatever they fork, also what takes itself away with setsid(). When this
+/// object goes, or the program ends in whatever way, the supervisor ends all of them: SIGTERM first, SIGKILL
+/// after the patience. To be used by programs of one thread. Throws OutputError if the system has no more
+/// processes or files.
+class SupervisedProcesses {
+  public:
+    struct Options {
+        int output = -1;  ///< an open file for what the commands print
+        int errors = -1;  ///< and for what they say
+        std::chrono::milliseconds patience{2000};
+    };
+
+    SupervisedProcesses(const std::vector<std::vector<std::string>>& commands, const Options& options);
+    ~SupervisedProcesses();
+    SupervisedProcesses(const SupervisedProcesses&) = delete;
+    SupervisedProcesses& operator=(const SupervisedProcesses&) = delete;
+
+    /// A file that poll() finds readable when a command has ended.
+    int file() const { return events_; }
+    /// The commands that have ended since the last call.
+    std::vector<EndedCommand> ended();
+    /// Ends everything that still runs and waits for that.
+    EndReport end();
+
+  private:
+    int events_ = -1;
+    ::pid_t supervisor_ = -1;
+    EndReport report_;
+};
+
+}  // namespace flightwatt::compute

@@ -1,0 +1,140 @@
+#include "compute/processes/supervisor.h"
+
+#include "compute/processes/process_tree.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <ctime>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace flightwatt::compute {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr int cannot_execute = 127;  // what a shell exits with then
+constexpr auto kill_patience = 5s;   // after SIGKILL only the kernel can delay an end
+
+void tell(int events, Event event) {
+    event.time_ns =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+    // Nobody listens any more if the profiler is gone; the ending goes on all the same.
+    [[maybe_unused]] const auto ignored = ::write(events, &event, sizeof event);
+}
+
+[[noreturn]] void become(const std::vector<std::string>& words, std::uint32_t command,
+                         const SupervisedProcesses::Options& options, int events) {
+    ::setpgid(0, 0);
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // should the supervisor itself be killed
+    const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+    ::dup2(nothing, STDIN_FILENO);
+    ::dup2(options.output >= 0 ? options.output : nothing, STDOUT_FILENO);
+    ::dup2(options.errors >= 0 ? options.errors : nothing, STDERR_FILENO);
+    for (const int signal : {SIGPIPE, SIGCHLD, SIGTERM, SIGINT, SIGHUP}) ::signal(signal, SIG_DFL);
+    sigset_t none;
+    sigemptyset(&none);
+    ::sigprocmask(SIG_SETMASK, &none, nullptr);
+    std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
+    for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    ::execvp(arguments.front(), arguments.data());
+    tell(events, {Event::Kind::not_started, command, errno, 0, {}});
+    ::_exit(cannot_execute);
+}
+
+class Supervisor {
+  public:
+    Supervisor(int events, std::chrono::milliseconds patience) : events_(events), patience_(patience) {}
+
+    void start(const std::vector<std::string>& words, const SupervisedProcesses::Options& options) {
+        const auto child = ::fork();
+        const auto command = static_cast<std::uint32_t>(commands_.size());
+        if (child == 0) become(words, command, options, events_);
+        if (child < 0) tell(events_, {Event::Kind::not_started, command, errno, 0, {}});
+        if (child > 0) ::setpgid(child, child);  // here too: it may be signalled before it runs
+        commands_.push_back(child);
+    }
+
+    /// Tells of those that have ended; false if no process is left.
+    bool reap() {
+        while (true) {
+            int status = 0;
+            const auto child = ::waitpid(-1, &status, WNOHANG);
+            if (child == 0) return true;
+            if (child < 0) return errno != ECHILD;
+            const auto known = std::find(commands_.begin(), commands_.end(), child);
+            if (known == commands_.end()) continue;
+            const auto command = static_cast<std::uint32_t>(known - commands_.begin());
+            *known = -1;
+            tell(events_, {Event::Kind::ended, command, status, 0, {}});
+        }
+    }
+
+    EndReport end_all() {
+        EndReport report;
+        auto living = descendants_of(::getpid());
+        report.others = static_cast<std::size_t>(std::count_if(living.begin(), living.end(), [&](auto pid) {
+            return std::find(commands_.begin(), commands_.end(), pid) == commands_.end();
+        }));
+        for (const auto pid : living) ::kill(pid, SIGTERM);
+        const auto term_until = Clock::now() + patience_;
+        const auto kill_until = term_until + kill_patience;
+        while (reap() && Clock::now() < kill_until) {
+            if (Clock::now() >= term_until) {
+                report.killed = true;
+                // Anew every time: they may fork on while they are being killed.
+                for (const auto pid : descendants_of(::getpid())) ::kill(pid, SIGKILL);
+            }
+            wait_for_child(10ms);
+        }
+        report.left = descendants_of(::getpid()).size();
+        return report;
+    }
+
+  private:
+    static void wait_for_child(std::chrono::nanoseconds time) {
+        sigset_t child;
+        sigemptyset(&child);
+        sigaddset(&child, SIGCHLD);
+        const ::timespec limit{0, static_cast<long>(time.count())};
+        ::sigtimedwait(&child, nullptr, &limit);
+    }
+
+    int events_;
+    std::chrono::milliseconds patience_;
+    std::vector<::pid_t> commands_;  ///< -1 once ended
+};
+
+}  // namespace
+
+void supervise(const std::vector<std::vector<std::string>>& commands,
+               const SupervisedProcesses::Options& options, int events, ::pid_t parent) {
+    ::setpgid(0, 0);  // Ctrl-C on the terminal is the profiler's to answer
+    sigset_t awaited;
+    sigemptyset(&awaited);
+    for (const int signal : {SIGCHLD, SIGTERM, SIGINT, SIGHUP, SIGPIPE}) sigaddset(&awaited, signal);
+    ::sigprocmask(SIG_BLOCK, &awaited, nullptr);
+    ::signal(SIGCHLD, SIG_DFL);
+    ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() != parent) ::_exit(0);  // it has died before the line above
+    Supervisor supervisor(events, options.patience);
+    for (const auto& words : commands) supervisor.start(words, options);
+    while (true) {
+        int signal = 0;
+        if (::sigwait(&awaited, &signal) != 0 || signal == SIGTERM) break;
+        if (signal == SIGCHLD) supervisor.reap();
+    }
+    Event last{Event::Kind::finished, 0, 0, 0, supervisor.end_all()};
+    tell(events, last);
+    ::_exit(0);
+}
+
+}  // namespace flightwatt::compute

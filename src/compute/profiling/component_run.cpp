@@ -1,0 +1,219 @@
+#include "compute/profiling/component_run.h"
+
+#include "compute/processes/supervised_processes.h"
+#include "compute/profiling/run_statistics.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+namespace flightwatt::compute {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
+
+Clock::duration ticks(double time_s) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time_s));
+}
+
+/// The file that takes what the commands print, gone again if they printed nothing.
+class OutputFile {
+  public:
+    explicit OutputFile(const std::filesystem::path& path) : path_(path) {
+        if (path.empty()) return;
+        file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+        if (file_ < 0) {
+            throw OutputError(fmt::format("cannot write {}: {}", path.string(), std::strerror(errno)));
+        }
+    }
+    ~OutputFile() {
+        if (file_ < 0) return;
+        ::close(file_);
+        std::error_code ignored;
+        if (std::filesystem::file_size(path_, ignored) == 0) std::filesystem::remove(path_, ignored);
+    }
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    int file() const { return file_; }
+
+  private:
+    std::filesystem::path path_;
+    int file_ = -1;
+};
+
+class Watch {
+  public:
+    Watch(Clock::time_point start, SupervisedProcesses* processes, const ProfileTiming& timing,
+          const RunFrame& frame)
+        : processes_(processes), timing_(timing), frame_(frame), start_(start), next_(start_) {
+        frame_.sampler->read();  // what came before the start is not of this run
+    }
+
+    ComponentRun run() {
+        while (!is_over()) {
+            wait();
+            take_ends();
+            take_readings();
+        }
+        finish();
+        return std::move(run_);
+    }
+
+  private:
+    Clock::time_point limit() const {
+        return start_ +
+               ticks(timing_.duration_s ? timing_.warm_up_s + *timing_.duration_s : timing_.timeout_s);
+    }
+
+    bool is_over() const { return over_at_ || Clock::now() >= limit(); }
+
+    void wait() {
+        const auto until = std::min(next_, limit());
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
+        pollfd files[3] = {{frame_.signals, POLLIN, 0},
+                           {frame_.sampler->file(), POLLIN, 0},
+                           {processes_ == nullptr ? -1 : processes_->file(), POLLIN, 0}};
+        const auto wait_ms = std::clamp<long>(static_cast<long>(left.count()), 0, 60000);
+        if (::poll(files, 3, static_cast<int>(wait_ms)) <= 0) return;
+        if (files[0].revents != 0) throw Interrupted(frame_.caught());
+    }
+
+    void take_ends() {
+        if (processes_ == nullptr || over_at_) return;
+        for (const auto& ended : processes_->ended()) {
+            if (!over_at_) over_at_ = ended.time;
+            if (ended.start_error != 0) {
+                run_.status = RunStatus::not_started;
+                run_.note = to_string(ended);
+                return;
+            }
+            if (ended.wait_status != 0 && run_.note.empty()) run_.note = to_string(ended);
+        }
+    }
+
+    void take_readings() {
+        // A sensor is asked on a fixed grid of times; moments that were missed are left out, not caught up.
+        const bool asks = frame_.sampler->file() < 0;
+        if (asks && Clock::now() < next_) return;
+        while (next_ <= Clock::now()) next_ += ticks(frame_.interval_s);
+        for (const auto& reading : frame_.sampler->read()) {
+            const double time_s = seconds(reading.time - start_);
+            const auto end = std::min(over_at_.value_or(limit()), limit());
+            if (time_s < timing_.warm_up_s || reading.time > end) continue;
+            if (!run_.trace.time_s.empty() && time_s <= run_.trace.time_s.back()) continue;
+            run_.trace.time_s.push_back(time_s);
+            run_.trace.power_w.push_back(reading.power_w);
+        }
+    }
+
+    void finish() {
+        if (run_.status == RunStatus::not_started) return;
+        const auto end = std::min(over_at_.value_or(limit()), limit());
+        run_.duration_s = std::max(0.0, seconds(end - start_) - timing_.warm_up_s);
+        const bool ended_first = over_at_ && *over_at_ < limit();
+        if (!run_.note.empty()) {
+            run_.status = RunStatus::failed;
+        } else if (ended_first && timing_.duration_s) {
+            run_.status = RunStatus::ended_early;
+            run_.note = fmt::format("ended after {:.2f} s", seconds(*over_at_ - start_));
+        } else if (!ended_first && !timing_.duration_s) {
+            run_.status = RunStatus::timed_out;
+            run_.note = fmt::format("still ran after {} s", timing_.timeout_s);
+        } else {
+            run_.status = run_.trace.time_s.empty() ? RunStatus::no_samples : RunStatus::ok;
+        }
+        if (run_.status == RunStatus::no_samples) run_.note = "over before there was a sample";
+    }
+
+    SupervisedProcesses* processes_;
+    const ProfileTiming& timing_;
+    const RunFrame& frame_;
+    Clock::time_point start_;
+    Clock::time_point next_;                    ///< when the sensor is asked
+    std::optional<Clock::time_point> over_at_;  ///< when the first command ended
+    ComponentRun run_;
+};
+
+void note(ComponentRun& run, const std::string& text) { run.note += (run.note.empty() ? "" : "; ") + text; }
+
+void note_ending(const EndReport& report, bool ended_by_itself, ComponentRun& run) {
+    if (ended_by_itself && report.others > 0) {
+        note(run,
+             fmt::format("left {} process{} behind, ended", report.others, report.others == 1 ? "" : "es"));
+    }
+    if (report.killed) note(run, "did not answer SIGTERM, killed");
+    if (report.left > 0) note(run, fmt::format("{} processes cannot be ended", report.left));
+}
+
+}  // namespace
+
+std::string to_string(RunStatus status) {
+    switch (status) {
+        case RunStatus::ok:
+            return "ok";
+        case RunStatus::failed:
+            return "failed";
+        case RunStatus::ended_early:
+            return "ended_early";
+        case RunStatus::timed_out:
+            return "timed_out";
+        case RunStatus::not_started:
+            return "not_started";
+        case RunStatus::no_samples:
+            return "no_samples";
+    }
+    return "?";
+}
+
+ComponentRun run_component(const std::vector<std::vector<std::string>>& commands, const ProfileTiming& timing,
+                           const RunFrame& frame) {
+    if (commands.empty()) return Watch(Clock::now(), nullptr, timing, frame).run();
+    const OutputFile output(frame.output);
+    SupervisedProcesses::Options options;
+    options.output = output.file();
+    options.errors = output.file();
+    options.patience = std::chrono::duration_cast<std::chrono::milliseconds>(ticks(frame.patience_s));
+    const auto start = Clock::now();  // before, or a late start of ours would make theirs look short
+    SupervisedProcesses processes(commands, options);
+    auto run = Watch(start, &processes, timing, frame).run();
+    const bool by_itself =
+        run.status != RunStatus::timed_out && (run.status != RunStatus::ok || !timing.duration_s);
+    note_ending(processes.end(), by_itself, run);
+    return run;
+}
+
+ComponentRun run_of_recording(const PowerTrace& recording, const ProfileTiming& timing, double interval_s) {
+    ComponentRun run;
+    const double first_s = recording.time_s.front();
+    const double limit_s =
+        timing.duration_s ? timing.warm_up_s + *timing.duration_s : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < recording.time_s.size(); ++i) {
+        const double time_s = recording.time_s[i] - first_s;
+        if (time_s < timing.warm_up_s || time_s > limit_s) continue;
+        run.trace.time_s.push_back(time_s);
+        run.trace.power_w.push_back(recording.power_w[i]);
+    }
+    run.status = run.trace.time_s.empty() ? RunStatus::no_samples : RunStatus::ok;
+    if (run.status == RunStatus::no_samples) {
+        run.note = "the recording is over before the warm-up is";
+        return run;
+    }
+    // Each sample stands for an interval, also the first.
+    const double mean_s = run.trace.time_s.size() > 1 ? jitter_of({run.trace}).mean_s : interval_s;
+    run.duration_s = run.trace.time_s.back() - run.trace.time_s.front() + mean_s;
+    if (timing.duration_s && run.duration_s + mean_s < *timing.duration_s) {
+        run.status = RunStatus::ended_early;
+        run.note = fmt::format("the recording has {:.2f} s after the warm-up", run.duration_s);
+    }
+    return run;
+}
+
+}  // namespace flightwatt::compute

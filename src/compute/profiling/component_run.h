@@ -1,0 +1,57 @@
+#pragma once
+
+#include "compute/profile_specification.h"
+#include "compute/sensors/power_sampler.h"
+#include "compute/sensors/power_trace.h"
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace flightwatt::compute {
+
+/// What became of a run. Only `ok` has power.
+enum class RunStatus { failed, ended_early, timed_out, not_started, no_samples, ok };
+
+std::string to_string(RunStatus status);
+
+/// The power of a configuration while it ran once.
+struct ComponentRun {
+    RunStatus status = RunStatus::failed;
+    std::string note;         ///< "exit code 3", "left 2 processes behind, ended"
+    PowerTrace trace;         ///< time since the start of the commands, from the end of the warm-up on
+    double duration_s = 0.0;  ///< from the end of the warm-up to the end of the run
+};
+
+/// A signal asked the program to end. Nothing of the run is left.
+class Interrupted : public std::runtime_error {
+  public:
+    explicit Interrupted(int signal) : std::runtime_error("interrupted by a signal"), signal_(signal) {}
+    int signal() const { return signal_; }
+
+  private:
+    int signal_;
+};
+
+/// How a run is done.
+struct RunFrame {
+    PowerSampler* sampler = nullptr;
+    double interval_s = 0.1;       ///< between questions to a sensor
+    std::filesystem::path output;  ///< what the commands print and say goes there; removed if nothing does
+    int signals = -1;              ///< a file that is readable once the program is to end (SignalWatch)
+    std::function<int()> caught;   ///< the signal then
+    double patience_s = 2.0;       ///< between SIGTERM and SIGKILL
+};
+
+/// Runs the commands, samples power until the duration is over, or without one until the first of them ends,
+/// and ends everything that is left of them, whatever it did. A command that fails is no error of this
+/// function: the status tells. No commands: the idle computer, for the duration. Throws Interrupted, and what
+/// the sampler throws; nothing runs on then either.
+ComponentRun run_component(const std::vector<std::vector<std::string>>& commands, const ProfileTiming& timing,
+                           const RunFrame& frame);
+
+/// The same from a recording: the samples after the warm-up, of the duration if there is one. Each sample
+/// stands for the mean interval, a single one for `interval_s`.
+ComponentRun run_of_recording(const PowerTrace& recording, const ProfileTiming& timing, double interval_s);
+
+}  // namespace flightwatt::compute

@@ -1,0 +1,191 @@
+#include "compute/profiling/profile_runs.h"
+
+#include "base/atomic_file.h"
+#include "base/csv.h"
+#include "base/fingerprint.h"
+#include "base/number.h"
+#include "compute/qos_range.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::compute {
+namespace {
+
+constexpr const char* header =
+    "component,configuration,repeat,status,note,samples,duration_s,power_w,standard_error_w,energy_j,"
+    "interval_mean_s,interval_sd_s,interval_max_s,layer1,fingerprint\n";
+
+/// Of everything in the specification that decides what a run measures; not of programs' files, nor of the
+/// order of the runs.
+std::string fingerprint_of(const SamplerSettings& sampler, const ProfileTiming& timing,
+                           const ProfiledConfiguration& configuration) {
+    Fingerprint fingerprint;
+    const auto add = [&](const std::string& text) { fingerprint.add(text); };
+    add(sampler.kind);
+    add(sampler.sysfs.string());
+    add(fmt::format("{} {} {}", sampler.interval_s, fmt::join(sampler.rails, "\n"),
+                    fmt::join(sampler.command, "\n")));
+    add(fmt::format("{} {} {}", timing.duration_s.value_or(-1.0), timing.warm_up_s, timing.timeout_s));
+    for (const auto& command : configuration.commands) add(fmt::format("{}", fmt::join(command, "\n")));
+    add(configuration.recording.string());
+    if (!configuration.recording.empty()) add(read_file(configuration.recording));
+    return fingerprint.hex();
+}
+
+std::string layer1_name(const std::string& component, std::string configuration, std::size_t repeat) {
+    std::replace(configuration.begin(), configuration.end(), ' ', '_');
+    return fmt::format("layer1/{}/{}{}repeat_{}.csv", component, configuration,
+                       configuration.empty() ? "" : "_", repeat);
+}
+
+ProfileRun idle_run(const ProfileSpecification& specification) {
+    ProfiledConfiguration configuration;
+    if (!specification.sampler.idle_file.empty()) {
+        configuration.recording = specification.sampler.folder / specification.sampler.idle_file;
+    }
+    ProfileRun run;
+    run.component = idle_component;
+    run.layer1 = layer1_name(idle_component, "", 1);
+    run.fingerprint = fingerprint_of(specification.sampler, {specification.idle_s, 0.0, 0.0}, configuration);
+    return run;
+}
+
+std::string key_of(const std::string& component, const std::string& configuration,
+                   const std::string& repeat) {
+    return fmt::format("{}\n{}\n{}", component, configuration, repeat);
+}
+
+/// What an earlier call said of a run.
+struct Record {
+    std::string status;
+    std::string note;
+    std::string fingerprint;
+    std::string duration_s;
+};
+
+std::map<std::string, Record> read_records(const std::filesystem::path& folder) {
+    std::map<std::string, Record> records;
+    std::error_code none;
+    if (!std::filesystem::exists(folder / runs_name, none)) return records;
+    const auto table = read_csv(folder / runs_name);
+    const auto column = [&](std::string_view name) { return column_index(table, name); };
+    const auto component = column("component");
+    const auto configuration = column("configuration");
+    const auto repeat = column("repeat");
+    const auto status = column("status");
+    const auto note = column("note");
+    const auto fingerprint = column("fingerprint");
+    const auto duration = column("duration_s");
+    for (const auto& row : table.rows) {
+        const auto text = [&](std::size_t index) { return row.cells[index].text; };
+        records[key_of(text(component), text(configuration), text(repeat))] = {
+            text(status), text(note), text(fingerprint), text(duration)};
+    }
+    return records;
+}
+
+/// Whether the run could be taken over from its record and its layer 1.
+bool recall(ProfileRun& run, const Record& record, const std::filesystem::path& folder) {
+    const auto duration_s = parse_number(record.duration_s);
+    if (record.fingerprint != run.fingerprint || record.status != to_string(RunStatus::ok) || !duration_s) {
+        return false;
+    }
+    run.trace = read_power_trace(folder / run.layer1, std::nullopt);
+    run.estimate = estimate_run(run.trace, *duration_s);
+    run.status = RunStatus::ok;
+    run.note = record.note;
+    return true;
+}
+
+std::string row_of(const ProfileRun& run) {
+    auto row = fmt::format("{},{},{},{},{}", run.component, csv_cell(run.configuration), run.repeat,
+                           to_string(run.status), csv_cell(run.note));
+    if (run.status == RunStatus::ok) {
+        const auto jitter = jitter_of({run.trace});
+        row += fmt::format(",{},{:.6f},{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{}", run.estimate.samples,
+                           run.estimate.duration_s, run.estimate.power_w,
+                           std::isfinite(run.estimate.standard_error_w)
+                               ? fmt::format("{:.6f}", run.estimate.standard_error_w)
+                               : "",
+                           run.estimate.energy_j, jitter.mean_s, jitter.sd_s, jitter.max_s,
+                           csv_cell(run.layer1));
+    } else {
+        row += ",,,,,,,,,";
+    }
+    return row + "," + run.fingerprint + "\n";
+}
+
+}  // namespace
+
+std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
+                                     const std::vector<std::vector<std::size_t>>& chosen) {
+    std::vector<ProfileRun> runs;
+    if (specification.idle_s > 0.0) runs.push_back(idle_run(specification));
+    std::mt19937_64 random(specification.seed);
+    for (std::size_t repeat = 1; repeat <= specification.repeats; ++repeat) {
+        const auto first = runs.size();
+        for (std::size_t index = 0; index < specification.components.size(); ++index) {
+            const auto& component = specification.components[index];
+            for (const auto node : chosen[index]) {
+                const auto& configuration = component.configurations[node];
+                ProfileRun run;
+                run.component = component.name;
+                run.index = index;
+                run.node = node;
+                run.configuration = spell_qos(component.parameters, configuration.qos);
+                run.repeat = repeat;
+                run.fingerprint = fingerprint_of(specification.sampler, component.timing, configuration);
+                run.layer1 = layer1_name(component.name, run.configuration, repeat);
+                runs.push_back(std::move(run));
+            }
+        }
+        std::shuffle(runs.begin() + static_cast<std::ptrdiff_t>(first), runs.end(), random);
+    }
+    return runs;
+}
+
+void recall_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& folder) {
+    std::map<std::string, Record> records;
+    try {
+        records = read_records(folder);
+    } catch (const InputError&) {
+        return;  // of another program, or damaged: everything is done anew
+    }
+    for (auto& run : runs) {
+        const auto found = records.find(key_of(run.component, run.configuration, std::to_string(run.repeat)));
+        if (found == records.end()) continue;
+        try {
+            run.is_done = run.was_done = recall(run, found->second, folder);
+        } catch (const InputError&) {
+            run.trace = {};  // its layer 1 is gone or damaged
+        }
+    }
+}
+
+void write_layer1(const ProfileRun& run, const std::filesystem::path& folder) {
+    const auto path = folder / run.layer1;
+    std::error_code ignored;
+    if (run.status != RunStatus::ok) {
+        std::filesystem::remove(path, ignored);  // of an earlier call
+        return;
+    }
+    write_file_atomically(
+        path, to_csv(run.trace, {fmt::format("{} {} repeat {}: time since its start, after the warm-up",
+                                             run.component, run.configuration, run.repeat)}));
+}
+
+void write_runs(const std::vector<ProfileRun>& runs, const std::filesystem::path& folder) {
+    std::string text = header;
+    for (const auto& run : runs) {
+        if (run.is_done) text += row_of(run);
+    }
+    write_file_atomically(folder / runs_name, text);
+}
+
+}  // namespace flightwatt::compute

@@ -1,0 +1,108 @@
+#include "compute/profiling/run_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace flightwatt::compute {
+namespace {
+
+std::vector<double> intervals_of(const PowerTrace& run) {
+    std::vector<double> intervals_s;
+    for (std::size_t i = 1; i < run.time_s.size(); ++i) {
+        intervals_s.push_back(run.time_s[i] - run.time_s[i - 1]);
+    }
+    return intervals_s;
+}
+
+double mean_of(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// 1 + 2 sum rho: how many samples of the series are worth one independent one; at least 1.
+double correlation_time(const std::vector<double>& deviations) {
+    const auto covariance = [&](std::size_t lag) {
+        double sum = 0.0;
+        for (std::size_t i = lag; i < deviations.size(); ++i) sum += deviations[i] * deviations[i - lag];
+        return sum;
+    };
+    const double variance = covariance(0);
+    if (variance <= 0.0) return 1.0;
+    double time = -1.0;
+    for (std::size_t lag = 0; lag + 1 < deviations.size(); lag += 2) {
+        const double pair = (covariance(lag) + covariance(lag + 1)) / variance;
+        if (pair <= 0.0) break;
+        time += 2.0 * pair;
+    }
+    return std::max(time, 1.0);
+}
+
+double standard_error_of(const std::vector<double>& values) {
+    if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+    const double mean = mean_of(values);
+    std::vector<double> deviations;
+    double squares = 0.0;
+    for (const double value : values) {
+        deviations.push_back(value - mean);
+        squares += deviations.back() * deviations.back();
+    }
+    const auto n = static_cast<double>(values.size());
+    return std::sqrt(squares / (n - 1.0) / n * correlation_time(deviations));
+}
+
+}  // namespace
+
+SamplingJitter jitter_of(const std::vector<PowerTrace>& runs) {
+    std::vector<double> all;
+    for (const auto& run : runs) {
+        const auto intervals = intervals_of(run);
+        all.insert(all.end(), intervals.begin(), intervals.end());
+    }
+    if (all.empty()) return {};
+    SamplingJitter jitter{mean_of(all), 0.0, *std::max_element(all.begin(), all.end())};
+    for (const double interval : all) jitter.sd_s += (interval - jitter.mean_s) * (interval - jitter.mean_s);
+    jitter.sd_s = std::sqrt(jitter.sd_s / static_cast<double>(all.size()));
+    return jitter;
+}
+
+PowerEstimate estimate_run(const PowerTrace& run, double duration_s) {
+    auto weights = intervals_of(run);
+    auto sorted = weights;
+    std::sort(sorted.begin(), sorted.end());
+    weights.insert(weights.begin(), sorted.empty() ? 1.0 : sorted[sorted.size() / 2]);
+    PowerEstimate estimate;
+    estimate.power_w = std::inner_product(weights.begin(), weights.end(), run.power_w.begin(), 0.0) /
+                       std::accumulate(weights.begin(), weights.end(), 0.0);
+    estimate.standard_error_w = standard_error_of(run.power_w);
+    estimate.duration_s = duration_s;
+    estimate.energy_j = estimate.power_w * duration_s;
+    estimate.samples = run.power_w.size();
+    estimate.repeats = 1;
+    return estimate;
+}
+
+PowerEstimate combine_repeats(const std::vector<PowerEstimate>& repeats) {
+    const auto count = static_cast<double>(repeats.size());
+    PowerEstimate all;
+    double own_squares = 0.0;
+    for (const auto& repeat : repeats) {
+        all.power_w += repeat.power_w / count;
+        all.duration_s += repeat.duration_s / count;
+        all.samples += repeat.samples;
+        own_squares += repeat.standard_error_w * repeat.standard_error_w;
+    }
+    double squares = 0.0;
+    for (const auto& repeat : repeats) {
+        squares += (repeat.power_w - all.power_w) * (repeat.power_w - all.power_w);
+    }
+    const double between = repeats.size() < 2 ? 0.0 : std::sqrt(squares / (count - 1.0) / count);
+    all.standard_error_w = std::sqrt(own_squares) / count;
+    // fmax: of repeats that are single samples only the spread between them is known.
+    if (repeats.size() > 1) all.standard_error_w = std::fmax(between, all.standard_error_w);
+    all.energy_j = all.power_w * all.duration_s;
+    all.repeats = repeats.size();
+    return all;
+}
+
+}  // namespace flightwatt::compute

@@ -1,0 +1,133 @@
+#include "compute/sensors/command_sampler.h"
+
+#include "base/number.h"
+#include "compute/processes/supervised_processes.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+namespace flightwatt::compute {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Meter {
+  public:
+    explicit Meter(const SamplerSettings& settings)
+        : command_(settings.command), interval_s_(settings.interval_s) {
+        start();
+    }
+    ~Meter() { stop(); }
+    Meter(const Meter&) = delete;
+    Meter& operator=(const Meter&) = delete;
+
+    int file() const { return output_; }
+
+    std::vector<PowerReading> read() {
+        std::vector<PowerReading> readings;
+        drain(readings);
+        const auto ended = running_ ? running_->ended() : std::vector<EndedCommand>();
+        if (!ended.empty()) {
+            drain(readings);  // what it printed before it ended
+            require_success(ended.front());
+            stop();
+        }
+        const double since_start_s = std::chrono::duration<double>(Clock::now() - started_).count();
+        if (!running_ && since_start_s >= interval_s_) start();
+        return readings;
+    }
+
+  private:
+    std::string name() const { return fmt::format("{}", fmt::join(command_, " ")); }
+
+    void start() {
+        int ends[2] = {-1, -1};
+        if (::pipe2(ends, O_CLOEXEC) != 0) {
+            throw OutputError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+        }
+        output_ = ends[0];
+        ::fcntl(output_, F_SETFL, O_NONBLOCK);
+        started_ = Clock::now();
+        lines_ = 0;
+        pending_.clear();
+        SupervisedProcesses::Options options;
+        options.output = ends[1];
+        options.errors = STDERR_FILENO;
+        options.patience = std::chrono::milliseconds(500);  // it has nothing to put in order
+        running_ =
+            std::make_unique<SupervisedProcesses>(std::vector<std::vector<std::string>>{command_}, options);
+        ::close(ends[1]);
+    }
+
+    void stop() {
+        running_.reset();
+        if (output_ >= 0) ::close(output_);
+        output_ = -1;
+    }
+
+    void require_success(const EndedCommand& ended) const {
+        if (ended.start_error == 0 && ended.wait_status == 0 && lines_ > 0) return;
+        throw NoAnswerError(fmt::format("the sampler '{}' {}{}", name(),
+                                        ended.start_error == 0 ? "ended: " : "", to_string(ended)) +
+                            (lines_ == 0 ? ", without a reading" : ""));
+    }
+
+    void drain(std::vector<PowerReading>& readings) {
+        if (output_ < 0) return;
+        std::array<char, 4096> buffer;
+        while (true) {
+            const auto count = ::read(output_, buffer.data(), buffer.size());
+            if (count < 0 && errno == EINTR) continue;
+            if (count <= 0) return;
+            pending_.append(buffer.data(), static_cast<std::size_t>(count));
+            take_lines(readings);
+        }
+    }
+
+    void take_lines(std::vector<PowerReading>& readings) {
+        for (auto end = pending_.find('\n'); end != std::string::npos; end = pending_.find('\n')) {
+            auto line = pending_.substr(0, end);
+            pending_.erase(0, end + 1);
+            line.erase(0, line.find_first_not_of(" \t"));
+            line.erase(line.find_last_not_of(" \t\r") + 1);
+            const auto power_w = parse_number(line);
+            if (!power_w) {
+                throw InputError(
+                    {name(), lines_ + 1},
+                    fmt::format("the sampler printed '{}', expected watts, a number a line", line));
+            }
+            ++lines_;
+            readings.push_back({Clock::now(), *power_w});
+        }
+    }
+
+    std::vector<std::string> command_;
+    double interval_s_;
+    std::unique_ptr<SupervisedProcesses> running_;
+    int output_ = -1;
+    Clock::time_point started_;
+    std::string pending_;    ///< the beginning of a line
+    std::size_t lines_ = 0;  ///< since the start
+};
+
+}  // namespace
+
+PowerSampler open_command_sampler(const SamplerSettings& settings) {
+    auto meter = std::make_shared<Meter>(settings);
+    PowerSampler sampler;
+    sampler.kind = "command";
+    sampler.source = fmt::format("{}", fmt::join(settings.command, " "));
+    sampler.read = [meter] { return meter->read(); };
+    sampler.file = [meter] { return meter->file(); };
+    return sampler;
+}
+
+}  // namespace flightwatt::compute

@@ -1,0 +1,78 @@
+#include "flight/phases_file.h"
+
+#include "base/csv.h"
+#include "base/error.h"
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+/// One row and the table that it stands in.
+struct RowReader {
+    const CsvTable& table;
+    const CsvTable::Row& row;
+
+    const CsvTable::Cell& cell(const std::string& column) const {
+        return row.cells[column_index(table, column)];
+    }
+    double number(const std::string& column) const {
+        return cell_number(table, row, column_index(table, column));
+    }
+    std::optional<double> maybe(const std::string& column) const {
+        return cell(column).text.empty() ? std::nullopt : std::optional(number(column));
+    }
+    std::optional<int> maybe_whole(const std::string& column) const {
+        const auto value = maybe(column);
+        return value ? std::optional(static_cast<int>(std::lround(*value))) : std::nullopt;
+    }
+    InputError refusal(const std::string& column, const std::string& expected) const {
+        return InputError({table.file, row.line, cell(column).column},
+                          fmt::format("{} is '{}', expected {}", column, cell(column).text, expected));
+    }
+};
+
+PhaseEdge edge_of(const RowReader& row, const std::string& side) {
+    PhaseEdge edge;
+    edge.time_s = row.number(side + "_s");
+    edge.altitude_m = row.number(side + "_altitude_m");
+    edge.gap_s = row.number(side + "_gap_s");
+    edge.throttle_percent = row.maybe(side + "_throttle_percent");
+    edge.mode = row.maybe_whole(side + "_mode");
+    edge.block = row.maybe_whole(side + "_block");
+    edge.takeoff_after_s = row.maybe(side + "_to_takeoff_message_s");
+    return edge;
+}
+
+PhaseSpan span_of(const RowReader& row) {
+    const auto phase = phase_from(row.cell("phase").text);
+    if (!phase) throw row.refusal("phase", "takeoff, cruise or landing");
+    const auto& complete = row.cell("complete").text;
+    if (complete != "true" && complete != "false") throw row.refusal("complete", "true or false");
+    return {*phase, edge_of(row, "start"), edge_of(row, "end"), complete == "true"};
+}
+
+}  // namespace
+
+FlightPhases read_phases_csv(const std::filesystem::path& path) {
+    const auto table = read_csv(path);
+    FlightPhases phases;
+    for (const auto& line : table.rows) {
+        const RowReader row{table, line};
+        const double sortie = row.number("sortie");
+        const auto last = static_cast<double>(phases.sorties.size());
+        if (sortie == last + 1.0) {
+            phases.sorties.emplace_back();
+        } else if (sortie != last || phases.sorties.empty()) {
+            throw row.refusal("sortie", "sorties that count up from 1");
+        }
+        phases.sorties.back().phases.push_back(span_of(row));
+    }
+    return phases;
+}
+
+}  // namespace flightwatt::flight

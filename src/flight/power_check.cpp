@@ -1,0 +1,229 @@
+#include "flight/power_check.h"
+
+#include "base/units.h"
+#include "flight/phase_statistics.h"
+#include "flight/segmentation/flight_grid.h"
+#include "flight/track.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr double absurd_idle_current_a = 5.0;
+constexpr double absurd_power_difference = 0.10;
+constexpr double compared_power_w = 1.0;  // below, rounding and offsets rule
+constexpr double absurd_counter_return = 0.05;
+constexpr double absurd_rest_part = 0.10;  // of the samples at rest
+constexpr double absurd_closure_percent = 10.0;
+
+bool is_in_flight(const FlightPhases& phases, double time_s) {
+    return std::any_of(phases.sorties.begin(), phases.sorties.end(), [&](const Sortie& sortie) {
+        return time_s >= sortie.phases.front().start.time_s && time_s <= sortie.phases.back().end.time_s;
+    });
+}
+
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Indices of the power samples at rest with the motor off.
+std::vector<std::size_t> resting_samples(const FlightSeries& series, const SegmentationOptions& options) {
+    std::vector<std::size_t> indices;
+    if (series.throttle_percent.empty()) return indices;
+    const auto grid = make_grid(series);
+    const auto rests = find_rests(grid, options);
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        const auto at = static_cast<std::size_t>((series.time_s[i] - grid.begin_s) / grid.step_s);
+        const bool resting = std::any_of(rests.begin(), rests.end(), [&](const GridSpan& rest) {
+            return at >= rest.begin && at < rest.end;
+        });
+        if (resting && series.throttle_percent[i] <= options.idle_throttle_percent) indices.push_back(i);
+    }
+    return indices;
+}
+
+/// The autopilot switches loads on the ground too (a burst after landing): the middle half of the samples is
+/// idle.
+std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a,
+                                        const std::vector<std::size_t>& resting) {
+    constexpr std::size_t enough = 10;
+    if (current_a.empty() || resting.size() < enough) return std::nullopt;
+    std::vector<double> values;
+    values.reserve(resting.size());
+    for (const auto i : resting) values.push_back(current_a[i]);
+    const double middle = median_of(values);
+    std::vector<double> distances;
+    distances.reserve(values.size());
+    for (const double value : values) distances.push_back(std::abs(value - middle));
+    const double reach = 5.0 * std::max(median_of(distances), 1e-6);  // beyond 3 sigma is no idling
+    IdleCurrent idle;
+    double squares = 0.0;
+    for (const double value : values) {
+        if (std::abs(value - middle) > reach) continue;
+        ++idle.samples;
+        const double delta = value - idle.mean_a;
+        idle.mean_a += delta / static_cast<double>(idle.samples);
+        squares += delta * (value - idle.mean_a);
+    }
+    if (idle.samples > 1) idle.deviation_a = std::sqrt(squares / static_cast<double>(idle.samples - 1));
+    return idle;
+}
+
+/// How far a rising counter ran back in flight, over what it counted there. On the ground a pack may be
+/// changed.
+double counter_return(const std::vector<double>& time_s, const std::vector<double>& counter,
+                      const FlightPhases& phases) {
+    double returned = 0.0;
+    double counted = 0.0;
+    for (std::size_t i = 1; i < counter.size(); ++i) {
+        if (!is_in_flight(phases, time_s[i - 1]) || !is_in_flight(phases, time_s[i])) continue;
+        const double step = counter[i] - counter[i - 1];
+        (step < 0.0 ? returned : counted) += std::abs(step);
+    }
+    return counted > 0.0 ? returned / counted : returned > 0.0 ? 1.0 : 0.0;
+}
+
+/// Median of |power - voltage * current| over the product, where that is large enough; 0 if it cannot be
+/// compared.
+double power_difference(const FlightSeries& series) {
+    if (series.voltage_v.empty() || series.current_a.empty()) return 0.0;
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        const double product = series.voltage_v[i] * series.current_a[i];
+        if (std::abs(product) < compared_power_w) continue;
+        differences.push_back(std::abs(series.power_w[i] - product) / std::abs(product));
+    }
+    return differences.empty() ? 0.0 : median_of(std::move(differences));
+}
+
+bool is_constant_in_flight(const FlightSeries& series, const FlightPhases& phases) {
+    for (const auto& sortie : phases.sorties) {
+        std::vector<double> flown;
+        for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+            const bool inside = series.time_s[i] >= sortie.phases.front().start.time_s &&
+                                series.time_s[i] <= sortie.phases.back().end.time_s;
+            if (inside) flown.push_back(series.power_w[i]);
+        }
+        const bool varies =
+            std::any_of(flown.begin(), flown.end(), [&](double w) { return w != flown.front(); });
+        if (flown.size() >= 10 && !varies) return true;
+    }
+    return false;
+}
+
+/// What part of the samples at rest has a current that only a running motor draws.
+double loaded_rest_part(const FlightSeries& series, const std::vector<std::size_t>& resting) {
+    if (series.current_a.empty() || resting.empty()) return 0.0;
+    const auto loaded = std::count_if(resting.begin(), resting.end(), [&](std::size_t i) {
+        return std::abs(series.current_a[i]) > absurd_idle_current_a;
+    });
+    constexpr std::ptrdiff_t enough = 10;
+    return loaded < enough ? 0.0 : static_cast<double>(loaded) / static_cast<double>(resting.size());
+}
+
+double mean_power_in_flight_w(const FlightSeries& series, const FlightPhases& phases) {
+    double sum_w = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        if (!is_in_flight(phases, series.time_s[i])) continue;
+        sum_w += series.power_w[i];
+        ++count;
+    }
+    return count > 0 ? sum_w / static_cast<double>(count) : 0.0;
+}
+
+void find_absurdities(const FlightSeries& series, const FlightPhases& phases,
+                      const std::vector<std::size_t>& resting, PowerReport& report) {
+    const auto add = [&](std::string text) { report.absurdities.push_back(std::move(text)); };
+    if (const double part = loaded_rest_part(series, resting); part > absurd_rest_part) {
+        add(fmt::format("more than {:.0f} A in {:.0f} % of the samples on the ground with the motor off",
+                        absurd_idle_current_a, part * units::percent_per_whole));
+    }
+    if (const double apart = power_difference(series); apart > absurd_power_difference) {
+        add(fmt::format("power is {:.0f} % away from voltage times current",
+                        apart * units::percent_per_whole));
+    }
+    for (const auto& [name, counter] :
+         {std::pair{"energy", &series.energy_wh}, std::pair{"charge", &series.charge_ah}}) {
+        if (const double part = counter_return(series.time_s, *counter, phases);
+            part > absurd_counter_return) {
+            add(fmt::format("the {} counter ran back by {:.0f} % of what it counted in flight", name,
+                            part * units::percent_per_whole));
+        }
+    }
+    for (const auto& [name, closure] : {std::pair{"energy", report.energy_closure_percent},
+                                        std::pair{"charge", report.charge_closure_percent}}) {
+        if (closure && std::abs(*closure) > absurd_closure_percent) {
+            add(fmt::format("what was measured is {:+.0f} % away from the on-board {} counter", *closure,
+                            name));
+        }
+    }
+    if (mean_power_in_flight_w(series, phases) < 0.0) add("power is negative on average in flight");
+    if (is_constant_in_flight(series, phases)) add("power does not change in flight");
+}
+
+/// Integral over counter, less 100 %, over all sorties; absent without a counter that counted.
+std::optional<double> closure_percent(const std::vector<double>& time_s, const std::vector<double>& rate,
+                                      const std::vector<double>& counter, const FlightPhases& phases) {
+    if (rate.empty() || counter.empty()) return std::nullopt;
+    const Track counted{time_s, counter};
+    double integral = 0.0;
+    double difference = 0.0;
+    for (const auto& sortie : phases.sorties) {
+        const double start_s = sortie.phases.front().start.time_s;
+        const double end_s = sortie.phases.back().end.time_s;
+        integral += integrated(time_s, rate, start_s, end_s) / units::seconds_per_hour;
+        difference += value_at(counted, end_s) - value_at(counted, start_s);
+    }
+    if (!(difference > 0.0)) return std::nullopt;
+    return (integral / difference - 1.0) * units::percent_per_whole;
+}
+
+}  // namespace
+
+PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases) {
+    PowerReport report;
+    report.origin = series.current_origin;
+    const auto resting = resting_samples(series, {});
+    report.idle = idle_current(series.current_a, resting);
+    report.energy_closure_percent = closure_percent(series.time_s, series.power_w, series.energy_wh, phases);
+    report.charge_closure_percent =
+        closure_percent(series.time_s, series.current_a, series.charge_ah, phases);
+    const double gap_s = gap_threshold_s(series);
+    for (const auto& sortie : phases.sorties) {
+        for (std::size_t i = 1; i < series.time_s.size(); ++i) {
+            const double interval_s = series.time_s[i] - series.time_s[i - 1];
+            const bool inside = series.time_s[i - 1] >= sortie.phases.front().start.time_s &&
+                                series.time_s[i] <= sortie.phases.back().end.time_s;
+            if (inside && interval_s > gap_s) report.gaps.push_back({series.time_s[i - 1], interval_s});
+        }
+    }
+    find_absurdities(series, phases, resting, report);
+    return report;
+}
+
+std::string describe_absurdities(const std::vector<std::string>& absurdities) {
+    return fmt::format("absurd power record: {}; --keep overrules this", fmt::join(absurdities, ", "));
+}
+
+void correct_idle_offset(FlightSeries& series, const std::optional<IdleCurrent>& idle) {
+    if (!idle) return;
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        const double voltage_v = !series.voltage_v.empty()    ? series.voltage_v[i]
+                                 : series.current_a[i] != 0.0 ? series.power_w[i] / series.current_a[i]
+                                                              : 0.0;
+        series.power_w[i] -= idle->mean_a * voltage_v;
+        series.current_a[i] -= idle->mean_a;
+    }
+    series.warnings.push_back(fmt::format("the idle current of {:.4f} A ({} samples at rest) was taken out",
+                                          idle->mean_a, idle->samples));
+}
+
+}  // namespace flightwatt::flight

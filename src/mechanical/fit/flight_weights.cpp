@@ -1,0 +1,195 @@
+#include "mechanical/fit/flight_weights.h"
+
+#include "base/error.h"
+#include "base/toml_reader.h"
+#include "mechanical/phase_curve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+/// No flight is taken to be more than this many times as exact as the least exact one.
+constexpr double most_times_exact = 1e3;
+
+/// Curves that differ by less than this part of their size are equal.
+constexpr double equal_level = 1e-9;
+
+constexpr std::array weighting_names{
+    std::pair(Weighting::uniform, std::string_view("uniform")),
+    std::pair(Weighting::inverse_variance, std::string_view("inverse-variance")),
+    std::pair(Weighting::agreement, std::string_view("agreement")),
+    std::pair(Weighting::by_hand, std::string_view("by hand"))};
+
+std::vector<double> normalised(std::vector<double> weights) {
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (double& weight : weights) weight /= sum;
+    return weights;
+}
+
+std::vector<double> by_variance(const PhaseFit& fit) {
+    double largest = 0.0;
+    for (const auto& flight : fit.flights) largest = std::max(largest, flight.rms_w);
+    std::vector<double> weights;
+    for (const auto& flight : fit.flights) {
+        const auto samples = static_cast<double>(flight.samples);
+        // Relative to the largest, so that neither the unit nor an rms of 0 matters.
+        const double relative =
+            largest > 0.0 ? std::max(flight.rms_w / largest, 1.0 / most_times_exact) : 1.0;
+        weights.push_back(samples / (relative * relative));
+    }
+    return normalised(std::move(weights));
+}
+
+/// How far each flight's curve is from the mean of the others, squared and averaged over the phase [W^2].
+std::vector<double> disagreements(const PhaseFit& fit) {
+    const auto& first = fit.flights.front();
+    const auto points = points_of_curve(first.fourier, first.duration_s);
+    std::vector<std::vector<double>> curves;
+    std::vector<double> sum(points, 0.0);
+    for (const auto& flight : fit.flights) {
+        curves.push_back(curve_w(flight.fourier, flight.duration_s, points));
+        for (std::size_t i = 0; i < points; ++i) sum[i] += curves.back()[i];
+    }
+    const auto others = static_cast<double>(curves.size() - 1);
+    double size = 0.0;
+    for (const double value : sum) size += std::pow(value / (others + 1.0), 2) / static_cast<double>(points);
+    std::vector<double> distances;
+    for (const auto& curve : curves) {
+        double square_sum = 0.0;
+        for (std::size_t i = 0; i < points; ++i)
+            square_sum += std::pow(curve[i] - (sum[i] - curve[i]) / others, 2);
+        const double distance = square_sum / static_cast<double>(points);
+        distances.push_back(distance > equal_level * equal_level * size ? distance : 0.0);
+    }
+    return distances;
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2.0;
+}
+
+std::vector<double> by_agreement(const PhaseFit& fit) {
+    const auto count = static_cast<double>(fit.flights.size());
+    std::vector<double> equal(fit.flights.size(), 1.0 / count);
+    if (fit.flights.size() <= 2) return equal;
+    const auto distances = disagreements(fit);
+    double usual = median(distances);
+    if (usual == 0.0) usual = std::accumulate(distances.begin(), distances.end(), 0.0) / count;
+    if (usual == 0.0) return equal;
+    std::vector<double> weights;
+    weights.reserve(distances.size());
+    for (const double distance : distances) weights.push_back(usual / (distance + usual));
+    return normalised(std::move(weights));
+}
+
+double weight_by_hand(const std::string& flight, flight::Phase phase,
+                      const std::vector<HandWeight>& by_hand) {
+    const HandWeight* found = nullptr;
+    for (const auto& weight : by_hand) {
+        if (weight.flight != flight) continue;
+        if (weight.phase == phase) return weight.weight;
+        if (!weight.phase) found = &weight;
+    }
+    if (found == nullptr) {
+        throw UsageError(
+            fmt::format("flight '{}' has no weight by hand in {}; give it one, 0 to leave it out", flight,
+                        to_string(phase)));
+    }
+    return found->weight;
+}
+
+std::vector<double> by_hand(const PhaseFit& fit, flight::Phase phase, const std::vector<HandWeight>& given) {
+    std::vector<double> weights;
+    for (const auto& flight : fit.flights) weights.push_back(weight_by_hand(flight.flight, phase, given));
+    if (std::none_of(weights.begin(), weights.end(), [](double weight) { return weight > 0.0; })) {
+        throw UsageError(fmt::format(
+            "every flight's weight by hand is 0 in {}; at least one must be positive", to_string(phase)));
+    }
+    return normalised(std::move(weights));
+}
+
+}  // namespace
+
+std::string_view to_string(Weighting weighting) {
+    return weighting_names[static_cast<std::size_t>(weighting)].second;
+}
+
+std::optional<Weighting> weighting_from(std::string_view name) {
+    for (const auto& [weighting, text] : weighting_names) {
+        if (text == name) return weighting;
+    }
+    return std::nullopt;
+}
+
+void check_weights(const WeightOptions& options, std::span<const std::string> flights) {
+    if (options.weighting != Weighting::by_hand && !options.by_hand.empty()) {
+        throw UsageError(fmt::format("weights by hand and weights by {} exclude each other",
+                                     to_string(options.weighting)));
+    }
+    for (auto weight = options.by_hand.begin(); weight != options.by_hand.end(); ++weight) {
+        if (std::find(flights.begin(), flights.end(), weight->flight) == flights.end()) {
+            const auto near = nearest_word(weight->flight, {flights.begin(), flights.end()});
+            throw UsageError(fmt::format("a weight is given for '{}', which is none of the flights{}",
+                                         weight->flight,
+                                         near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+        }
+        if (!(weight->weight >= 0.0) || !std::isfinite(weight->weight)) {
+            throw UsageError(fmt::format("the weight of flight '{}' is {}, expected 0 or more",
+                                         weight->flight, weight->weight));
+        }
+        const auto same = [&](const HandWeight& other) {
+            return other.flight == weight->flight && other.phase == weight->phase;
+        };
+        if (std::any_of(options.by_hand.begin(), weight, same)) {
+            throw UsageError(
+                fmt::format("flight '{}' has two weights{}", weight->flight,
+                            weight->phase ? fmt::format(" in {}", to_string(*weight->phase)) : ""));
+        }
+    }
+}
+
+std::vector<double> flight_weights(const PhaseFit& fit, flight::Phase phase, const WeightOptions& options) {
+    switch (options.weighting) {
+        case Weighting::uniform:
+            break;
+        case Weighting::inverse_variance:
+            return by_variance(fit);
+        case Weighting::agreement:
+            return by_agreement(fit);
+        case Weighting::by_hand:
+            return by_hand(fit, phase, options.by_hand);
+    }
+    return normalised(std::vector<double>(fit.flights.size(), 1.0));
+}
+
+PhaseModel average_phase(const PhaseFit& fit, std::span<const double> weights) {
+    PhaseModel model;
+    model.rms_w = fit.rms_w;
+    model.range = fit.range;
+    model.samples = fit.samples;
+    model.flights = fit.flights.size();
+    model.fourier.cos_w.assign(fit.flights.front().fourier.cos_w.size(), 0.0);
+    model.fourier.sin_w.assign(model.fourier.cos_w.size(), 0.0);
+    for (std::size_t i = 0; i < fit.flights.size(); ++i) {
+        const auto& flight = fit.flights[i];
+        model.duration_s += weights[i] * flight.duration_s;
+        model.fourier.a0_w += weights[i] * flight.fourier.a0_w;
+        for (std::size_t n = 0; n < model.fourier.cos_w.size(); ++n) {
+            model.fourier.cos_w[n] += weights[i] * flight.fourier.cos_w[n];
+            model.fourier.sin_w[n] += weights[i] * flight.fourier.sin_w[n];
+        }
+    }
+    model.fourier.omega_rad_per_s = fit.theta_rad / model.duration_s;
+    return model;
+}
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,144 @@
+#include "mechanical/fit/frequency_scan.h"
+
+#include "mechanical/fit/projected_fit.h"
+#include "mechanical/fit/trigonometric_sums.h"
+#include "mechanical/fourier_basis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/tools/minima.hpp>
+
+namespace flightwatt::mechanical {
+namespace {
+
+/// How far the highest harmonic may turn between two thetas of the scan: half of it, seen from the middle of
+/// the phase, costs at most 2 % of a harmonic's power.
+constexpr double turn_between_rad = 1.0;
+
+/// So many minima of the scan are refined, at most, before the lowest is chosen. One that explains less than
+/// this part of the best explanation cannot make it up within a step.
+constexpr std::size_t refined_minima = 8;
+constexpr double hopeful_part = 0.95;
+
+/// Chance of taking noise for a harmonic.
+constexpr double harmonic_significance = 1e-3;
+
+/// A harmonic with less than this part of the power that the series explains may be done without.
+constexpr double negligible_part = 0.02;
+
+/// At a multiple that explains less than this, before it is refined, there is no need to look closer.
+constexpr double promising_part = 0.5;
+
+/// Below this part of the values' own sum of squares a residual is rounding.
+constexpr double rounding_level = 1e-12;
+
+/// Bits of theta that the refinement finds; a minimum can not be placed better than half of a double's.
+constexpr int refined_bits = 24;
+
+struct Candidate {
+    double theta_rad = 0.0;
+    double square_sum = std::numeric_limits<double>::infinity();
+};
+
+double own_square_sum(std::span<const ScaledSamples> flights) {
+    double sum = 0.0;
+    for (const auto& flight : flights) {
+        for (const double value : flight.value) sum += value * value;
+    }
+    return sum;
+}
+
+Candidate refined(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                  double theta_rad, double reach_rad) {
+    const double low = std::max(range.low_rad, theta_rad - reach_rad);
+    const double high = std::min(range.high_rad, theta_rad + reach_rad);
+    const auto square_sum = [&](double theta) { return projected_square_sum(flights, order, theta); };
+    const auto [place, value] = boost::math::tools::brent_find_minima(square_sum, low, high, refined_bits);
+    return {place, value};
+}
+
+/// The scan's local minima, its ends included, lowest first.
+std::vector<Candidate> minima(const FrequencyScan& scan) {
+    std::vector<Candidate> found;
+    const auto& sums = scan.square_sum;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const bool falls = i == 0 || sums[i] <= sums[i - 1];
+        const bool rises = i + 1 == sums.size() || sums[i] < sums[i + 1];
+        if (falls && rises) found.push_back({scan.theta_rad[i], sums[i]});
+    }
+    std::sort(found.begin(), found.end(),
+              [](const Candidate& a, const Candidate& b) { return a.square_sum < b.square_sum; });
+    return found;
+}
+
+}  // namespace
+
+FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order,
+                               const FrequencyRange& range) {
+    FrequencyScan scan;
+    const auto last = static_cast<std::size_t>(std::ceil(range.high_rad * order / turn_between_rad));
+    scan.step_rad = range.high_rad / static_cast<double>(last);
+    const auto first = static_cast<std::size_t>(std::ceil(range.low_rad / scan.step_rad));
+    for (auto i = first; i <= last; ++i) scan.theta_rad.push_back(static_cast<double>(i) * scan.step_rad);
+
+    scan.square_sum.assign(scan.theta_rad.size(), own_square_sum(flights));
+    for (const auto& flight : flights) {
+        const auto sums = sum_by_fft(flight, scan.step_rad, 2 * static_cast<std::size_t>(order) * last + 1);
+        for (std::size_t i = 0; i < scan.square_sum.size(); ++i) {
+            scan.square_sum[i] -= explained_square_sum(sums, first + i, order);
+        }
+    }
+    return scan;
+}
+
+double find_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range) {
+    const auto scan = scan_frequencies(flights, order, range);
+    auto candidates = minima(scan);
+    candidates.resize(std::min(candidates.size(), refined_minima));
+    const double total = own_square_sum(flights);
+    Candidate best;
+    for (const auto& candidate : candidates) {
+        if (total - candidate.square_sum < hopeful_part * (total - best.square_sum)) break;
+        const auto fine = refined(flights, order, range, candidate.theta_rad, scan.step_rad);
+        if (fine.square_sum < best.square_sum) best = fine;
+    }
+    return simplest_frequency(flights, order, range, best.theta_rad);
+}
+
+double simplest_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                          double theta_rad) {
+    const double total = own_square_sum(flights);
+    const double rounding = std::max(rounding_level * total, std::numeric_limits<double>::min());
+    const double best = std::max(rounding, projected_square_sum(flights, order, theta_rad));
+    double freedom = -1.0;
+    for (const auto& flight : flights) {
+        freedom += static_cast<double>(flight.tau.size()) - coefficient_count(order);
+    }
+    freedom = std::max(1.0, freedom);
+    const double variance = best / freedom;
+    for (int multiple = order; multiple >= 2; --multiple) {
+        const double reach_rad = turn_between_rad / order * multiple;
+        if (multiple * theta_rad + reach_rad > range.high_rad) continue;
+        const double unrefined = projected_square_sum(flights, order, multiple * theta_rad);
+        if (total - unrefined < promising_part * (total - best)) continue;
+        const auto simpler = refined(flights, order, range, multiple * theta_rad, reach_rad);
+        const bool slope = std::abs(simpler.theta_rad - multiple * theta_rad) > 0.9 * reach_rad;
+        if (slope) continue;  // the least is where the search ended, not a minimum
+        const int lost_harmonics = order - order / multiple;
+        const double lacking = 2.0 * static_cast<double>(flights.size()) * lost_harmonics;
+        const double worse = std::max(rounding, simpler.square_sum) - best;
+        const boost::math::fisher_f distribution(lacking, freedom);
+        const double by_chance =
+            lacking * variance *
+            boost::math::quantile(boost::math::complement(distribution, harmonic_significance));
+        if (worse <= by_chance && worse - lacking * variance <= negligible_part * (total - best)) {
+            return simpler.theta_rad;
+        }
+    }
+    return theta_rad;
+}
+
+}  // namespace flightwatt::mechanical

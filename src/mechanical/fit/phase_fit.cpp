@@ -1,0 +1,212 @@
+#include "mechanical/fit/phase_fit.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "mechanical/fit/frequency_scan.h"
+#include "mechanical/fit/joint_refinement.h"
+#include "mechanical/fit/median_gap.h"
+#include "mechanical/fit/projected_fit.h"
+#include "mechanical/fit/robust_refinement.h"
+#include "mechanical/fourier_basis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+/// Nearer to an end of the range than this part of it counts as standing at it.
+constexpr double bound_tolerance = 1e-6;
+
+/// Power that varies less than this part of its size is constant.
+constexpr double constant_level = 1e-12;
+
+void check_options(const PhaseFitOptions& options) {
+    if (options.order < 0 || options.order > max_order) {
+        throw UsageError(
+            fmt::format("the order of the Fourier series is {}, expected 0 to {}", options.order, max_order));
+    }
+    if (!(options.low_rad > 0.0) || !std::isfinite(options.low_rad)) {
+        throw UsageError(
+            fmt::format("the lowest omega * duration is {} rad, expected more than 0", options.low_rad));
+    }
+    if (!(units::rad_from_turns(options.high_periods) > options.low_rad) ||
+        !std::isfinite(options.high_periods)) {
+        throw UsageError(
+            fmt::format("at most {} periods a phase are less than the lowest omega * duration, {} rad",
+                        options.high_periods, options.low_rad));
+    }
+}
+
+void check_samples(flight::Phase phase, const PhaseSamples& samples) {
+    const auto refuse = [&](const std::string& what) {
+        throw InputError({samples.flight}, fmt::format("{}: {}", to_string(phase), what));
+    };
+    if (samples.tau.size() != samples.power_w.size()) {
+        refuse(fmt::format("{} times and {} powers, expected as many of each", samples.tau.size(),
+                           samples.power_w.size()));
+    }
+    if (!(samples.duration_s > 0.0) || !std::isfinite(samples.duration_s)) {
+        refuse(fmt::format("duration_s = {} is not positive", samples.duration_s));
+    }
+    for (std::size_t i = 0; i < samples.tau.size(); ++i) {
+        if (!(samples.tau[i] >= 0.0 && samples.tau[i] <= 1.0)) {
+            refuse(fmt::format("sample {} at {} of the phase, expected 0 to 1", i + 1, samples.tau[i]));
+        }
+        if (!std::isfinite(samples.power_w[i])) {
+            refuse(fmt::format("sample {}: power_w is not finite: {}", i + 1, samples.power_w[i]));
+        }
+    }
+}
+
+void check_count(flight::Phase phase, const PhaseSamples& samples, int order) {
+    if (samples.tau.size() >= samples_needed(order)) return;
+    throw NoAnswerError(
+        fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: leave "
+                    "its {} out, or lower the order",
+                    samples.flight, samples.tau.size(), to_string(phase), order, samples_needed(order),
+                    to_string(phase)));
+}
+
+struct Scaling {
+    std::vector<ScaledSamples> flights;
+    std::vector<double> mean_w;  ///< a flight
+    double unit_w = 1.0;
+};
+
+Scaling scaled(std::span<const PhaseSamples> flights) {
+    Scaling scaling;
+    double square_sum = 0.0;
+    double largest = 0.0;
+    double count = 0.0;
+    for (const auto& flight : flights) {
+        ScaledSamples samples{flight.tau, flight.power_w, flight.flight};
+        double mean = 0.0;
+        for (const double power : flight.power_w) mean += power / static_cast<double>(flight.power_w.size());
+        for (double& value : samples.value) {
+            largest = std::max(largest, std::abs(value));
+            value -= mean;
+            square_sum += value * value;
+        }
+        count += static_cast<double>(flight.tau.size());
+        scaling.flights.push_back(std::move(samples));
+        scaling.mean_w.push_back(mean);
+    }
+    const double deviation_w = std::sqrt(square_sum / count);
+    const bool varies = deviation_w > constant_level * largest;
+    if (varies) scaling.unit_w = deviation_w;
+    for (auto& flight : scaling.flights) {
+        for (double& value : flight.value) value = varies ? value / deviation_w : 0.0;
+    }
+    return scaling;
+}
+
+FourierModel in_watts(const Eigen::VectorXd& coefficients, double unit_w, double mean_w,
+                      double omega_rad_per_s) {
+    FourierModel model;
+    model.omega_rad_per_s = omega_rad_per_s;
+    model.a0_w = mean_w + unit_w * coefficients(0);
+    for (Eigen::Index n = 1; n < coefficients.size(); n += 2) {
+        model.cos_w.push_back(unit_w * coefficients(n));
+        model.sin_w.push_back(unit_w * coefficients(n + 1));
+    }
+    return model;
+}
+
+std::string bound_reached(const FrequencyRange& range, double theta_rad) {
+    const double near = bound_tolerance * theta_rad;
+    if (theta_rad - range.low_rad <= near) return "low";
+    if (range.high_rad - theta_rad <= near) return "high";
+    return "none";
+}
+
+/// Order 0: the values less their means are 0 but for noise, whatever the frequency.
+JointFit means_of(const Scaling& scaling, const FrequencyRange& range) {
+    JointFit joint{std::clamp(units::rad_per_turn, range.low_rad, range.high_rad), {}, {}};
+    for (const auto& flight : scaling.flights) {
+        double square_sum = 0.0;
+        for (const double value : flight.value) square_sum += value * value;
+        joint.coefficients.emplace_back(Eigen::VectorXd::Zero(1));
+        joint.square_sum.push_back(square_sum);
+    }
+    return joint;
+}
+
+JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range) {
+    if (order == 0) return means_of(scaling, range);
+    return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range));
+}
+
+PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling, const JointFit& joint,
+                   const FrequencyRange& range) {
+    PhaseFit fit;
+    fit.theta_rad = joint.theta_rad;
+    fit.range = range;
+    const bool has_frequency = joint.coefficients.front().size() > 1;
+    fit.range.at_bound = has_frequency ? bound_reached(range, joint.theta_rad) : "none";
+    double square_sum = 0.0;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        FlightCurve curve;
+        curve.flight = flights[i].flight;
+        curve.duration_s = flights[i].duration_s;
+        curve.samples = flights[i].tau.size();
+        curve.fourier = in_watts(joint.coefficients[i], scaling.unit_w, scaling.mean_w[i],
+                                 joint.theta_rad / curve.duration_s);
+        curve.rms_w = scaling.unit_w * std::sqrt(joint.square_sum[i] / static_cast<double>(curve.samples));
+        square_sum += joint.square_sum[i];
+        fit.samples += curve.samples;
+        fit.flights.push_back(std::move(curve));
+    }
+    fit.rms_w = scaling.unit_w * std::sqrt(square_sum / static_cast<double>(fit.samples));
+    return fit;
+}
+
+}  // namespace
+
+std::size_t samples_needed(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
+
+FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
+    check_options(options);
+    FrequencyRange range{options.low_rad, units::rad_from_turns(options.high_periods), "none"};
+    for (const auto& flight : flights) {
+        const double gap = median_gap(flight.tau);
+        // A constant needs no frequency: it is content with what a first order needs.
+        const double nyquist = gap > 0.0 ? std::numbers::pi / (std::max(1, options.order) * gap) : 0.0;
+        if (nyquist <= range.low_rad) {
+            throw NoAnswerError(
+                fmt::format("flight '{}': {} samples, {:.3g} of the phase apart, are too sparse for a "
+                            "Fourier series of order {}",
+                            flight.flight, flight.tau.size(), gap, options.order));
+        }
+        range.high_rad = std::min(range.high_rad, nyquist);
+    }
+    return range;
+}
+
+PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights,
+                   const PhaseFitOptions& options) {
+    check_options(options);
+    if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
+    for (const auto& flight : flights) {
+        check_samples(phase, flight);
+        check_count(phase, flight, options.order);
+    }
+    const auto scaling = scaled(flights);
+    try {
+        const auto range = admissible_range(flights, options);
+        const auto joint = least_squares(scaling, options.order, range);
+        if (options.loss == Loss::none) return result_of(flights, scaling, joint, range);
+        const auto robust = refine_robustly(scaling.flights, range, joint, options.loss);
+        auto fit = result_of(flights, scaling, robust.joint, range);
+        fit.loss = options.loss;
+        fit.loss_scale_w = robust.scale * scaling.unit_w;
+        return fit;
+    } catch (const NoAnswerError& error) {
+        throw NoAnswerError(fmt::format("{}: {}", to_string(phase), error.what()));
+    }
+}
+
+}  // namespace flightwatt::mechanical

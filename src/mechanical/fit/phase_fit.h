@@ -1,0 +1,66 @@
+#pragma once
+
+#include "flight/flight_phases.h"
+#include "mechanical/fit/phase_samples.h"
+#include "mechanical/fit/robust_loss.h"
+#include "mechanical/mechanical_model.h"
+
+#include <cstddef>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flightwatt::mechanical {
+
+struct PhaseFitOptions {
+    int order = 3;  ///< of the Fourier series, 0 (a constant) to 8
+    /// Lowest omega * duration. The fewer periods a phase has, the more alike its harmonics are: at order 3
+    /// the condition number of the basis is 1 at 2 pi, 38 at the paper's landing (3.63), 108 at pi, where a
+    /// phase is half a period, but 2500 at 2 rad and 230000 at 1 rad (basis_condition). Noise in the
+    /// coefficients grows with it, while the curve hardly changes.
+    double low_rad = std::numbers::pi;
+    /// Most periods in a phase; the sampling may allow fewer. 120 in ten minutes are 5 s each: nothing that
+    /// an aircraft does over and over in cruise is faster.
+    double high_periods = 120.0;
+    Loss loss = Loss::none;  ///< other than none: outliers count less in the last refinement
+};
+
+/// One flight's own curve in one phase, in that flight's own seconds.
+struct FlightCurve {
+    std::string flight;
+    double duration_s = 0.0;
+    FourierModel fourier;  ///< omega_rad_per_s = theta / duration_s
+    double rms_w = 0.0;    ///< of the residuals
+    std::size_t samples = 0;
+};
+
+/// All flights of one phase, fitted with one frequency in their own normalised time (Eq. 1).
+struct PhaseFit {
+    double theta_rad = 0.0;  ///< omega * duration, common to all
+    FrequencyRange range;
+    std::vector<FlightCurve> flights;  ///< in the order of the samples
+    double rms_w = 0.0;                ///< of all flights' residuals together
+    std::size_t samples = 0;
+    Loss loss = Loss::none;
+    double loss_scale_w = 0.0;  ///< of the noise as the loss saw it; 0 without a loss
+};
+
+/// So many samples a flight needs at least: one more than its coefficients.
+std::size_t samples_needed(int order);
+
+/// Where theta may lie: from options.low_rad to options.high_periods periods, but not so high that in some
+/// flight the highest harmonic would have less than two samples a period (of the median gap between samples).
+/// Throws UsageError for options that make no sense, NoAnswerError if the samples leave nothing of the range.
+FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
+
+/// Fits Fourier series of the order to all flights: scans the whole range of theta, refines theta and all
+/// coefficients together. A loss other than none starts from that answer, so outliers still take part in the
+/// search for the frequency. Order 0 is each flight's own mean (its theta, one period, has no effect).
+/// Throws InputError for samples that are no samples (unequal lengths, tau outside
+/// [0, 1], not finite, duration not positive), NoAnswerError naming flight and phase for a flight with fewer
+/// than samples_needed(order) samples, for no flights, and for a fit that does not converge.
+PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights,
+                   const PhaseFitOptions& options = {});
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "flight/flight_phases.h"
+#include "mechanical/prediction/covariate.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt::mechanical {
+
+/// Power over one phase of one flight, on that flight's own normalised time.
+struct PhaseSamples {
+    std::string flight;
+    double duration_s = 0.0;
+    std::vector<double> tau;      ///< (time - begin of phase) / duration_s, in [0, 1]; gaps are allowed
+    std::vector<double> power_w;  ///< as long as tau
+    double start_s = 0.0;         ///< when the phase began, on the log's own clock
+    /// Mean of the cube of the airspeed measured in the phase; absent without a sensor.
+    std::optional<double> airspeed_cubed_m3_per_s3 = {};
+    Covariates covariates = {};  ///< of the cruise, for a level that follows one
+};
+
+/// One flight; a phase that it lacks, or that was not recorded, is absent.
+struct FlightSamples {
+    std::string flight;
+    flight::PerPhase<std::optional<PhaseSamples>> phases;
+};
+
+/// What the search for the frequency works on: power less its flight's mean, in units of the standard
+/// deviation that the phase's flights have in common, so that no threshold depends on the unit of power.
+struct ScaledSamples {
+    std::vector<double> tau;
+    std::vector<double> value;
+    std::string flight = {};  ///< for messages
+};
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,261 @@
+#include "mechanical/uncertainty/error_analysis.h"
+
+#include "base/error.h"
+#include "mechanical/fit/fourier_residual.h"
+#include "mechanical/fit/median_gap.h"
+#include "mechanical/fourier_basis.h"
+#include "mechanical/least_squares.h"
+#include "mechanical/uncertainty/residual_correlation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/SVD>
+#include <fmt/format.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+/// A derivative by theta of which less than this part lies outside of the basis shows no frequency.
+constexpr double rounding_level = 1e-10;
+
+/// What the errors of one flight are made of.
+struct FlightPart {
+    FlightResiduals residuals;
+    Eigen::MatrixXd orthonormal;        ///< Q of the flight's basis
+    Eigen::MatrixXd from_orthonormal;   ///< coefficients = this * Q' * power
+    Eigen::VectorXd theta_direction;    ///< d curve / d theta, less what coefficients can make up for
+    Eigen::VectorXd coefficients_turn;  ///< by how much coefficients rise as theta falls by 1 rad
+    double square_sum_about_mean = 0.0;
+    double condition = 0.0;
+};
+
+PhaseSamples in_order_of_time(const PhaseSamples& samples) {
+    std::vector<std::size_t> places(samples.tau.size());
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    std::stable_sort(places.begin(), places.end(),
+                     [&](std::size_t a, std::size_t b) { return samples.tau[a] < samples.tau[b]; });
+    PhaseSamples sorted{samples.flight, samples.duration_s, {}, {}};
+    for (const auto place : places) {
+        sorted.tau.push_back(samples.tau[place]);
+        sorted.power_w.push_back(samples.power_w[place]);
+    }
+    return sorted;
+}
+
+Eigen::VectorXd coefficients_of(const FourierModel& model) {
+    Eigen::VectorXd coefficients(coefficient_count(static_cast<int>(model.cos_w.size())));
+    coefficients(0) = model.a0_w;
+    for (std::size_t n = 0; n < model.cos_w.size(); ++n) {
+        coefficients(static_cast<Eigen::Index>(2 * n + 1)) = model.cos_w[n];
+        coefficients(static_cast<Eigen::Index>(2 * n + 2)) = model.sin_w[n];
+    }
+    return coefficients;
+}
+
+double condition_of(Eigen::MatrixXd basis) {
+    basis.colwise().normalize();
+    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(basis).singularValues();
+    return singular(0) / singular(singular.size() - 1);
+}
+
+/// Residuals as they push the estimate: those of least squares as they are, those of a robust fit bent.
+Eigen::VectorXd pushing(Eigen::VectorXd residual_w, const PhaseFit& fit) {
+    if (fit.loss == Loss::none || fit.loss_scale_w <= 0.0) return residual_w;
+    double slope = 0.0;
+    for (double& residual : residual_w) {
+        const double scales = residual / fit.loss_scale_w;
+        slope += sample_influence(fit.loss, scales) / static_cast<double>(residual_w.size());
+        residual *= sample_weight(fit.loss, scales);
+    }
+    if (slope <= 0.0) throw NoAnswerError("too many samples are down-weighted to know the fit's errors");
+    return residual_w / slope;
+}
+
+FlightPart part_of(const PhaseSamples& unsorted, const FlightCurve& curve, const PhaseFit& fit) {
+    const auto samples = in_order_of_time(unsorted);
+    const ScaledSamples in_watts{samples.tau, samples.power_w, samples.flight};
+    const auto at = fourier_residual(in_watts, fit.theta_rad, coefficients_of(curve.fourier));
+    const auto qr = solve_least_squares(at.by_coefficients, at.by_theta);
+    if (!qr) {
+        throw NoAnswerError(
+            fmt::format("flight '{}': the samples do not determine the errors of the fit", samples.flight));
+    }
+    FlightPart part;
+    part.residuals.tau = samples.tau;
+    part.residuals.step = median_gap(samples.tau);
+    part.residuals.residual_w = pushing(-at.residual, fit);
+    part.from_orthonormal = qr->from_orthonormal;
+    part.orthonormal = at.by_coefficients * qr->from_orthonormal;
+    part.coefficients_turn = qr->coefficients;
+    part.theta_direction = at.by_theta - at.by_coefficients * qr->coefficients;
+    if (part.theta_direction.norm() <= rounding_level * at.by_theta.norm()) part.theta_direction.setZero();
+    const Eigen::Map<const Eigen::VectorXd> power_w(samples.power_w.data(), at.residual.size());
+    part.square_sum_about_mean = (power_w.array() - power_w.mean()).square().sum();
+    part.condition = condition_of(at.by_coefficients);
+    return part;
+}
+
+/// The flights' parts and what they make together.
+struct Mean {
+    std::vector<FlightPart> parts;
+    Eigen::VectorXd coefficients_w;
+    Eigen::VectorXd turn;      ///< coefficients_turn of the mean
+    double information = 0.0;  ///< of all flights about theta
+    double duration_s = 0.0;
+};
+
+Mean mean_of(std::span<const PhaseSamples> flights, const PhaseFit& fit, std::span<const double> weights) {
+    Mean mean;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const Eigen::VectorXd own = coefficients_of(fit.flights[i].fourier);
+        if (i == 0) mean.coefficients_w = mean.turn = Eigen::VectorXd::Zero(own.size());
+        mean.parts.push_back(part_of(flights[i], fit.flights[i], fit));
+        mean.coefficients_w += weights[i] * own;
+        mean.turn += weights[i] * mean.parts[i].coefficients_turn;
+        mean.information += mean.parts[i].theta_direction.squaredNorm();
+        mean.duration_s += weights[i] * flights[i].duration_s;
+    }
+    return mean;
+}
+
+double explained_part(const std::vector<FlightPart>& parts, const PhaseFit& fit) {
+    double left = 0.0;
+    double about_means = 0.0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        left += std::pow(fit.flights[i].rms_w, 2) * static_cast<double>(fit.flights[i].samples);
+        about_means += parts[i].square_sum_about_mean;
+    }
+    return about_means > 0.0 ? 1.0 - left / about_means : 1.0;
+}
+
+/// The flights' residuals with the directions that coefficients and, unless it is given, theta have used up.
+std::vector<FlightResiduals> residuals_of(const Mean& mean, bool frequency_is_given) {
+    std::vector<FlightResiduals> all;
+    for (const auto& part : mean.parts) {
+        auto residuals = part.residuals;
+        residuals.used_up = part.orthonormal;
+        if (!frequency_is_given && part.theta_direction.norm() > 0.0) {
+            residuals.used_up.conservativeResize(Eigen::NoChange, part.orthonormal.cols() + 1);
+            residuals.used_up.rightCols(1) = part.theta_direction / std::sqrt(mean.information);
+        }
+        all.push_back(std::move(residuals));
+    }
+    return all;
+}
+
+/// How theta, were it free, follows the noise of flight i.
+Eigen::VectorXd theta_response(const Mean& mean, std::size_t i) {
+    const auto& direction = mean.parts[i].theta_direction;
+    if (mean.information <= 0.0) return Eigen::VectorXd::Zero(direction.size());
+    return direction / mean.information;
+}
+
+/// How theta and the mean's coefficients follow the noise of flight i: samples x (1 + coefficients).
+Eigen::MatrixXd response(const Mean& mean, std::size_t i, double weight, bool frequency_is_given) {
+    const auto& part = mean.parts[i];
+    Eigen::MatrixXd rows(part.orthonormal.rows(), 1 + part.orthonormal.cols());
+    rows.col(0).setZero();
+    if (!frequency_is_given) rows.col(0) = theta_response(mean, i);
+    rows.rightCols(part.orthonormal.cols()) =
+        weight * part.orthonormal * part.from_orthonormal.transpose() - rows.col(0) * mean.turn.transpose();
+    return rows;
+}
+
+/// What one flight's noise adds to the variances.
+struct Spread {
+    Eigen::MatrixXd covariance;
+    double theta_variance = 0.0;
+    double degrees_of_freedom = 0.0;
+};
+
+Spread spread_of(const FlightResiduals& residuals, const Eigen::MatrixXd& rows,
+                 const Eigen::VectorXd& theta_rows, double autocorrelation) {
+    const auto noise = noise_level(residuals, autocorrelation);
+    const auto correlation = sample_correlation(residuals.tau, residuals.step, autocorrelation);
+    return {noise.variance_w2 * rows.transpose() * correlated(correlation, rows),
+            noise.variance_w2 * theta_rows.dot(correlated(correlation, theta_rows).col(0)),
+            noise.degrees_of_freedom};
+}
+
+/// The row of derivatives of the mean curve by theta and the coefficients.
+Eigen::RowVectorXd curve_row(const Eigen::VectorXd& coefficients_w, double theta_rad, double tau) {
+    const auto at = fourier_residual({{tau}, {0.0}}, theta_rad, coefficients_w);
+    Eigen::RowVectorXd row(1 + coefficients_w.size());
+    row << at.by_theta(0), at.by_coefficients.row(0);
+    return row;
+}
+
+/// The mean square over the phase of the curve's standard error, as a matrix to weigh a covariance with.
+Eigen::MatrixXd curve_weights(const ErrorAnalysis& analysis) {
+    constexpr int points = 200;
+    const auto size = 1 + analysis.coefficients_w.size();
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
+    for (int i = 0; i < points; ++i) {
+        const auto row = curve_row(analysis.coefficients_w, analysis.theta_rad, (i + 0.5) / points);
+        sum += row.transpose() * row / points;
+    }
+    return sum;
+}
+
+void fill_standard_errors(ErrorAnalysis& analysis, double duration_s) {
+    const Eigen::VectorXd errors = analysis.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    analysis.errors.omega_rad_per_s = errors(0) / duration_s;
+    analysis.errors.a0_w = errors(1);
+    for (Eigen::Index n = 2; n < errors.size(); n += 2) {
+        analysis.errors.cos_w.push_back(errors(n));
+        analysis.errors.sin_w.push_back(errors(n + 1));
+    }
+}
+
+}  // namespace
+
+ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
+                             std::span<const double> weights) {
+    ErrorAnalysis analysis;
+    auto& errors = analysis.errors;
+    const auto mean = mean_of(flights, fit, weights);
+    analysis.theta_rad = fit.theta_rad;
+    analysis.coefficients_w = mean.coefficients_w;
+    analysis.theta_information = mean.information;
+    errors.r2 = explained_part(mean.parts, fit);
+    for (const auto& part : mean.parts) errors.condition = std::max(errors.condition, part.condition);
+    errors.frequency_is_given = fit.range.at_bound != "none" || mean.information <= 0.0;
+
+    const auto residuals = residuals_of(mean, errors.frequency_is_given);
+    errors.autocorrelation = estimate_autocorrelation(residuals);
+    for (const auto& flight : residuals) {
+        errors.effective_samples +=
+            effective_samples(sample_correlation(flight.tau, flight.step, errors.autocorrelation));
+    }
+
+    const auto curve = curve_weights(analysis);
+    analysis.covariance = Eigen::MatrixXd::Zero(curve.rows(), curve.cols());
+    double theta_variance = 0.0;
+    double variance_of_variance = 0.0;
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+        const Eigen::MatrixXd rows = response(mean, i, weights[i], errors.frequency_is_given);
+        const auto spread = spread_of(residuals[i], rows, theta_response(mean, i), errors.autocorrelation);
+        analysis.covariance += spread.covariance;
+        theta_variance += spread.theta_variance;
+        const double share = curve.cwiseProduct(spread.covariance).sum();
+        variance_of_variance += share * share / spread.degrees_of_freedom;
+    }
+    const double curve_variance = std::max(0.0, curve.cwiseProduct(analysis.covariance).sum());
+    errors.curve_w = std::sqrt(curve_variance);
+    // Satterthwaite's, for variances that add up over the flights.
+    errors.degrees_of_freedom = variance_of_variance > 0.0
+                                    ? std::max(1.0, curve_variance * curve_variance / variance_of_variance)
+                                    : std::max(1.0, errors.effective_samples);
+    analysis.free_theta_rad = std::sqrt(std::max(0.0, theta_variance));
+    fill_standard_errors(analysis, mean.duration_s);
+    return analysis;
+}
+
+double curve_standard_error_w(const ErrorAnalysis& analysis, double tau) {
+    const auto row = curve_row(analysis.coefficients_w, analysis.theta_rad, tau);
+    return std::sqrt(std::max(0.0, (row * analysis.covariance * row.transpose()).value()));
+}
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,171 @@
+#include "mission/feasibility_limits.h"
+
+#include "base/units.h"
+#include "mission/plan.h"
+#include "mission/planning/depletion_table.h"
+#include "mission/simulation.h"
+
+#include <cmath>
+#include <optional>
+
+#include <boost/math/tools/toms748_solve.hpp>
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double longest_cruise_s = 1e7;
+constexpr double shortest_cruise_s = 1.0;
+constexpr double largest_payload_w = 1e6;
+
+using SpareOf = std::function<double(double)>;
+
+/// The last value with something to spare, between `good` where there is and `bad` where there is not.
+double last_good(const SpareOf& spare_of, double good, double bad) {
+    const double spare_good = spare_of(good);
+    const double spare_bad = spare_of(bad);
+    if (spare_good == 0.0) return good;
+    std::uintmax_t iterations = 200;
+    const auto [low, high] = boost::math::tools::toms748_solve(
+        spare_of, std::min(good, bad), std::max(good, bad), good < bad ? spare_good : spare_bad,
+        good < bad ? spare_bad : spare_good, boost::math::tools::eps_tolerance<double>(48), iterations);
+    return spare_of(high) >= 0.0 ? high : spare_of(low) >= 0.0 ? low : good;
+}
+
+MostThatLands answer(double value, const Mission& at, const Mission& beyond) {
+    MostThatLands most;
+    most.value = value;
+    most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
+    most.residual_percent = most.final_soc_percent - at.reserve_soc_percent;
+    const auto further = simulate(beyond).summary;
+    most.power_is_the_limit = further.undeliverable.has_value();
+    most.cut_off_is_the_limit = further.cut_off_at_s.has_value();
+    return most;
+}
+
+/// Whether the schedule fits into a cruise; what else is wrong with a mission was seen when it was first
+/// read.
+std::optional<Mission> if_it_fits(const MissionOfCruise& mission_of, double cruise_s) {
+    try {
+        return with_least_schedule(mission_of(cruise_s));
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
+/// A cruise short enough to land with the reserve, below `too_long_s`.
+double short_enough_s(const MissionOfCruise& mission_of, double too_long_s) {
+    double fits_s = too_long_s;
+    double too_short_s = 0.0;
+    for (double cruise_s = too_long_s / 2.0; cruise_s >= shortest_cruise_s;) {
+        if (const auto mission = if_it_fits(mission_of, cruise_s)) {
+            if (spare_percent(*mission) >= 0.0) return cruise_s;
+            fits_s = cruise_s;
+        } else {
+            too_short_s = cruise_s;
+        }
+        cruise_s = (fits_s + too_short_s) / 2.0;
+        if (too_short_s > 0.0 && fits_s - too_short_s < 1e-6 * fits_s) break;
+    }
+    throw NoAnswerError(
+        fmt::format("even with a cruise of {:.6g} s, the shortest that fits the schedule, the "
+                    "mission does not land with its reserve",
+                    fits_s));
+}
+
+}  // namespace
+
+double spare_percent(const Mission& mission) {
+    if (!mission.battery.thevenin) {
+        const auto table = make_drain_table(mission, configurations_of(mission.schedule));
+        if (const auto soc = soc_after(table, tabled(mission.schedule, table)))
+            return *soc - mission.reserve_soc_percent;
+    }
+    const auto summary = simulate(mission).summary;
+    if (summary.feasible) return *summary.final_soc_percent - mission.reserve_soc_percent;
+    const double ended_s = summary.undeliverable   ? summary.undeliverable->time_s
+                           : summary.depleted_at_s ? *summary.depleted_at_s
+                                                   : *summary.cut_off_at_s;
+    return -mission.reserve_soc_percent -
+           units::percent_of(summary.duration_s - ended_s, summary.duration_s) - 1e-9;
+}
+
+MostThatLands longest_cruise(const MissionOfCruise& mission_of) {
+    const auto mission_at = [&](double cruise_s) { return with_least_schedule(mission_of(cruise_s)); };
+    const auto spare_of = [&](double cruise_s) { return spare_percent(mission_at(cruise_s)); };
+    // From a length that fits: schedules may need so much, never so little.
+    double good_s = shortest_cruise_s;
+    while (good_s < longest_cruise_s && !if_it_fits(mission_of, good_s)) good_s *= 2.0;
+    double bad_s = good_s;
+    if (spare_of(good_s) < 0.0) {
+        good_s = short_enough_s(mission_of, bad_s);
+    } else {
+        while (spare_of(bad_s) >= 0.0) {
+            good_s = bad_s;
+            bad_s *= 2.0;
+            if (bad_s > longest_cruise_s) {
+                throw NoAnswerError(fmt::format("a cruise of {:.3g} s still lands with the reserve", good_s));
+            }
+        }
+    }
+    const double cruise_s = last_good(spare_of, good_s, bad_s);
+    return answer(cruise_s, mission_at(cruise_s), mission_at(std::nextafter(cruise_s, bad_s) * (1.0 + 1e-9)));
+}
+
+Mission with_payload(const Mission& mission, double payload_w) {
+    auto loaded = with_least_schedule(mission);
+    const auto index = loaded.compute.components.size();
+    loaded.compute.components.push_back(
+        {"payload", compute::make_power_profile("payload", {}, {{{}, payload_w, {}}})});
+    if (!loaded.utilities.empty()) loaded.utilities.resize(index + 1);
+    for (auto& stretch : loaded.schedule) stretch.run.push_back({index, {}});
+    return loaded;
+}
+
+MostThatLands largest_payload(const Mission& mission) {
+    const auto bare = with_least_schedule(mission);
+    const auto spare_of = [&](double payload_w) { return spare_percent(with_payload(bare, payload_w)); };
+    if (const double spare = spare_of(0.0); spare < 0.0) {
+        if (const auto summary = simulate(bare).summary; !summary.feasible)
+            throw NoAnswerError("without any payload already: " + describe(summary));
+        throw NoAnswerError(fmt::format(
+            "without any payload the mission misses its reserve by {:.4g} points already", -spare));
+    }
+    double good_w = 0.0;
+    double bad_w = 1.0;
+    while (spare_of(bad_w) >= 0.0) {
+        good_w = bad_w;
+        bad_w *= 2.0;
+        if (bad_w > largest_payload_w) {
+            throw NoAnswerError(fmt::format("a payload of {:.3g} W still lands with the reserve", good_w));
+        }
+    }
+    const double payload_w = last_good(spare_of, good_w, bad_w);
+    return answer(payload_w, with_payload(bare, payload_w),
+                  with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
+}
+
+std::optional<double> least_capacity_ah(const Mission& mission) {
+    constexpr double most_times = 1000.0;
+    const auto bare = with_least_schedule(mission);
+    const auto spare_of = [&](double capacity_ah) {
+        auto other = bare;
+        other.battery.capacity_ah = capacity_ah;
+        return spare_percent(other);
+    };
+    double good_ah = mission.battery.capacity_ah;
+    double bad_ah = good_ah;
+    while (spare_of(good_ah) < 0.0) {
+        bad_ah = good_ah;
+        good_ah *= 2.0;
+        if (good_ah > most_times * mission.battery.capacity_ah) return std::nullopt;
+    }
+    while (spare_of(bad_ah) >= 0.0) {
+        good_ah = bad_ah;
+        bad_ah /= 2.0;
+        if (bad_ah * most_times < mission.battery.capacity_ah) return good_ah;
+    }
+    return last_good(spare_of, good_ah, bad_ah);
+}
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,78 @@
+#include "mission/planned_mission_file.h"
+
+#include "base/toml_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+#include <toml++/toml.h>
+
+namespace flightwatt::mission {
+namespace {
+
+/// Rewrites the file name that a key of `table` holds, if it does.
+void move_path(toml::table& table, std::string_view key, const std::filesystem::path& from,
+               const std::filesystem::path& to) {
+    auto* value = table.get_as<std::string>(key);
+    if (value == nullptr || (key == "mechanical" && value->get() == "none")) return;
+    const std::filesystem::path named = value->get();
+    if (named.is_absolute()) return;
+    *value = std::filesystem::proximate(from / named, to).generic_string();
+}
+
+/// A key as people write it: quoted only if it has to be.
+std::string key_text(const std::string& name) {
+    const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-');
+    });
+    return bare ? name : toml_string(name);
+}
+
+std::string run_text(const Mission& mission, const compute::Configuration& run) {
+    std::string text;
+    for (const auto& running : run) {
+        const auto& component = mission.compute.components.at(running.component);
+        std::string qos;
+        for (std::size_t i = 0; i < running.qos.size(); ++i) {
+            qos += (i == 0 ? " " : ", ") + key_text(component.profile.parameters[i]) + " = " +
+                   toml_real(running.qos[i]);
+        }
+        if (!qos.empty()) qos += " ";
+        text += (text.empty() ? " " : ", ") + key_text(component.name) + " = {" + qos + "}";
+    }
+    return text.empty() ? "{}" : "{" + text + " }";
+}
+
+std::string schedule_text(const Mission& mission) {
+    std::string text;
+    for (const auto& stretch : mission.schedule) {
+        text += "\n[[schedule]]\nphase = " + toml_string(to_string(stretch.phase)) +
+                "\nfrom = " + toml_real(stretch.from_s) + "\nto = " + toml_real(stretch.to_s) +
+                "\nrun = " + run_text(mission, stretch.run) + "\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string planned_mission_toml(std::string_view text, const std::filesystem::path& path,
+                                 const Mission& planned, const std::filesystem::path& folder) {
+    auto root = toml::parse(text, path.string());
+    root.erase("plan");
+    root.erase("schedule");
+    root.erase("policy");  // the schedule is decided
+    const auto from = std::filesystem::absolute(path).parent_path();
+    const auto to = std::filesystem::absolute(folder);
+    for (const std::string_view key : {"mechanical", "battery"}) move_path(root, key, from, to);
+    if (auto* components = root.get_as<toml::table>("components")) {
+        for (auto&& [name, component] : *components) {
+            if (auto* table = component.as_table()) move_path(*table, "profile", from, to);
+        }
+    }
+    std::ostringstream out;
+    out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};
+    return out.str() + "\n" + schedule_text(planned);
+}
+
+}  // namespace flightwatt::mission

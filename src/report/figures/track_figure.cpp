@@ -1,0 +1,145 @@
+#include "report/figures/track_figure.h"
+
+#include "flight/phase_statistics.h"
+#include "report/sections/phase_words.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include <boost/geometry/algorithms/append.hpp>
+#include <boost/geometry/algorithms/assign.hpp>
+#include <boost/geometry/algorithms/expand.hpp>
+#include <boost/geometry/algorithms/simplify.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/linestring.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/strategies/cartesian/distance_projected_point.hpp>
+#include <fmt/format.h>
+
+namespace flightwatt::report {
+namespace {
+
+namespace bg = boost::geometry;
+using Point = bg::model::d2::point_xy<double>;
+using Line = bg::model::linestring<Point>;
+
+constexpr int side = 380;  // [px]
+
+/// A square around the track.
+struct Square {
+    double east_m = 0.0;  ///< its middle
+    double north_m = 0.0;
+    double half_m = 1.0;
+};
+
+/// Around the flight alone: on the ground, before its first fix, an aircraft may seem to be anywhere.
+Square square_around(const ReportFlight& flight) {
+    bg::model::box<Point> box;
+    bg::assign_inverse(box);
+    const auto& series = flight.series;
+    for (const auto& sortie : flight.phases.sorties) {
+        for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+            if (series.time_s[i] < sortie.phases.front().start.time_s ||
+                series.time_s[i] > sortie.phases.back().end.time_s) {
+                continue;
+            }
+            bg::expand(box, Point(series.east_m[i], series.north_m[i]));
+        }
+    }
+    constexpr double margin = 1.05;
+    const double wide_m = box.max_corner().x() - box.min_corner().x();
+    const double high_m = box.max_corner().y() - box.min_corner().y();
+    return {std::midpoint(box.min_corner().x(), box.max_corner().x()),
+            std::midpoint(box.min_corner().y(), box.max_corner().y()),
+            std::max(1.0, margin * std::max(wide_m, high_m) / 2.0)};
+}
+
+/// The track between two times in pieces: where power samples, whose clock it is on, are missing, nobody
+/// knows it.
+std::vector<Line> pieces(const flight::FlightSeries& series, double start_s, double end_s) {
+    const double gap_s = gap_threshold_s(series);
+    std::vector<Line> lines;
+    double last_s = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        if (series.time_s[i] < start_s || series.time_s[i] > end_s) continue;
+        if (series.time_s[i] - last_s > gap_s) lines.emplace_back();
+        bg::append(lines.back(), Point(series.east_m[i], series.north_m[i]));
+        last_s = series.time_s[i];
+    }
+    return lines;
+}
+
+/// What of the tracks a screen can show: no point is further than the tolerance from what is kept.
+FigureData track_rows(const ReportFlight& flight, double tolerance_m) {
+    FigureData data({"east_m", "north_m", "order", "piece"}, {"phase", "word"});
+    double piece = 0.0;
+    for (const auto& sortie : flight.phases.sorties) {
+        for (const auto& span : sortie.phases) {
+            for (const auto& line : pieces(flight.series, span.start.time_s, span.end.time_s)) {
+                ++piece;
+                Line simple;
+                bg::simplify(line, simple, tolerance_m);
+                double order = 0.0;
+                for (const auto& point : simple) {
+                    data.add({point.x(), point.y(), order++, piece},
+                             {to_string(span.phase), phase_word(span.phase)});
+                }
+            }
+        }
+    }
+    return data;
+}
+
+VegaJson encoding_of(const Square& square) {
+    const auto axis = [&](std::string_view field, std::string_view title, double middle_m) {
+        return quantity(field, title,
+                        {{"scale",
+                          {{"domain", {middle_m - square.half_m, middle_m + square.half_m}},
+                           {"nice", false},
+                           {"zero", false}}}});
+    };
+    const VegaJson colors{{"domain", {"take-off", "cruise", "landing"}}, {"range", "phases"}};
+    const VegaJson dashes{
+        {"domain", {"take-off", "cruise", "landing"}},
+        {"range", {VegaJson::array({6, 2}), VegaJson::array({1, 0}), VegaJson::array({2, 2})}}};
+    return {{"x", axis("east_m", "east [m]", square.east_m)},
+            {"y", axis("north_m", "north [m]", square.north_m)},
+            {"order", {{"field", "order"}, {"type", "quantitative"}}},
+            {"detail", {{"field", "piece"}}},
+            {"color", category("word", "", {{"scale", colors}, {"legend", {{"symbolType", "stroke"}}}})},
+            {"strokeDash", category("word", "", {{"scale", dashes}, {"legend", {{"symbolType", "stroke"}}}})},
+            {"tooltip",
+             {category("word", "phase"), quantity("east_m", "east [m]", {{"format", ".0f"}}),
+              quantity("north_m", "north [m]", {{"format", ".0f"}})}}};
+}
+
+}  // namespace
+
+std::optional<Figure> track_figure(const ReportFlight& flight, const std::string& id) {
+    const auto& series = flight.series;
+    if (series.east_m.empty() || series.north_m.empty()) return std::nullopt;
+    const auto square = square_around(flight);
+    const auto data = track_rows(flight, square.half_m / side);
+    if (data.empty()) return std::nullopt;
+    Figure figure;
+    figure.id = id;
+    figure.caption = "Ground track from above, coloured by phase; broken where samples are missing.";
+    figure.description = fmt::format(
+        "Ground track of flight {} coloured by phase, within {:.0f} m from west to east and from south to "
+        "north.",
+        flight.name, 2.0 * square.half_m);
+    figure.spec = new_spec(figure);
+    figure.spec["data"] = data.json();
+    figure.spec["width"] = side;
+    figure.spec["height"] = side;
+    figure.spec["mark"] = {{"type", "line"},
+                           {"strokeWidth", 1.5},
+                           {"clip", true},
+                           {"point", {{"opacity", 0}, {"size", 50}, {"aria", false}}}};
+    figure.spec["encoding"] = encoding_of(square);
+    return figure;
+}
+
+}  // namespace flightwatt::report

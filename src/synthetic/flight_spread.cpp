@@ -1,0 +1,95 @@
+#include "synthetic/flight_spread.h"
+
+#include "base/error.h"
+#include "mechanical/fourier_basis.h"
+#include "mechanical/least_squares.h"
+
+#include <random>
+
+#include <Eigen/Core>
+
+namespace flightwatt::synthetic {
+namespace {
+
+/// What one flight differs by in one phase.
+struct Deviation {
+    double level = 0.0;  ///< of the band
+    double tilt = 0.0;   ///< of the band, opposite at the two ends of the phase
+    double duration = 0.0;
+};
+
+/// The Fourier series of the phase's frequency next to level and tilt within the band.
+mechanical::FourierModel deviation_series(flight::Phase phase, const mechanical::PhaseModel& model,
+                                          const Deviation& deviation) {
+    constexpr int points = 200;
+    std::vector<double> tau(points);
+    Eigen::VectorXd watts(points);
+    for (int i = 0; i < points; ++i) {
+        const double t = (i + 0.5) / points;
+        tau[static_cast<std::size_t>(i)] = t;
+        watts[i] = band_w(phase, t) * (deviation.level + deviation.tilt * (2.0 * t - 1.0));
+    }
+    const auto order = static_cast<int>(model.fourier.cos_w.size());
+    const double theta_rad = model.fourier.omega_rad_per_s * model.duration_s;
+    const auto fit = mechanical::solve_least_squares(mechanical::fourier_basis(tau, order, theta_rad), watts);
+    if (!fit) throw NoAnswerError("the model's frequency is too low to spread flights about it");
+    mechanical::FourierModel series{model.fourier.omega_rad_per_s, fit->coefficients[0], {}, {}};
+    for (Eigen::Index n = 1; n <= order; ++n) {
+        series.cos_w.push_back(fit->coefficients[2 * n - 1]);
+        series.sin_w.push_back(fit->coefficients[2 * n]);
+    }
+    return series;
+}
+
+mechanical::PhaseModel deviated(flight::Phase phase, const mechanical::PhaseModel& model,
+                                const Deviation& deviation, double sign) {
+    mechanical::PhaseModel flown = model;
+    const auto difference = deviation_series(phase, model, deviation);
+    flown.fourier.a0_w += sign * difference.a0_w;
+    for (std::size_t n = 0; n < difference.cos_w.size(); ++n) {
+        flown.fourier.cos_w[n] += sign * difference.cos_w[n];
+        flown.fourier.sin_w[n] += sign * difference.sin_w[n];
+    }
+    flown.duration_s *= 1.0 + sign * deviation.duration;
+    flown.fourier.omega_rad_per_s *= model.duration_s / flown.duration_s;  // the curve is stretched with it
+    return flown;
+}
+
+}  // namespace
+
+double band_w(flight::Phase phase, double tau) {
+    switch (phase) {
+        case flight::Phase::takeoff:
+            return 0.2 + 1.3 * (1.0 - tau) * (1.0 - tau);
+        case flight::Phase::cruise:
+            return 0.6;
+        case flight::Phase::landing:
+            return 0.7 + 1.8 * (2.0 * tau - 1.0) * (2.0 * tau - 1.0);
+    }
+    return 0.0;
+}
+
+std::vector<flight::PerPhase<mechanical::PhaseModel>> draw_flights(const mechanical::MechanicalModel& model,
+                                                                   std::size_t count, std::uint64_t seed,
+                                                                   const SpreadOptions& options) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal(0.0, 1.0);
+    std::uniform_real_distribution<double> uniform(-options.duration_spread, options.duration_spread);
+    std::vector<flight::PerPhase<mechanical::PhaseModel>> flights;
+    while (flights.size() + 1 < count) {
+        flight::PerPhase<mechanical::PhaseModel> one;
+        flight::PerPhase<mechanical::PhaseModel> opposite;
+        for (const auto phase : flight::all_phases) {
+            const Deviation deviation{options.bands * normal(random), options.bands * 0.5 * normal(random),
+                                      uniform(random)};
+            one[phase] = deviated(phase, model.phases[phase], deviation, 1.0);
+            opposite[phase] = deviated(phase, model.phases[phase], deviation, -1.0);
+        }
+        flights.push_back(std::move(one));
+        flights.push_back(std::move(opposite));
+    }
+    if (flights.size() < count) flights.push_back(model.phases);
+    return flights;
+}
+
+}  // namespace flightwatt::synthetic

@@ -1,0 +1,86 @@
+#include "compute/powprofiler/powprofiler_config.h"
+
+#include "helpers/rejected.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::compute {
+namespace {
+
+using test::rejected;
+using test::scratch_dir;
+using test::write_text;
+
+TEST(PowprofilerConfig, ReadsCombinations) {
+    const auto folder = scratch_dir();
+    const auto config = read_powprofiler_config(
+        write_text(folder / "c.cfg",
+                   "  [settings]  # ours\n frequency = 20\nh=0,01\ndirectory=out\n\n"
+                   "\t[combinations]\r\n# none\n1,5=a.csv=4,0.5 # yes\nb.csv = 1 , 10\n"
+                   "name=out.csv"));
+    EXPECT_EQ(config.sampling_hz, 20.0);
+    ASSERT_EQ(config.combinations.size(), 2U);
+    EXPECT_EQ(config.combinations[0].recording, folder / "1,5=a.csv");
+    EXPECT_EQ(config.combinations[0].qos, (std::vector<double>{4.0, 0.5}));
+    EXPECT_EQ(config.combinations[1].recording, folder / "b.csv");
+    EXPECT_EQ(config.combinations[1].qos, (std::vector<double>{1.0, 10.0}));
+    EXPECT_EQ(config.combinations[1].where.line, 9U);
+}
+
+TEST(PowprofilerConfig, RefusesWhatIsNoCombination) {
+    const auto folder = scratch_dir();
+    const auto of = [&](const std::string& text) {
+        return rejected([&] { read_powprofiler_config(write_text(folder / "c.cfg", text)); }, folder);
+    };
+    EXPECT_EQ(of("[combinations]\na.csv\n"), "c.cfg:2: 'a.csv' is neither [section] nor name=value");
+    EXPECT_EQ(of("[combinations]\na.csv=1,x\n"),
+              "c.cfg:2: 'x' is not a finite number; write decimals with a point, values apart with a comma");
+    EXPECT_EQ(of("[combinations]\na.csv=1,2\nb.csv=1\n"), "c.cfg:3: 1 values, expected 2 as in line 2");
+    EXPECT_EQ(of("a.csv=1,2\n"), "c.cfg:1: 'a.csv=1,2' stands before any [section]");
+    EXPECT_EQ(of("[settings]\nfrequency=-1\n"), "c.cfg:2: frequency = -1 Hz is not positive");
+    EXPECT_EQ(of("[settings]\nfrequencie=1\n"),
+              "c.cfg:2: unknown setting 'frequencie'; known are frequency, h and directory");
+    EXPECT_EQ(of("[components]\nsrc=a\n"),
+              "c.cfg:2: 'src=a' stands in [components], before any [component.NAME]");
+    EXPECT_EQ(of("[other]\n"),
+              "c.cfg:1: unknown section [other]; known are [settings], [components], [component.NAME] and "
+              "[combinations]");
+    EXPECT_EQ(of("[component.a]\nrange=1,2\n"), "c.cfg:2: range = 1,2, expected min, max, step");
+    EXPECT_EQ(
+        of("[component.a]\nrange=4,1,1\n"),
+        "c.cfg:2: range = 4,1,1 is empty or endless; min is 0 or more, max not less, step more than 0, n of "
+        "pow(n) more than 1");
+    EXPECT_EQ(of("[component.a]\nrange=1,4,pow(1)\n").substr(0, 30), "c.cfg:2: range = 1,4,pow(1) is");
+    EXPECT_EQ(of("[component.a]\nsource=b\n"),
+              "c.cfg:2: unknown property 'source' of a component; known are src, range, fixed and runtime");
+    EXPECT_EQ(of("[component.a]\nfixed=b\n"), "c.cfg:1: a has no src, its program");
+    EXPECT_EQ(of("[component.a]\nsrc=b\nruntime=0\n"), "c.cfg:3: runtime is not positive; it counts ms");
+}
+
+TEST(PowprofilerConfig, ReadsComponentsHoweverTheyAreFormatted) {
+    const auto folder = scratch_dir();
+    const auto config = read_powprofiler_config(write_text(
+        folder / "c.cfg",
+        "\n# an example\n\t   #of comments\n  [settings]    #still!\n frequency  =  \t5\nh=0,01\n"
+        "directory   =/home/profiles\n[components] # ###\n[component.matrix-mult]\nsrc=/home/user/mult\n"
+        "\trange=64,512,pow(2)\n\t[component.yolo]\n\tsrc\t=\t /opt/yolo \t\n runtime = 1500\nrange= 4 \t ,  "
+        "12, 4\n"
+        "\tfixed   =\t image-file/image.jpg\t# the image\n range =  0,4,pow(2)\n\t# end"));
+    EXPECT_EQ(config.sampling_hz, 5.0);
+    ASSERT_EQ(config.components.size(), 2U);
+    const auto& mult = config.components[0];
+    EXPECT_EQ(mult.name, "matrix-mult");
+    EXPECT_EQ(mult.source, "/home/user/mult");
+    EXPECT_FALSE(mult.runtime_s);
+    ASSERT_EQ(mult.arguments.size(), 1U);
+    EXPECT_EQ(mult.arguments[0].values, (std::vector<double>{64, 128, 256, 512}));
+    const auto& yolo = config.components[1];
+    EXPECT_EQ(yolo.runtime_s, 1.5);
+    ASSERT_EQ(yolo.arguments.size(), 3U);
+    EXPECT_EQ(yolo.arguments[0].values, (std::vector<double>{4, 8, 12}));
+    EXPECT_EQ(yolo.arguments[1].fixed, "image-file/image.jpg");
+    EXPECT_EQ(yolo.arguments[2].values, (std::vector<double>{0, 2, 4}));
+}
+
+}  // namespace
+}  // namespace flightwatt::compute

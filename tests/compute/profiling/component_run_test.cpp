@@ -1,0 +1,171 @@
+// What becomes of components that do not behave: each is recorded, and nothing of it stays behind.
+
+#include "compute/profiling/component_run.h"
+
+#include "compute/processes/supervised_processes.h"
+#include "helpers/running_program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::compute {
+namespace {
+
+using testing::HasSubstr;
+
+PowerSampler constant_sampler(double power_w) {
+    PowerSampler sampler;
+    sampler.read = [power_w] {
+        return std::vector<PowerReading>{{std::chrono::steady_clock::now(), power_w}};
+    };
+    return sampler;
+}
+
+class MisbehavingComponent : public testing::Test {
+  protected:
+    std::string marker = test::new_marker();
+
+    /// Runs a shell script that names the marker wherever it sleeps.
+    ComponentRun run(const std::string& script, const ProfileTiming& timing) const {
+        auto sampler = constant_sampler(3.0);
+        RunFrame frame;
+        frame.sampler = &sampler;
+        frame.interval_s = 0.01;
+        frame.patience_s = 0.2;
+        auto whole = script;
+        for (auto at = whole.find("FOREVER"); at != std::string::npos; at = whole.find("FOREVER")) {
+            whole.replace(at, 7, "sleep " + marker);
+        }
+        return run_component({{"sh", "-c", whole}}, timing, frame);
+    }
+    void expect_nothing_left() const { EXPECT_EQ(test::processes_with(marker), 0); }
+};
+
+constexpr ProfileTiming short_time{0.15, 0.05, 600.0};
+constexpr ProfileTiming until_it_ends{std::nullopt, 0.0, 0.3};
+
+TEST_F(MisbehavingComponent, IsSampledForItsTimeAfterTheWarmUp) {
+    const auto done = run("FOREVER", short_time);
+    EXPECT_EQ(done.status, RunStatus::ok) << done.note;
+    EXPECT_NEAR(done.duration_s, 0.15, 1e-9);
+    ASSERT_FALSE(done.trace.time_s.empty());
+    EXPECT_GE(done.trace.time_s.front(), 0.05);
+    EXPECT_LE(done.trace.time_s.back(), 0.2);
+    EXPECT_GE(done.trace.time_s.size(), 3U);
+    expect_nothing_left();
+}
+
+TEST_F(MisbehavingComponent, MayEndByItself) {
+    const auto done = run("sleep 0.1", until_it_ends);
+    EXPECT_EQ(done.status, RunStatus::ok) << done.note;
+    EXPECT_GT(done.duration_s, 0.09);
+    EXPECT_LT(done.duration_s, 0.3);
+}
+
+TEST_F(MisbehavingComponent, Hangs) {
+    const auto done = run("FOREVER", until_it_ends);
+    EXPECT_EQ(done.status, RunStatus::timed_out);
+    EXPECT_EQ(done.note, "still ran after 0.3 s");
+    expect_nothing_left();
+}
+
+TEST_F(MisbehavingComponent, HangsAndIgnoresSigterm) {
+    const auto done = run("trap '' TERM; FOREVER; FOREVER", until_it_ends);
+    EXPECT_EQ(done.status, RunStatus::timed_out);
+    EXPECT_THAT(done.note, HasSubstr("did not answer SIGTERM, killed"));
+    expect_nothing_left();
+}
+
+TEST_F(MisbehavingComponent, Crashes) {
+    EXPECT_EQ(run("exit 3", short_time).note, "exit code 3");
+    const auto crashed = run("kill -SEGV $$", short_time);
+    EXPECT_EQ(crashed.status, RunStatus::failed);
+    EXPECT_EQ(crashed.note, "killed by SIGSEGV");
+    EXPECT_EQ(run("exit 0", short_time).status, RunStatus::ended_early);
+}
+
+TEST_F(MisbehavingComponent, LeavesAChildBehind) {
+    const auto done = run("FOREVER & exit 1", short_time);
+    EXPECT_EQ(done.status, RunStatus::failed);
+    EXPECT_EQ(done.note, "exit code 1; left 1 process behind, ended");
+    expect_nothing_left();
+}
+
+TEST_F(MisbehavingComponent, ForksTwiceIntoASessionOfItsOwn) {
+    const auto done =
+        run("setsid sh -c 'trap \"\" TERM; (FOREVER; FOREVER) & exit 0' & sleep 0.1", until_it_ends);
+    EXPECT_EQ(done.status, RunStatus::ok) << done.note;
+    EXPECT_THAT(done.note, HasSubstr("behind, ended; did not answer SIGTERM, killed"));
+    expect_nothing_left();
+}
+
+TEST_F(MisbehavingComponent, ForksOnAndOn) {
+    run("while :; do FOREVER & sleep 0.005; done", short_time);
+    expect_nothing_left();
+}
+
+TEST(ComponentRun, CannotBeStarted) {
+    auto sampler = constant_sampler(3.0);
+    RunFrame frame;
+    frame.sampler = &sampler;
+    const auto done = run_component({{"there-is-no-such-component"}}, short_time, frame);
+    EXPECT_EQ(done.status, RunStatus::not_started);
+    EXPECT_EQ(done.note, "cannot be started: No such file or directory");
+}
+
+TEST(ComponentRun, EndsWithTheFirstOfThoseThatRunTogether) {
+    auto sampler = constant_sampler(3.0);
+    RunFrame frame;
+    frame.sampler = &sampler;
+    const auto marker = test::new_marker();
+    const auto done = run_component({{"sleep", marker}, {"sleep", "0.1"}}, {std::nullopt, 0.0, 9.0}, frame);
+    EXPECT_EQ(done.status, RunStatus::ok) << done.note;
+    EXPECT_LT(done.duration_s, 5.0);
+    EXPECT_EQ(test::processes_with(marker), 0);
+}
+
+TEST(ComponentRun, ASamplerThatBreaksLeavesNothingRunning) {
+    PowerSampler sampler;
+    int calls = 0;
+    sampler.read = [&calls]() -> std::vector<PowerReading> {
+        if (++calls < 3) return {};
+        throw NoAnswerError("the meter is gone");
+    };
+    RunFrame frame;
+    frame.sampler = &sampler;
+    frame.interval_s = 0.01;
+    const auto marker = test::new_marker();
+    EXPECT_THROW(run_component({{"sleep", marker}}, short_time, frame), NoAnswerError);
+    EXPECT_EQ(test::processes_with(marker), 0);
+}
+
+TEST(ComponentRun, OfARecording) {
+    const PowerTrace recording{{10.0, 10.5, 11.0, 11.5, 12.0}, {1, 2, 3, 4, 5}};
+    const auto all = run_of_recording(recording, {}, 0.1);
+    EXPECT_EQ(all.trace.time_s.size(), 5U);
+    EXPECT_DOUBLE_EQ(all.duration_s, 2.5);
+    const auto part = run_of_recording(recording, {1.0, 0.5, 600.0}, 0.1);
+    EXPECT_EQ(part.status, RunStatus::ok);
+    EXPECT_EQ(part.trace.power_w, (std::vector<double>{2, 3, 4}));
+    EXPECT_EQ(run_of_recording(recording, {9.0, 0.5, 600.0}, 0.1).status, RunStatus::ended_early);
+    EXPECT_EQ(run_of_recording(recording, {1.0, 9.0, 600.0}, 0.1).status, RunStatus::no_samples);
+    EXPECT_DOUBLE_EQ(run_of_recording({{0.0}, {4.0}}, {}, 0.1).duration_s, 0.1);
+}
+
+/// What even SIGKILL of the profiler itself must not leave.
+TEST(SupervisedProcesses, EndWithTheirOwner) {
+    const auto marker = test::new_marker();
+    const auto child = ::fork();
+    if (child == 0) {
+        SupervisedProcesses processes(
+            {{"sh", "-c", "trap '' TERM; setsid sleep " + marker + " & sleep " + marker}}, {});
+        while (true) ::pause();
+    }
+    ASSERT_TRUE(test::wait_until([&] { return test::processes_with(marker) >= 3; }));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    EXPECT_TRUE(test::wait_until([&] { return test::processes_with(marker) == 0; }));
+}
+
+}  // namespace
+}  // namespace flightwatt::compute

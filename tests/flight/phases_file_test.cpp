@@ -1,0 +1,42 @@
+#include "flight/phases_file.h"
+
+#include "base/atomic_file.h"
+#include "flight/flight_reader.h"
+#include "flight/phase_statistics.h"
+#include "helpers/rejected.h"
+#include "helpers/test_paths.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+TEST(PhasesCsvReader, ReadsBackWhatWasWritten) {
+    const auto series = read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
+    const auto written = phases_csv(series, segment(series));
+    const auto file = test::scratch_dir() / "phases.csv";
+    write_file_atomically(file, written);
+    const auto phases = read_phases_csv(file);
+    ASSERT_EQ(phases.sorties.size(), 1U);
+    EXPECT_EQ(phases_csv(series, phases), written);
+}
+
+std::string refusal(const std::string& from, const std::string& to) {
+    const auto series = read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
+    auto text = phases_csv(series, segment(series));
+    text.replace(text.find(from), from.size(), to);
+    const auto file = test::scratch_dir() / "phases.csv";
+    write_file_atomically(file, text);
+    return test::rejected([&] { read_phases_csv(file); });
+}
+
+TEST(PhasesCsvReader, RefusesWhatIsNoPhase) {
+    EXPECT_THAT(refusal("1,cruise", "1,glide"), testing::HasSubstr("phase is 'glide', expected takeoff"));
+    EXPECT_THAT(refusal("1,cruise", "3,cruise"), testing::HasSubstr("sortie is '3', expected sorties"));
+    EXPECT_THAT(refusal(",true,", ",perhaps,"), testing::HasSubstr("complete is 'perhaps'"));
+    EXPECT_THAT(refusal("start_mode", "start_mood"), testing::HasSubstr("start_mode"));
+}
+
+}  // namespace
+}  // namespace flightwatt::flight

@@ -1,0 +1,125 @@
+#include "flight/power_check.h"
+
+#include "flight/flight_reader.h"
+#include "flight/telemetry_series.h"
+#include "helpers/test_paths.h"
+#include "synthetic/synthetic_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+FlightSeries sound_flight() {
+    synthetic::SyntheticFlight flight;
+    flight.power_w = [](Phase, double tau) { return 25.0 + 5.0 * tau; };
+    const auto log = make_synthetic_log(plain_scenario(flight), {}, "x", "", 1);
+    return flight_series(
+        parse_telemetry(log.data, "x.data", telemetry::parse_log_configuration(log.log, "x.log"),
+                        flight_messages()),
+        "7");
+}
+
+TEST(PowerReport, FindsASoundRecordSound) {
+    const auto series = sound_flight();
+    const auto report = examine_power(series, segment(series));
+    EXPECT_EQ(report.origin, "measured by a sensor");
+    ASSERT_TRUE(report.idle.has_value());
+    EXPECT_NEAR(report.idle->mean_a, synthetic::SyntheticSensors{}.idle_current_a, 0.001);
+    EXPECT_NEAR(report.idle->deviation_a, synthetic::SyntheticSensors{}.current_noise_a, 0.0005);
+    ASSERT_TRUE(report.energy_closure_percent && report.charge_closure_percent);
+    EXPECT_NEAR(*report.energy_closure_percent, 0.0, 0.2);
+    EXPECT_NEAR(*report.charge_closure_percent, 0.0, 0.2);
+    EXPECT_FALSE(report.gaps.empty()) << "the made-up link has bursts";
+    EXPECT_THAT(report.absurdities, IsEmpty());
+}
+
+std::vector<std::string> absurdities_after(const std::function<void(FlightSeries&)>& spoil) {
+    auto series = sound_flight();
+    const auto phases = segment(series);
+    spoil(series);
+    return examine_power(series, phases).absurdities;
+}
+
+TEST(PowerReport, NamesWhatCannotBe) {
+    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+                    for (std::size_t i = 0; i < s.time_s.size(); ++i) {
+                        s.current_a[i] += 30.0;
+                        s.power_w[i] = s.voltage_v[i] * s.current_a[i];
+                    }
+                }),
+                Contains(HasSubstr("more than 5 A in 100 % of the samples on the ground")));
+    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+                    for (auto& power : s.power_w) power *= 1.5;
+                }),
+                Contains("power is 50 % away from voltage times current"));
+    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+                    for (std::size_t i = s.time_s.size() / 2; i < s.time_s.size(); ++i) s.energy_wh[i] = 0.0;
+                }),
+                Contains(HasSubstr("the energy counter ran back by")));
+    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+                    for (auto* channel : {&s.power_w, &s.current_a})
+                        std::fill(channel->begin(), channel->end(), 2.0);
+                    s.voltage_v.clear();
+                }),
+                Contains("power does not change in flight"));
+}
+
+TEST(PowerReport, JudgesAgainstTheCounterInFlightAlone) {
+    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+                    for (std::size_t i = 0; i < s.time_s.size(); i += 50)
+                        s.power_w[i] = s.current_a[i] = 4000.0;
+                    s.voltage_v.clear();
+                }),
+                Contains(HasSubstr("away from the on-board energy counter")));
+    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+                    for (auto& power : s.power_w) power = -power;
+                }),
+                Contains("power is negative on average in flight"));
+    // A pack that is changed on the ground before lift-off takes the counters with it.
+    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+                    for (std::size_t i = 0; i < 10; ++i) s.energy_wh[i] = s.charge_ah[i] = 30.0;
+                }),
+                IsEmpty());
+}
+
+TEST(PowerReport, TakesTheIdleCurrentOutOnlyWhenAsked) {
+    auto series = sound_flight();
+    const auto before = series;
+    const auto report = examine_power(series, segment(series));
+    correct_idle_offset(series, std::nullopt);
+    EXPECT_EQ(series.power_w, before.power_w);
+    correct_idle_offset(series, report.idle);
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        EXPECT_NEAR(series.current_a[i], before.current_a[i] - report.idle->mean_a, 1e-12);
+        EXPECT_NEAR(series.power_w[i], before.power_w[i] - report.idle->mean_a * before.voltage_v[i], 1e-9);
+    }
+    EXPECT_THAT(series.warnings, Contains(HasSubstr("was taken out")));
+}
+
+TEST(PowerReport, ClosesOnTheRealFlights) {
+    FLIGHTWATT_NEEDS_SHARED();
+    for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
+        SCOPED_TRACE(name);
+        const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
+        const auto report = examine_power(series, segment(series));
+        EXPECT_EQ(report.origin, "measured by a sensor");
+        EXPECT_THAT(report.absurdities, IsEmpty());
+        ASSERT_TRUE(report.energy_closure_percent.has_value());
+        EXPECT_LT(std::abs(*report.energy_closure_percent), 0.5);
+        ASSERT_TRUE(report.idle.has_value());
+        EXPECT_LT(std::abs(report.idle->mean_a), 0.1);
+    }
+}
+
+}  // namespace
+}  // namespace flightwatt::flight

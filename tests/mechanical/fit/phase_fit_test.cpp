@@ -1,0 +1,267 @@
+#include "mechanical/fit/phase_fit.h"
+
+#include "base/error.h"
+#include "helpers/made_up_flights.h"
+#include "mechanical/fit/fourier_residual.h"
+#include "mechanical/least_squares.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+template <typename Error>
+std::string message_of(const std::vector<PhaseSamples>& flights, const PhaseFitOptions& options = {}) {
+    try {
+        fit_phase(flight::Phase::cruise, flights, options);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "fitted without complaint";
+}
+
+/// The least standard deviation that an unbiased estimate of theta can have (Cramer and Rao).
+double least_deviation_rad(const PhaseModel& phase, const PhaseSamples& samples, double noise_w) {
+    Eigen::VectorXd coefficients(coefficient_count(static_cast<int>(phase.fourier.cos_w.size())));
+    coefficients(0) = phase.fourier.a0_w;
+    for (std::size_t n = 0; n < phase.fourier.cos_w.size(); ++n) {
+        coefficients(static_cast<Eigen::Index>(2 * n + 1)) = phase.fourier.cos_w[n];
+        coefficients(static_cast<Eigen::Index>(2 * n + 2)) = phase.fourier.sin_w[n];
+    }
+    const auto at = fourier_residual({samples.tau, samples.power_w}, test::theta_rad(phase), coefficients);
+    return noise_w / std::sqrt(solve_least_squares(at.by_coefficients, at.by_theta)->residual_square_sum);
+}
+
+TEST(PhaseFit, RecoversTableOneFromExactSamples) {
+    for (const auto phase : flight::all_phases) {
+        for (const double interval_s : {0.1, 1.1}) {
+            const auto published = test::published_model().phases[phase];
+            std::mt19937 random(1);
+            const auto samples =
+                test::record(published, {published.duration_s, interval_s, 0.0, 0.0}, random);
+            const auto fit = fit_phase(phase, std::vector{samples});
+            EXPECT_NEAR(fit.theta_rad, test::theta_rad(published), 1e-8) << to_string(phase);
+            EXPECT_LT(fit.rms_w, 1e-9);
+            EXPECT_EQ(fit.range.at_bound, "none");
+            const auto& curve = fit.flights.front().fourier;
+            EXPECT_NEAR(curve.omega_rad_per_s, published.fourier.omega_rad_per_s, 1e-9);
+            EXPECT_NEAR(curve.a0_w, published.fourier.a0_w, 1e-6);
+            for (std::size_t n = 0; n < 3; ++n) {
+                EXPECT_NEAR(curve.cos_w[n], published.fourier.cos_w[n], 1e-6);
+                EXPECT_NEAR(curve.sin_w[n], published.fourier.sin_w[n], 1e-6);
+            }
+        }
+    }
+}
+
+// Amplitudes are such that one per cent is three deviations or more of the best possible estimate at one
+// period.
+struct Series {
+    const char* name;
+    std::vector<double> cos_w;
+    std::vector<double> sin_w;
+};
+
+class FrequencyIdentification : public testing::TestWithParam<Series> {};
+
+TEST_P(FrequencyIdentification, IsWithinOnePerCentEveryTime) {
+    for (const double periods : {1.0, 1.3, 4.2, 10.0}) {
+        for (unsigned seed = 1; seed <= 10; ++seed) {
+            std::mt19937 random(seed);
+            const auto phase = test::cruise_of(periods, GetParam().cos_w, GetParam().sin_w);
+            const auto samples = test::record(phase, {600.0, 0.1, 1.5, 0.0}, random);
+            const auto fit = fit_phase(flight::Phase::cruise, std::vector{samples});
+            const auto& found = fit.flights.front().fourier;
+            EXPECT_NEAR(found.omega_rad_per_s / phase.fourier.omega_rad_per_s, 1.0, 0.01)
+                << periods << " periods, seed " << seed;
+            EXPECT_NEAR(fit.rms_w, 1.5, 0.05);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    PhaseFit, FrequencyIdentification,
+    testing::Values(Series{"CruiseOfTableOneTimesFour",
+                           {4 * 0.3737, 4 * 0.6513, 4 * 0.5039},
+                           {4 * 1.194, 4 * 0.2954, 4 * -0.2864}},
+                    Series{"FundamentalWithWeakHarmonics", {9.0, 0.6, 0.3}, {6.0, -0.3, 0.3}}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(PhaseFit, EstimatesTheFrequencyAsWellAsTheNoiseAllows) {
+    const auto published = test::published_model().phases[flight::Phase::cruise];
+    double square_sum = 0.0;
+    double least_rad = 0.0;
+    constexpr unsigned seeds = 60;
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+        std::mt19937 random(seed);
+        const auto samples = test::record(published, {600.0, 1.1, 0.3, 0.0}, random);
+        const auto fit = fit_phase(flight::Phase::cruise, std::vector{samples});
+        square_sum += std::pow(fit.theta_rad - test::theta_rad(published), 2);
+        least_rad = least_deviation_rad(published, samples, 0.3);
+    }
+    EXPECT_LT(std::sqrt(square_sum / seeds), 1.3 * least_rad);
+    EXPECT_GT(std::sqrt(square_sum / seeds), 0.7 * least_rad);
+}
+
+TEST(PhaseFit, GapsAndUnequalStepsDoNotMatter) {
+    const auto published = test::published_model().phases[flight::Phase::cruise];
+    std::mt19937 random(3);
+    auto samples = test::record(published, {600.0, 1.1, 0.0, 0.5}, random);
+    const auto in_gap = [](double tau) { return tau > 0.4 && tau < 0.44; };
+    PhaseSamples kept{samples.flight, samples.duration_s, {}, {}};
+    for (std::size_t i = 0; i < samples.tau.size(); ++i) {
+        if (in_gap(samples.tau[i])) continue;
+        kept.tau.push_back(samples.tau[i]);
+        kept.power_w.push_back(samples.power_w[i]);
+    }
+    EXPECT_NEAR(fit_phase(flight::Phase::cruise, std::vector{kept}).theta_rad, test::theta_rad(published),
+                1e-7);
+}
+
+TEST(PhaseFit, AThousandfoldPowerHasThousandfoldCoefficients) {
+    for (const auto phase : flight::all_phases) {
+        const auto flights = test::record_flights(phase, 3, 0.1, 5);
+        auto thousandfold = flights;
+        for (auto& flight : thousandfold) {
+            for (double& power : flight.power_w) power *= 1000.0;
+        }
+        const auto fit = fit_phase(phase, flights);
+        const auto scaled = fit_phase(phase, thousandfold);
+        EXPECT_NEAR(scaled.theta_rad, fit.theta_rad, 1e-6);
+        EXPECT_NEAR(scaled.rms_w, 1000.0 * fit.rms_w, 1e-6 * scaled.rms_w);
+        for (std::size_t i = 0; i < fit.flights.size(); ++i) {
+            const auto& small = fit.flights[i].fourier;
+            const auto& large = scaled.flights[i].fourier;
+            EXPECT_NEAR(large.a0_w, 1000.0 * small.a0_w, 1e-5 * large.a0_w);
+            for (std::size_t n = 0; n < 3; ++n)
+                EXPECT_NEAR(large.cos_w[n], 1000.0 * small.cos_w[n], 1e-5 * large.a0_w);
+        }
+    }
+}
+
+TEST(PhaseFit, TheOrderOfTheFlightsDoesNotMatter) {
+    const auto flights = test::record_flights(flight::Phase::landing, 5, 0.1, 6);
+    auto turned = flights;
+    std::rotate(turned.begin(), turned.begin() + 2, turned.end());
+    const auto fit = fit_phase(flight::Phase::landing, flights);
+    const auto again = fit_phase(flight::Phase::landing, turned);
+    EXPECT_NEAR(again.theta_rad, fit.theta_rad, 1e-6);
+    EXPECT_NEAR(again.rms_w, fit.rms_w, 1e-9);
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(again.flights[i].flight, fit.flights[(i + 2) % 5].flight);
+        EXPECT_NEAR(again.flights[i].fourier.a0_w, fit.flights[(i + 2) % 5].fourier.a0_w, 1e-5);
+    }
+}
+
+TEST(PhaseFit, TheSharedFrequencyIsTheSameForTwinsAsForOne) {
+    const auto one = test::record_flights(flight::Phase::cruise, 1, 0.5, 7);
+    std::vector<PhaseSamples> twins{one.front(), one.front()};
+    twins[1].flight = "twin";
+    EXPECT_NEAR(fit_phase(flight::Phase::cruise, twins).theta_rad,
+                fit_phase(flight::Phase::cruise, one).theta_rad, 1e-6);
+}
+
+TEST(PhaseFit, ReportsThatItStandsAtABound) {
+    const auto flights = test::record_flights(flight::Phase::cruise, 2, 0.0, 8);  // theta is 5.04
+    const auto low = fit_phase(flight::Phase::cruise, flights, {.low_rad = 5.3});
+    EXPECT_EQ(low.range.at_bound, "low");
+    EXPECT_NEAR(low.theta_rad, 5.3, 1e-5);
+    const auto high = fit_phase(flight::Phase::cruise, flights, {.high_periods = 0.75});
+    EXPECT_EQ(high.range.at_bound, "high");
+    EXPECT_NEAR(high.theta_rad, 1.5 * std::numbers::pi, 1e-5);
+}
+
+TEST(PhaseFit, TheRangeEndsWhereTheHighestHarmonicOutrunsTheSamples) {
+    std::mt19937 random(1);
+    const auto phase = test::cruise_of(2.0, {3.0}, {2.0});
+    const auto coarse = test::record(phase, {600.0, 2.0, 0.0, 0.0}, random);
+    const auto fine = test::record(phase, {600.0, 0.1, 0.0, 0.0}, random);
+    EXPECT_NEAR(admissible_range(std::vector{fine, coarse}, {}).high_rad, std::numbers::pi * 300.0 / 3.0,
+                1e-6);
+    EXPECT_NEAR(admissible_range(std::vector{fine, coarse}, {.order = 5}).high_rad, std::numbers::pi * 60.0,
+                1e-6);
+    EXPECT_NEAR(admissible_range(std::vector{fine}, {}).high_rad, 240.0 * std::numbers::pi, 1e-9);  // the cap
+    EXPECT_EQ(admissible_range(std::vector{fine}, {}).low_rad, std::numbers::pi);
+}
+
+TEST(PhaseFit, ConstantPowerIsItsOwnMean) {
+    PhaseSamples samples{"flight", 60.0, {}, {}};
+    for (int i = 0; i < 50; ++i) {
+        samples.tau.push_back((i + 0.5) / 50.0);
+        samples.power_w.push_back(21.7);
+    }
+    const auto fit = fit_phase(flight::Phase::cruise, std::vector{samples});
+    EXPECT_NEAR(fit.rms_w, 0.0, 1e-12);
+    EXPECT_NEAR(fit.flights.front().fourier.a0_w, 21.7, 1e-12);
+    for (const double w : fit.flights.front().fourier.cos_w) EXPECT_EQ(w, 0.0);
+}
+
+TEST(PhaseFit, OtherOrdersAreFittedToo) {
+    std::mt19937 random(1);
+    const auto phase = test::cruise_of(3.3, {3.0, 1.0, 0.5, 0.7, 0.4}, {2.0, -1.0, 0.5, 0.1, -0.6});
+    const auto samples = test::record(phase, {600.0, 1.0, 0.0, 0.0}, random);
+    const auto fit = fit_phase(flight::Phase::cruise, std::vector{samples}, {.order = 5});
+    EXPECT_NEAR(fit.theta_rad, test::theta_rad(phase), 1e-7);
+    EXPECT_NEAR(fit.flights.front().fourier.sin_w[4], -0.6, 1e-7);
+    EXPECT_LT(fit.rms_w, 1e-9);
+}
+
+TEST(PhaseFit, RefusesTooFewSamplesNamingTheFlight) {
+    auto flights = test::record_flights(flight::Phase::cruise, 2, 0.5, 9);
+    flights[1].tau.resize(7);
+    flights[1].power_w.resize(7);
+    EXPECT_EQ(samples_needed(3), 8U);
+    EXPECT_THAT(message_of<NoAnswerError>(flights),
+                AllOf(HasSubstr("'flight2' has 7 samples in cruise"), HasSubstr("order 3 needs 8")));
+    EXPECT_THAT(message_of<NoAnswerError>({}), HasSubstr("no flight has a cruise"));
+}
+
+TEST(PhaseFit, RefusesSamplesThatLeaveNoRange) {
+    PhaseSamples samples{"sparse", 60.0, {}, {}};
+    for (int i = 0; i < 12; ++i) {
+        samples.tau.push_back(0.5 * (i % 3));
+        samples.power_w.push_back(20.0 + i);
+    }
+    EXPECT_THAT(message_of<NoAnswerError>({samples}),
+                AllOf(HasSubstr("cruise"), HasSubstr("'sparse'"), HasSubstr("too sparse")));
+}
+
+TEST(PhaseFit, RefusesWhatAreNoSamples) {
+    const auto sound = test::record_flights(flight::Phase::cruise, 1, 0.5, 10);
+    auto flights = sound;
+    flights[0].power_w.pop_back();
+    EXPECT_THAT(message_of<InputError>(flights), HasSubstr("cruise: 452 times and 451 powers"));
+    try {
+        fit_phase(flight::Phase::cruise, flights);
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.where().file, "flight1");
+    }
+    flights = sound;
+    flights[0].tau[2] = 1.5;
+    EXPECT_THAT(message_of<InputError>(flights), HasSubstr("sample 3 at 1.5 of the phase, expected 0 to 1"));
+    flights = sound;
+    flights[0].power_w[4] = std::nan("");
+    EXPECT_THAT(message_of<InputError>(flights), HasSubstr("sample 5: power_w is not finite: nan"));
+    flights = sound;
+    flights[0].duration_s = 0.0;
+    EXPECT_THAT(message_of<InputError>(flights), HasSubstr("duration_s = 0 is not positive"));
+}
+
+TEST(PhaseFit, RefusesOptionsThatMakeNoSense) {
+    const auto flights = test::record_flights(flight::Phase::cruise, 1, 0.5, 11);
+    EXPECT_THAT(message_of<UsageError>(flights, {.order = -1}), HasSubstr("expected 0 to 8"));
+    EXPECT_THAT(message_of<UsageError>(flights, {.order = 9}), HasSubstr("expected 0 to 8"));
+    EXPECT_THAT(message_of<UsageError>(flights, {.low_rad = 0.0}), HasSubstr("expected more than 0"));
+    EXPECT_THAT(message_of<UsageError>(flights, {.high_periods = 0.4}), HasSubstr("0.4 periods"));
+}
+
+}  // namespace
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,81 @@
+#include "mechanical/prediction/level_spread.h"
+
+#include "helpers/made_up_flights.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+using test::cruise_of;
+using test::record;
+
+PhaseSamples constant(double power_w, double duration_s) {
+    PhaseSamples samples{"constant", duration_s, {}, {}};
+    for (int i = 0; i < 200; ++i) {
+        samples.tau.push_back((i + 0.5) / 200.0);
+        samples.power_w.push_back(power_w);
+    }
+    return samples;
+}
+
+TEST(MeanPower, WeighsSamplesByTime) {
+    const PhaseSamples samples{"f", 100.0, {0.1, 0.2, 0.8}, {10.0, 10.0, 20.0}};
+    EXPECT_NEAR(mean_power_w(samples), 10.0 * 0.2 + 15.0 * 0.6 + 20.0 * 0.2, 1e-12);
+}
+
+TEST(LevelSpread, NeedsTwoFlights) {
+    const std::vector flights{constant(20.0, 600.0)};
+    EXPECT_FALSE(level_spread(cruise_of(1.0, {1.0}, {0.0}), flights).has_value());
+}
+
+TEST(LevelSpread, OfConstantFlightsAboutAConstantIsTheirLevelsAlone) {
+    const std::vector flights{constant(20.0, 600.0), constant(22.0, 600.0), constant(27.0, 700.0)};
+    const auto spread = level_spread(cruise_of(1.0, {0.0}, {0.0}), flights).value();
+    EXPECT_EQ(spread.flights, 3u);
+    EXPECT_NEAR(spread.level_sd_w, std::sqrt(13.0), 1e-9);
+    EXPECT_NEAR(spread.drift_sd_w, 0.0, 1e-6);
+}
+
+/// A drift that was made with known variance and correlation is found again.
+TEST(LevelSpread, FindsTheDriftThatWasMade) {
+    const auto phase = cruise_of(1.0, {2.0}, {-1.0});
+    constexpr double interval_s = 1.0;
+    constexpr double sd_w = 4.0;
+    constexpr double correlation_s = 60.0;
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal(0.0, 1.0);
+    std::vector<PhaseSamples> flights;
+    for (int f = 0; f < 20; ++f) {
+        auto flight = record(phase, {1500.0, interval_s, 0.0, 0.0}, random);
+        const double kept = std::exp(-interval_s / correlation_s);
+        double drift_w = sd_w * normal(random);
+        for (double& power : flight.power_w) {
+            drift_w = kept * drift_w + std::sqrt(1.0 - kept * kept) * sd_w * normal(random);
+            power += drift_w;
+        }
+        flights.push_back(std::move(flight));
+    }
+    const auto spread = level_spread(phase, flights).value();
+    // The larger of two estimates: not less than was made, and by halves known to a sixth.
+    EXPECT_GT(spread.drift_sd_w, 0.9 * sd_w);
+    EXPECT_LT(spread.drift_sd_w, 1.4 * sd_w);
+    EXPECT_NEAR(spread.correlation_s, correlation_s, 0.25 * correlation_s);
+}
+
+TEST(AirspeedLaw, FindsTheCoefficientAndItsSpread) {
+    std::vector flights{constant(10.0, 600.0), constant(33.0, 600.0), constant(99.0, 600.0)};
+    EXPECT_FALSE(airspeed_law(flights).has_value());
+    flights[0].airspeed_cubed_m3_per_s3 = 1000.0;
+    EXPECT_FALSE(airspeed_law(flights).has_value());
+    flights[1].airspeed_cubed_m3_per_s3 = 3000.0;
+    const auto law = airspeed_law(flights).value();
+    EXPECT_EQ(law.flights, 2u);
+    EXPECT_NEAR(law.coefficient_w_s3_per_m3, 0.0105, 1e-12);
+    EXPECT_NEAR(law.relative_sd, std::sqrt(0.5) * 0.001 / 0.0105, 1e-9);
+}
+
+}  // namespace
+}  // namespace flightwatt::mechanical

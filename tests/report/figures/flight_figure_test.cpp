@@ -1,0 +1,87 @@
+#include "report/figures/flight_figure.h"
+
+#include "flight/flight_reader.h"
+#include "helpers/test_paths.h"
+#include "report/figures/track_figure.h"
+#include "report/sections/flight_edges.h"
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::report {
+namespace {
+
+ReportFlight sample_flight() {
+    ReportFlight flight;
+    flight.series = flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
+    flight.phases = segment(flight.series);
+    flight.name = flight.series.flight;
+    return flight;
+}
+
+std::size_t lines_of(const VegaJson& layer) {
+    const auto text = layer["data"]["values"].get<std::string>();
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST(FlightFigure, HasEveryChannelAndExplainsItsEdges) {
+    const auto flight = sample_flight();
+    const auto model =
+        mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
+    const auto figure = flight_figure(flight, model, "flight-1-power");
+    const auto& panels = figure.spec["vconcat"];
+    ASSERT_EQ(panels.size(), 3U);
+    for (const auto& panel : panels) EXPECT_GE(lines_of(panel["layer"].back()), 500U);
+    const auto power = panels[2]["layer"].back()["data"]["values"].get<std::string>();
+    EXPECT_NE(power.find(",measured"), std::string::npos);
+    EXPECT_NE(power.find(",model"), std::string::npos);
+    const auto edges = figure.spec["datasets"]["edges"].get<std::string>();
+    for (const auto* edge :
+         {"lift-off", "end of take-off", "end of cruise", "touchdown", "TAKEOFF message"}) {
+        EXPECT_NE(edges.find(edge), std::string::npos) << edge;
+    }
+    EXPECT_EQ(std::count(edges.begin(), edges.end(), '\n'), 4);
+    EXPECT_NE(figure.description.find("cruise: 570 s from 92.0 s on, 27.3 W on average"), std::string::npos)
+        << figure.description;
+}
+
+TEST(FlightFigure, SaysWhatTheAutopilotSaidOfEdgesAndWhereTheLogEnds) {
+    auto flight = sample_flight();
+    auto& landing = flight.phases.sorties.front().phases.back();
+    flight.verdicts = {{landing.start.time_s, "agrees with block Survey -> Land (+0.1 s)"}};
+    landing.complete = false;
+    landing.end.time_s = flight.series.time_s.back();
+    const auto table = edge_table(flight);
+    ASSERT_EQ(table.rows.size(), 4U);
+    EXPECT_EQ(table.rows[2].back(), "agrees with block Survey -> Land (+0.1 s)");
+    EXPECT_EQ(table.rows[3].front(), "the log ends");
+    EXPECT_EQ(table.rows[3].back(), "-");
+}
+
+TEST(FlightFigure, DrawsNoChannelThatTheLogLacks) {
+    auto flight = sample_flight();
+    flight.series.throttle_percent.clear();
+    flight.series.east_m.clear();
+    EXPECT_EQ(flight_figure(flight, std::nullopt, "f").spec["vconcat"].size(), 2U);
+    EXPECT_FALSE(track_figure(flight, "t"));
+}
+
+TEST(TrackFigure, IsSquareAndBrokenAtGaps) {
+    const auto flight = sample_flight();
+    const auto figure = track_figure(flight, "t");
+    ASSERT_TRUE(figure);
+    const auto& encoding = figure->spec["encoding"];
+    const auto span = [&](const char* channel) {
+        const auto& domain = encoding[channel]["scale"]["domain"];
+        return domain[1].get<double>() - domain[0].get<double>();
+    };
+    EXPECT_NEAR(span("x"), span("y"), 1e-9);
+    const auto rows = figure->spec["data"]["values"].get<std::string>();
+    EXPECT_NE(rows.find(",10,landing"), std::string::npos) << "three phases and seven gaps are ten pieces";
+    EXPECT_EQ(rows.find(",11,landing"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace flightwatt::report

@@ -1,0 +1,43 @@
+#include "report/figures/profile_figure.h"
+
+#include "compute/profile_reader.h"
+#include "helpers/rejected.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+Figure figure_of(const std::string& csv) {
+    compute::ComputeModel compute;
+    compute.components.push_back(
+        {"detection", compute::read_power_profile(test::write_text(test::scratch_dir() / "p.csv", csv))});
+    return profile_figure(compute, "profile-1");
+}
+
+TEST(ProfileFigure, ShowsIntervalsAndWhatWasInterpolated) {
+    const auto figure = figure_of(
+        "fps,power_w,standard_error_w,source\n1,2,0.5,measured\n2,4,0.25,interpolated\n3,6,0.5,measured\n");
+    const auto& panel = figure.spec["concat"][0];
+    EXPECT_EQ(panel["layer"].size(), 3U) << "line, intervals, points";
+    const auto rows = panel["data"]["values"].get<std::string>();
+    EXPECT_THAT(rows, HasSubstr("2,4,0.25,3.51,4.49,,interpolated"));
+    EXPECT_THAT(figure.caption, HasSubstr("crosses found between them"));
+    EXPECT_THAT(figure.caption, HasSubstr("95 % intervals"));
+    EXPECT_THAT(figure.caption, Not(HasSubstr("without standard errors")));
+}
+
+TEST(ProfileFigure, DrawsNoIntervalWhereNoneIsKnown) {
+    const auto figure = figure_of("fps,power_w\n1,2\n2,4\n");
+    EXPECT_EQ(figure.spec["concat"][0]["layer"].size(), 2U);
+    EXPECT_THAT(figure.caption, HasSubstr("Points were profiled"));
+    EXPECT_THAT(figure.caption, HasSubstr("without standard errors"));
+    EXPECT_THAT(figure.caption, Not(HasSubstr("95 %")));
+}
+
+}  // namespace
+}  // namespace flightwatt::report

@@ -1,0 +1,122 @@
+#include "synthetic/synthetic_log.h"
+
+#include "flight/segmentation.h"
+#include "flight/telemetry_series.h"
+#include "synthetic/log_writer.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::synthetic {
+namespace {
+
+SyntheticFlight flight_at(double power_w) {
+    SyntheticFlight flight;
+    flight.power_w = [power_w](flight::Phase, double) { return power_w; };
+    return flight;
+}
+
+flight::FlightSeries read_back(const SyntheticLog& log) {
+    const auto configuration = telemetry::parse_log_configuration(log.log, "x.log");
+    return flight::flight_series(
+        telemetry::parse_telemetry(log.data, "x.data", configuration, flight::flight_messages()), "7");
+}
+
+TEST(SyntheticLog, IsReadAndSegmentedAsItWasFlown) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const auto flight = flight_at(27.0);
+        const auto series =
+            read_back(make_synthetic_log(plain_scenario(flight), {}, "x", "Made by a test.", seed));
+        EXPECT_TRUE(series.warnings.empty());
+        const auto phases = segment(series);
+        ASSERT_EQ(phases.sorties.size(), 1u) << "seed " << seed;
+        ASSERT_EQ(phases.sorties[0].phases.size(), 3u);
+        for (const auto& span : phases.sorties[0].phases) {
+            EXPECT_NEAR(span.start.time_s, flight.start_s(span.phase), 3.0) << "seed " << seed;
+            EXPECT_NEAR(span.end.time_s, flight.end_s(span.phase), 3.0) << "seed " << seed;
+        }
+        EXPECT_EQ(phases.others.size(), 1u) << "the run-up";
+    }
+}
+
+/// The phases that a scenario's log shows, cut where it begins and ends.
+std::vector<std::vector<std::pair<double, double>>> truth_of(const SyntheticScenario& scenario) {
+    std::vector<std::vector<std::pair<double, double>>> sorties;
+    for (const auto& flight : scenario.flights) {
+        auto& phases = sorties.emplace_back();
+        for (const auto phase : flight::all_phases) {
+            const double start_s = std::max(flight.start_s(phase), scenario.begin_s);
+            const double end_s = std::min(flight.end_s(phase), scenario.end_s);
+            if (end_s > start_s) phases.emplace_back(start_s, end_s);
+        }
+    }
+    return sorties;
+}
+
+TEST(SyntheticLog, HazardsDoNotFoolTheSegmentation) {
+    for (const auto& [name, hazard] : hazards()) {
+        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+            SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+            const auto scenario = scenario_with(flight_at(27.0), hazard);
+            const auto series = read_back(make_synthetic_log(scenario, {}, "x", "", seed));
+            const auto phases = segment(series);
+            const auto truth = truth_of(scenario);
+            ASSERT_EQ(phases.sorties.size(), truth.size());
+            for (std::size_t s = 0; s < truth.size(); ++s) {
+                const auto& spans = phases.sorties[s].phases;
+                ASSERT_EQ(spans.size(), truth[s].size());
+                for (std::size_t p = 0; p < spans.size(); ++p) {
+                    EXPECT_NEAR(spans[p].start.time_s, truth[s][p].first, 3.0) << to_string(spans[p].phase);
+                    EXPECT_NEAR(spans[p].end.time_s, truth[s][p].second, 3.0) << to_string(spans[p].phase);
+                    const bool cut =
+                        truth[s][p].first == scenario.begin_s || truth[s][p].second == scenario.end_s;
+                    EXPECT_EQ(spans[p].complete, !cut) << to_string(spans[p].phase);
+                }
+            }
+        }
+    }
+}
+
+TEST(SyntheticLog, MeasuresThePowerThatWasFlown) {
+    SyntheticSensors sensors;
+    sensors.lost_fraction = 0.0;
+    sensors.current_noise_a = 0.0;
+    const auto flight = flight_at(27.0);
+    const auto series = read_back(make_synthetic_log(plain_scenario(flight), sensors, "x", "", 1));
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+        if (series.time_s[i] < flight.lift_off_s || series.time_s[i] > flight.end_s(flight::Phase::landing))
+            continue;
+        EXPECT_NEAR(series.power_w[i], 27.0, 0.04);
+    }
+}
+
+TEST(SyntheticLog, LosesLinesAtTheRateAskedFor) {
+    SyntheticSensors whole;
+    whole.lost_fraction = 0.0;
+    SyntheticSensors lossy;
+    lossy.lost_fraction = 0.3;
+    const auto all = make_synthetic_log(plain_scenario(flight_at(27.0)), whole, "x", "", 1).data.size();
+    const auto kept = make_synthetic_log(plain_scenario(flight_at(27.0)), lossy, "x", "", 1).data.size();
+    EXPECT_NEAR(static_cast<double>(kept) / static_cast<double>(all), 0.7, 0.1);
+}
+
+TEST(SyntheticLog, SaysThatItIsSyntheticAndRepeatsItself) {
+    const auto log = make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 5);
+    EXPECT_NE(log.data.substr(0, log.data.find('\n')).find("SYNTHETIC"), std::string::npos);
+    EXPECT_NE(log.log.find("SYNTHETIC"), std::string::npos);
+    EXPECT_EQ(make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 5).data,
+              log.data);
+    EXPECT_NE(make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 6).data,
+              log.data);
+}
+
+TEST(OcamlFloat, WritesAsPaparazziDoes) {
+    EXPECT_EQ(ocaml_float(235.0), "235.");
+    EXPECT_EQ(ocaml_float(-0.0), "-0.");
+    EXPECT_EQ(ocaml_float(-3e-06), "-3e-06");
+    EXPECT_EQ(ocaml_float(12.4214591), "12.421459");
+}
+
+}  // namespace
+}  // namespace flightwatt::synthetic
