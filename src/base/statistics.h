@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+/// The statistics of samples and of the normal and Student's t distribution, for every module.
+namespace flightwatt {
+
+/// Confidence level of all intervals that FlightWatt reports.
+inline constexpr double confidence_level = 0.95;
+
+/// Arithmetic mean. `values` must not be empty.
+double mean(std::span<const double> values);
+
+/// Sample variance and standard deviation (n - 1) of 2 values or more.
+double sample_variance(std::span<const double> values);
+double sample_sd(std::span<const double> values);
+
+/// Of an even number of values, the mean of the two middle ones. `values` must not be empty.
+double median(std::vector<double> values);
+
+/// Quantile of values in ascending order, straight lines between them (Hyndman and Fan's type 7). `sorted`
+/// must not be empty; `probability` from 0 to 1.
+double quantile(std::span<const double> sorted, double probability);
+
+/// Quantile of the standard normal distribution; `probability` above 0 and below 1.
+double normal_quantile(double probability);
+
+/// Half width of an interval at `confidence_level`, in standard deviations of a normal error: 1.96.
+double normal_half_width();
+
+/// The same in standard errors, for Student's t; `degrees_of_freedom`, whole or not, count as at least one.
+/// 12.7 for 1, 1.96 for many.
+double student_t_half_width(double degrees_of_freedom);
+
+}  // namespace flightwatt

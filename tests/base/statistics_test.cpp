@@ -1,0 +1,41 @@
+#include "base/statistics.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt {
+namespace {
+
+TEST(Statistics, MomentsOfASample) {
+    const std::vector<double> values{2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0};
+    EXPECT_DOUBLE_EQ(mean(values), 5.0);
+    EXPECT_DOUBLE_EQ(sample_variance(values), 32.0 / 7.0);
+    EXPECT_DOUBLE_EQ(sample_sd(values) * sample_sd(values), 32.0 / 7.0);
+}
+
+TEST(Statistics, TheMedianOfAnEvenNumberIsTheMeanOfTheMiddleTwo) {
+    EXPECT_EQ(median({3.0}), 3.0);
+    EXPECT_EQ(median({5.0, 1.0, 3.0}), 3.0);
+    EXPECT_EQ(median({8.0, 1.0, 2.0, 4.0}), 3.0);
+}
+
+TEST(Statistics, QuantilesLieOnStraightLinesBetweenSortedValues) {
+    const std::vector<double> values{1.0, 2.0, 4.0};
+    EXPECT_EQ(quantile(values, 0.0), 1.0);
+    EXPECT_EQ(quantile(values, 0.25), 1.5);
+    EXPECT_EQ(quantile(values, 0.75), 3.0);
+    EXPECT_EQ(quantile(values, 1.0), 4.0);
+    EXPECT_EQ(quantile(std::vector<double>{7.0}, 0.5), 7.0);
+}
+
+TEST(Statistics, HalfWidthsAsInAnyTable) {
+    EXPECT_NEAR(normal_quantile(0.5), 0.0, 1e-12);
+    EXPECT_NEAR(normal_half_width(), 1.959964, 1e-6);
+    EXPECT_NEAR(student_t_half_width(1.0), 12.7062, 1e-4);
+    EXPECT_NEAR(student_t_half_width(2.0), 4.3027, 1e-4);
+    EXPECT_NEAR(student_t_half_width(5.0), 2.5706, 1e-4);
+    EXPECT_NEAR(student_t_half_width(1e6), normal_half_width(), 1e-4);
+    EXPECT_EQ(student_t_half_width(0.3), student_t_half_width(1.0));
+}
+
+}  // namespace
+}  // namespace flightwatt
