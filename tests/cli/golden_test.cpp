@@ -1,14 +1,14 @@
-// Runs every tests/cli/golden/NAME.cmd with sh and compares what it prints, what it says and its exit code
-// with NAME.stdout, NAME.stderr (no file: nothing) and NAME.exit. FLIGHTWATT_REGENERATE=1 writes them anew.
+// Runs the command of every tests/cli/golden/NAME.case (see helpers/golden_case.h) with sh and compares what it prints
+// and its exit code. FLIGHTWATT_REGENERATE=1 rewrites the cases that differ, and reports every case as skipped. A new
+// case is a file with a command alone, regenerated.
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "helpers/golden_case.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -20,10 +20,12 @@ namespace {
 
 std::filesystem::path golden_dir() { return test::source_dir() / "tests" / "cli" / "golden"; }
 
+std::filesystem::path case_file(const std::string& name) { return golden_dir() / (name + ".case"); }
+
 std::vector<std::string> case_names() {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(golden_dir())) {
-        if (entry.path().extension() == ".cmd") names.push_back(entry.path().stem().string());
+        if (entry.path().extension() == ".case") names.push_back(entry.path().stem().string());
     }
     std::sort(names.begin(), names.end());
     return names;
@@ -33,12 +35,6 @@ bool regenerating() {
     const char* wanted = std::getenv("FLIGHTWATT_REGENERATE");
     return wanted != nullptr && std::string(wanted) == "1";
 }
-
-struct Outcome {
-    std::string out;
-    std::string err;
-    std::string code;
-};
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
     for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
@@ -51,86 +47,83 @@ std::string quoted(const std::filesystem::path& path) {
     return "'" + replaced(path.string(), "'", "'\\''") + "'";
 }
 
-/// Runs the case in an empty folder; what it prints goes beside that folder, so that `ls` shows the case's
+/// Runs the command in an empty folder; what it prints goes beside that folder, so that `ls` shows the case's
 /// own files alone.
-Outcome run_case(const std::string& name) {
+test::Outcome run_command(const std::string& command) {
     const auto scratch = test::scratch_dir();
     const auto work = scratch / "work";
     make_directories(work);
-    const auto bin = test::binary_dir() / "bin";
-    const auto command = "cd " + quoted(work) +
-                         " && LC_ALL=C COLUMNS=80 SOURCE=" + quoted(test::source_dir()) +
-                         " PATH=" + quoted(bin) + ":\"$PATH\" sh " + quoted(golden_dir() / (name + ".cmd")) +
-                         " < /dev/null > ../stdout 2> ../stderr";
-    const int status = std::system(command.c_str());
+    write_file_atomically(scratch / "command.sh", command);
+    const auto line = "cd " + quoted(work) + " && LC_ALL=C COLUMNS=80 SOURCE=" + quoted(test::source_dir()) +
+                      " PATH=" + quoted(test::binary_dir() / "bin") +
+                      ":\"$PATH\" sh ../command.sh < /dev/null > ../stdout 2> ../stderr";
+    const int status = std::system(line.c_str());
     const auto shown = [&](const char* file) {
         // The scratch folder may lie in the source folder, so it goes first.
         return replaced(replaced(read_file(scratch / file), work.string(), "SCRATCH"),
                         test::source_dir().string(), "SOURCE");
     };
-    const auto code = WIFEXITED(status) ? std::to_string(WEXITSTATUS(status)) : "killed";
-    return {shown("stdout"), shown("stderr"), code + "\n"};
-}
-
-std::filesystem::path expectation(const std::string& name, const char* ending) {
-    return golden_dir() / (name + ending);
-}
-
-std::string expected(const std::string& name, const char* ending) {
-    const auto path = expectation(name, ending);
-    return std::filesystem::exists(path) ? read_file(path) : "";
-}
-
-void regenerate(const std::string& name, const char* ending, const std::string& text) {
-    if (text.empty())
-        std::filesystem::remove(expectation(name, ending));
-    else
-        write_file_atomically(expectation(name, ending), text);
+    return {WIFEXITED(status) ? std::to_string(WEXITSTATUS(status)) : "killed", shown("stdout"),
+            shown("stderr")};
 }
 
 class GoldenRun : public testing::TestWithParam<std::string> {};
 
-TEST_P(GoldenRun, PrintsSaysAndReturnsWhatIsExpected) {
-    const auto& name = GetParam();
-    const auto outcome = run_case(name);
+TEST_P(GoldenRun, PrintsAndReturnsWhatIsExpected) {
+    auto golden = test::read_golden_case(case_file(GetParam()));
+    const auto outcome = run_command(golden.command);
+    const auto differing = test::differing_parts(golden, outcome);
     if (regenerating()) {
-        regenerate(name, ".stdout", outcome.out);
-        regenerate(name, ".stderr", outcome.err);
-        regenerate(name, ".exit", outcome.code);
-        return;
+        golden.expected = outcome;
+        if (!differing.empty()) write_file_atomically(case_file(GetParam()), to_text(golden));
+        GTEST_SKIP() << (differing.empty() ? "unchanged: " : "written anew: ") << case_file(GetParam());
     }
-    EXPECT_EQ(outcome.out, expected(name, ".stdout"));
-    EXPECT_EQ(outcome.err, expected(name, ".stderr"));
-    EXPECT_EQ(outcome.code, expected(name, ".exit"));  // a case without it has never been generated
+    const auto& expected = golden.expected;
+    const auto compared = [&](const std::string& actual, const std::string& wanted) {
+        return golden.exact ? actual : test::with_expected_numbers(actual, wanted);
+    };
+    EXPECT_EQ(outcome.exit_code, expected.exit_code);
+    EXPECT_EQ(compared(outcome.stdout_text, expected.stdout_text), expected.stdout_text);
+    EXPECT_EQ(compared(outcome.stderr_text, expected.stderr_text), expected.stderr_text);
+    EXPECT_TRUE(differing.empty()) << "if the change is wanted, FLIGHTWATT_REGENERATE=1 writes it";
 }
 
 INSTANTIATE_TEST_SUITE_P(Cli, GoldenRun, testing::ValuesIn(case_names()),
                          [](const auto& run) { return run.param; });
 
-/// Expectations of a case that was renamed would never be looked at again.
-TEST(Golden, HasACommandForEveryExpectation) {
-    if (regenerating()) GTEST_SKIP();
-    const auto names = case_names();
-    EXPECT_GT(names.size(), 100U);
+/// Another file there would never be looked at.
+TEST(Golden, HoldsCasesAlone) {
     for (const auto& entry : std::filesystem::directory_iterator(golden_dir())) {
-        const auto name = entry.path().stem().string();
-        EXPECT_TRUE(std::binary_search(names.begin(), names.end(), name)) << entry.path();
+        EXPECT_EQ(entry.path().extension(), ".case") << entry.path();
     }
+}
+
+/// Each program has a case of its own for each of these, so that a changed option fails that one alone.
+TEST(Golden, HasTheHelpOfEveryProgram) {
+    const auto names = case_names();
+    std::size_t programs = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(test::binary_dir() / "bin")) {
+        const auto program = entry.path().filename().string();
+        if (!program.starts_with("flightwatt")) continue;
+        ++programs;
+        const auto name = program == "flightwatt" ? "front_help" : program.substr(11) + "_help";
+        EXPECT_TRUE(std::binary_search(names.begin(), names.end(), name)) << name;
+    }
+    EXPECT_GT(programs, 10U) << "the programs were not found";
 }
 
 /// A rejected input leaves one line and nothing else: no result, no stack of messages.
 TEST(Golden, RejectsBadInputsInOneLine) {
-    if (regenerating()) GTEST_SKIP();
     for (const auto& name : case_names()) {
         if (!name.starts_with("bad_")) continue;
-        EXPECT_EQ(expected(name, ".exit"), "3\n") << name;
-        const auto said = expected(name, ".stderr");
+        const auto expected = test::read_golden_case(case_file(name)).expected;
+        EXPECT_EQ(expected.exit_code, "3") << name;
+        const auto& said = expected.stderr_text;
         EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << name;
         EXPECT_NE(said.find(": error: "), std::string::npos) << name;
         EXPECT_EQ(said.find("internal"), std::string::npos) << name;
-        const auto left = expected(name, ".stdout");
-        EXPECT_EQ(left.find("result"), std::string::npos) << name;
-        EXPECT_EQ(left.find("made"), std::string::npos) << name;
+        EXPECT_EQ(expected.stdout_text.find("result"), std::string::npos) << name;
+        EXPECT_EQ(expected.stdout_text.find("made"), std::string::npos) << name;
     }
 }
 

@@ -1,2 +1,0 @@
-: > flight.data
-flightwatt parse flight.data -o result.csv; code=$?; ls; exit $code

@@ -1,2 +1,0 @@
-mkdir flight.data
-flightwatt segment flight.data -o result.csv; code=$?; ls; exit $code

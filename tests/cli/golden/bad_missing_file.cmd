@@ -1,1 +1,0 @@
-flightwatt parse nothing.data -o result.csv; code=$?; ls; exit $code

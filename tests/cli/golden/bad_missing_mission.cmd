@@ -1,1 +1,0 @@
-flightwatt compare nothing.toml -o result.csv; code=$?; ls; exit $code

@@ -1,2 +1,0 @@
-grep -v ' ENERGY ' "$SOURCE/logs/opterra_synthetic_01.data" > flight.data; cp "$SOURCE/logs/opterra_synthetic_01.log" flight.log
-flightwatt parse flight.data -o result.csv; code=$?; ls; exit $code

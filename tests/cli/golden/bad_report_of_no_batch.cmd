@@ -1,1 +1,0 @@
-flightwatt report "$SOURCE/logs" -o result.html; code=$?; ls; exit $code

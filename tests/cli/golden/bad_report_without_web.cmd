@@ -1,1 +1,0 @@
-FLIGHTWATT_WEB=nowhere flightwatt report "$SOURCE/missions/paper/phased.toml" -o result.html; code=$?; ls; exit $code

@@ -1,2 +1,0 @@
-awk 'BEGIN { print "time_s,altitude_m,power_w"; for (i = 0; i < 50; ++i) print (i == 20 ? 3 : i) ",15,20" }' > flight.csv
-flightwatt segment flight.csv -o result.csv; code=$?; ls; exit $code

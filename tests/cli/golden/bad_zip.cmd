@@ -1,2 +1,0 @@
-printf 'PK\003\004rest' > flight.data
-flightwatt parse flight.data -o result.csv; code=$?; ls; exit $code

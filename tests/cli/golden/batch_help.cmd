@@ -1,1 +1,0 @@
-flightwatt batch --help

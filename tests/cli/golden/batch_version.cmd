@@ -1,1 +1,0 @@
-flightwatt-batch --version && flightwatt batch --version

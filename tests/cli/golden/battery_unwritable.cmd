@@ -1,1 +1,0 @@
-flightwatt battery "$SOURCE"/logs/opterra_synthetic_01.data --capacity 3.2 -o /nowhere/pack.toml

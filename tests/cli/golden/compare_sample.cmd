@@ -1,1 +1,0 @@
-flightwatt compare "$SOURCE"/missions/paper/*.toml

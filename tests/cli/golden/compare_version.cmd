@@ -1,1 +1,0 @@
-flightwatt-compare --version && flightwatt compare --version

@@ -1,2 +1,0 @@
-flightwatt fit "$SOURCE/logs/opterra_synthetic_02.data" > model.toml || exit
-sed 's/= .*//' model.toml

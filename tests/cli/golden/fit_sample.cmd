@@ -1,2 +1,0 @@
-flightwatt fit "$SOURCE"/logs/opterra_synthetic_0?.data -o model.toml || exit
-grep -c weight model.toml; head -n 5 model.toml

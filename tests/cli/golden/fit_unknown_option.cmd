@@ -1,1 +1,0 @@
-flightwatt fit --outptu x something

@@ -1,1 +1,0 @@
-flightwatt-fit --version && flightwatt fit --version

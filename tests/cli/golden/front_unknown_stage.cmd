@@ -1,1 +1,0 @@
-flightwatt frobnicate x.data

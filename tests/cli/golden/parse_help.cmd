@@ -1,1 +1,0 @@
-flightwatt parse --help

@@ -1,1 +1,0 @@
-flightwatt parse "$SOURCE/logs/opterra_synthetic_01.data" 2> diagnostics >&-; code=$?; tail -n 1 diagnostics >&2; exit $code

@@ -1,1 +1,0 @@
-flightwatt-parse --version && flightwatt parse --version

@@ -1,2 +1,0 @@
-flightwatt plan "$SOURCE/missions/paper/phased.toml"; echo $?
-flightwatt simulate "$SOURCE/missions/paper/plan.toml"

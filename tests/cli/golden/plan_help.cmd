@@ -1,1 +1,0 @@
-flightwatt plan --help

@@ -1,1 +1,0 @@
-flightwatt plan "$SOURCE/missions/paper/plan.toml" --probability 0.95

@@ -1,1 +1,0 @@
-flightwatt plan --outptu x something

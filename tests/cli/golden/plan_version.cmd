@@ -1,1 +1,0 @@
-flightwatt-plan --version && flightwatt plan --version

@@ -1,1 +1,0 @@
-flightwatt segment "$SOURCE/logs/hazards/hazard_01_two-sorties.data" --explain

@@ -1,1 +1,0 @@
-flightwatt segment --outptu x something

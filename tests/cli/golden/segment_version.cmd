@@ -1,1 +1,0 @@
-flightwatt-segment --version && flightwatt segment --version

@@ -1,1 +1,0 @@
-cd "$SOURCE" && flightwatt simulate missions/paper/computing-only.toml --samples 10

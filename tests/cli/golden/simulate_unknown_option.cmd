@@ -1,1 +1,0 @@
-flightwatt simulate --outptu x something

@@ -1,1 +1,0 @@
-flightwatt-simulate --version && flightwatt simulate --version

@@ -1,1 +1,0 @@
-flightwatt-synthesize --version && flightwatt synthesize --version
