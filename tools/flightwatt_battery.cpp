@@ -2,6 +2,7 @@
 
 #include "battery/lipo_chart.h"
 #include "cli/output/battery_output.h"
+#include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "flight/flight_reader.h"
 #include "flight/power_check.h"
@@ -11,6 +12,8 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+
+#include <fmt/format.h>
 
 namespace {
 

@@ -1,5 +1,6 @@
 // flightwatt fit: several flights to a mechanical power model and Table I.
 
+#include "base/atomic_file.h"
 #include "cli/output/fit_error_output.h"
 #include "cli/output/fit_options.h"
 #include "cli/output/table_one_output.h"

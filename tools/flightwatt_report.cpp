@@ -1,12 +1,14 @@
 // flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
 
-#include "cli/output/report_flights.h"
+#include "cli/output/fit_options.h"
+#include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mission/mission.h"
 #include "report/battery_section.h"
 #include "report/figure_files.h"
 #include "report/missions_section.h"
 #include "report/page.h"
+#include "report/report_flights.h"
 
 #include <chrono>
 #include <cmath>
@@ -67,7 +69,7 @@ battery::IdentificationOptions read_identification_options(const cli::StageCall&
 }
 
 /// The flights' model with its validation.
-void add_model(const cli::StageCall& call, const cli::BatchContent& content,
+void add_model(const cli::StageCall& call, const report::BatchContent& content,
                const std::optional<report::ReportModel>& model, const report::PublishedFigures& figures,
                report::PageHead& head, std::vector<report::Section>& sections) {
     if (!model) {
@@ -97,8 +99,8 @@ void add_batch(const cli::StageCall& call, const std::filesystem::path& out,
     std::optional<mechanical::MechanicalModel> published;
     if (const auto file = call.maybe<std::string>("published"))
         published = mechanical::read_mechanical_model(*file);
-    const auto content = cli::read_batch_content(out, options, {kept.begin(), kept.end()});
-    const auto model = cli::read_batch_model(out, content, options, published);
+    const auto content = report::read_batch_content(out, options, {kept.begin(), kept.end()});
+    const auto model = report::read_batch_model(out, content, options, published);
     head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
     sections.push_back(
         report::flights_section(content.flights, model ? std::optional(model->model) : std::nullopt));

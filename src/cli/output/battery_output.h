@@ -1,122 +1,31 @@
 #pragma once
 
 #include "base/text_table.h"
-#include "base/units.h"
 #include "battery/identification.h"
-#include "cli/output/json_text.h"
 
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 /// What `flightwatt battery` says of an identified battery.
 namespace flightwatt::cli {
 
-inline std::string describe(const battery::Capacity& capacity) {
-    auto text = fmt::format("capacity {:.3g} Ah ({})", capacity.value_ah, to_string(capacity.origin));
-    if (!capacity.interval_ah) return text;
-    return text + fmt::format(", {:.3g} to {:.3g} Ah if the pack is 30 mV a cell off the chart",
-                              capacity.interval_ah->low, capacity.interval_ah->high);
-}
+/// "capacity 4.2 Ah (chart), 3.9 to 4.5 Ah if ...".
+std::string describe(const battery::Capacity& capacity);
 
-inline TextTable parameters_table(const battery::BatteryIdentification& identified) {
-    TextTable table;
-    table.header = {"parameter", "value", "low 95 %", "high 95 %"};
-    const auto add = [&](const std::string& name, double value, const battery::Interval& interval) {
-        table.rows.push_back({name, fmt::format("{:.4g}", value), fmt::format("{:.4g}", interval.low),
-                              fmt::format("{:.4g}", interval.high)});
-    };
-    add("resistance_ohm", identified.fit.resistance_ohm, identified.errors.resistance_ohm);
-    if (identified.fit.rc_resistance_ohm > 0.0) {
-        add("rc_resistance_ohm", identified.fit.rc_resistance_ohm, identified.errors.rc_resistance_ohm);
-        add("rc_time_constant_s", identified.fit.rc_time_constant_s, identified.errors.rc_time_constant_s);
-    }
-    return table;
-}
+/// One row a resistance or time constant, with its 95 % interval.
+TextTable parameters_table(const battery::BatteryIdentification& identified);
 
-inline TextTable flights_table(const battery::BatteryIdentification& identified,
-                               const std::vector<battery::LeftOutCheck>& left_out) {
-    TextTable table;
-    table.header = {"flight", "at rest V", "missing Ah", "drawn Ah", "samples", "unused", "fitted mV"};
-    if (!left_out.empty()) {
-        for (const auto* name : {"left out mV", "beyond the others %"}) table.header.emplace_back(name);
-    }
-    for (std::size_t i = 0; i < identified.flights.size(); ++i) {
-        const auto& flight = identified.flights[i];
-        table.rows.push_back({flight.flight, fmt::format("{:.3f}", flight.resting_voltage_v),
-                              fmt::format("{:.3f}", flight.initial_charge_ah),
-                              fmt::format("{:.3f}", flight.drawn_ah), fmt::format("{}", flight.samples),
-                              fmt::format("{}", flight.unused),
-                              fmt::format("{:.1f}", units::mv_from_v(flight.voltage_rms_v))});
-        if (left_out.empty()) continue;
-        table.rows.back().push_back(fmt::format("{:.1f}", units::mv_from_v(left_out[i].voltage_rms_v)));
-        table.rows.back().push_back(fmt::format("{:.0f}", left_out[i].beyond_percent));
-    }
-    return table;
-}
+/// One row a flight; `left_out` is empty or as long as the identified flights.
+TextTable flights_table(const battery::BatteryIdentification& identified,
+                        const std::vector<battery::LeftOutCheck>& left_out);
 
-/// The file's head: what the numbers rest on.
-inline std::string provenance(const battery::BatteryIdentification& identified) {
-    std::string text = "# Identified by flightwatt battery from";
-    for (const auto& flight : identified.flights) text += " " + flight.flight;
-    text += fmt::format(".\n# {}; {} cells.\n", describe(identified.capacity), identified.cells);
-    text += fmt::format("# Flights follow the open-circuit voltage down to {:.1f} % ({:.3f} Ah drawn)",
-                        identified.known_down_to_percent, identified.fit.knots_ah.back());
-    text +=
-        identified.known_down_to_percent > 0.0
-            ? "; below, it goes on in\n# parallel to the usual chart of LiPo cells, 30 mV a cell unsure.\n"
-            : ".\n";
-    text += fmt::format("# Voltages are met within {:.1f} mV RMS; intervals rest on {} blocks of {:.0f} s.\n",
-                        units::mv_from_v(identified.fit.rms_v), identified.errors.blocks,
-                        identified.errors.block_s);
-    return text;
-}
+/// The comment at the head of a battery file: flights, capacity and fit that the numbers rest on.
+std::string provenance(const battery::BatteryIdentification& identified);
 
-inline nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
-                                      const std::vector<battery::LeftOutCheck>& left_out) {
-    using Json = nlohmann::ordered_json;
-    const auto interval = [](const std::optional<battery::Interval>& range) {
-        return range ? Json{{"low", range->low}, {"high", range->high}} : Json();
-    };
-    const auto estimate = [](double value, const battery::Interval& range) {
-        return Json{{"value", value}, {"low", range.low}, {"high", range.high}};
-    };
-    const auto& [fit, errors] = std::tie(identified.fit, identified.errors);
-    Json json;
-    json["capacity_ah"] = identified.capacity.value_ah;
-    json["capacity_from"] = to_string(identified.capacity.origin);
-    json["capacity_interval_ah"] = interval(identified.capacity.interval_ah);
-    json["cells"] = identified.cells;
-    json["resistance_ohm"] = estimate(fit.resistance_ohm, errors.resistance_ohm);
-    json["rc_resistance_ohm"] = estimate(fit.rc_resistance_ohm, errors.rc_resistance_ohm);
-    json["rc_time_constant_s"] = fit.rc_resistance_ohm > 0.0
-                                     ? estimate(fit.rc_time_constant_s, errors.rc_time_constant_s)
-                                     : Json{{"value", nullptr}, {"low", nullptr}, {"high", nullptr}};
-    const auto& curve = identified.battery.thevenin->open_circuit;
-    json["open_circuit"] = {{"soc_percent", curve.soc_percent},
-                            {"voltage_v", curve.voltage_v},
-                            {"standard_error_v", identified.battery.intervals.open_circuit_standard_error_v},
-                            {"known_down_to_percent", identified.known_down_to_percent},
-                            {"known_down_to_ah", fit.knots_ah.back()}};
-    json["voltage_rms_mv"] = units::mv_from_v(fit.rms_v);
-    json["flights"] = Json::array();
-    for (const auto& flight : identified.flights) {
-        json["flights"].push_back({{"flight", flight.flight},
-                                   {"resting_voltage_v", flight.resting_voltage_v},
-                                   {"initial_charge_ah", flight.initial_charge_ah},
-                                   {"drawn_ah", flight.drawn_ah},
-                                   {"samples", flight.samples},
-                                   {"unused_samples", flight.unused},
-                                   {"voltage_rms_mv", units::mv_from_v(flight.voltage_rms_v)}});
-    }
-    json["left_out"] = Json::array();
-    for (const auto& check : left_out) {
-        json["left_out"].push_back({{"flight", check.flight},
-                                    {"voltage_rms_mv", units::mv_from_v(check.voltage_rms_v)},
-                                    {"beyond_others_percent", check.beyond_percent}});
-    }
-    return json;
-}
+/// The stage's JSON: units are in the keys, null stands for what is not known.
+nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
+                               const std::vector<battery::LeftOutCheck>& left_out);
 
 }  // namespace flightwatt::cli

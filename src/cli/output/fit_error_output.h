@@ -1,164 +1,31 @@
 #pragma once
 
 #include "cli/stage.h"
-#include "mechanical/confidence.h"
-#include "mechanical/down_weighted.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/order_choice.h"
 
-#include <algorithm>
-#include <string>
-
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 /// What a fit says of its errors, its outliers and its order.
 namespace flightwatt::cli {
 
-inline nlohmann::ordered_json interval_json(double value, double half_width) {
-    return {{"low", value - half_width}, {"high", value + half_width}};
-}
-
-inline nlohmann::ordered_json to_json(const mechanical::PhaseModel& phase,
-                                      const mechanical::PhaseErrors& errors) {
-    using Json = nlohmann::ordered_json;
-    const double wide = mechanical::half_width_in_standard_errors(errors.degrees_of_freedom);
-    const auto intervals = [&](const std::vector<double>& values,
-                               const std::vector<double>& standard_errors) {
-        Json list = Json::array();
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            list.push_back(interval_json(values[i], wide * standard_errors[i]));
-        }
-        return list;
-    };
-    const auto& fourier = phase.fourier;
-    return {{"standard_error",
-             {{"omega_rad_per_s", errors.omega_rad_per_s},
-              {"a0_w", errors.a0_w},
-              {"cos_w", errors.cos_w},
-              {"sin_w", errors.sin_w},
-              {"curve_w", errors.curve_w}}},
-            {"interval_95",
-             {{"omega_rad_per_s", interval_json(fourier.omega_rad_per_s, wide * errors.omega_rad_per_s)},
-              {"a0_w", interval_json(fourier.a0_w, wide * errors.a0_w)},
-              {"cos_w", intervals(fourier.cos_w, errors.cos_w)},
-              {"sin_w", intervals(fourier.sin_w, errors.sin_w)}}},
-            {"frequency_is_given", errors.frequency_is_given},
-            {"degrees_of_freedom", errors.degrees_of_freedom},
-            {"r2", errors.r2},
-            {"condition", errors.condition},
-            {"autocorrelation", errors.autocorrelation},
-            {"effective_samples", errors.effective_samples}};
-}
-
-inline nlohmann::ordered_json to_json(const mechanical::FrequencyProfile& profile) {
-    return {{"omega_duration_rad", profile.theta_rad},
-            {"rms_w", profile.rms_w},
-            {"interval_95",
-             {{"low_rad", profile.low_rad},
-              {"high_rad", profile.high_rad},
-              {"low_is_open", profile.low_is_open},
-              {"high_is_open", profile.high_is_open}}}};
-}
-
-inline nlohmann::ordered_json to_json(const mechanical::PhaseSpread& spread) {
-    return {{"low_w", spread.low_w},
-            {"high_w", spread.high_w},
-            {"standard_deviation_w", spread.standard_deviation_w},
-            {"counted_flights", spread.counted_flights}};
-}
-
 /// Adds errors, frequency_profile and spread to each phase of the stage's JSON.
-inline void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,
-                            const flight::PerPhase<mechanical::PhaseErrorReport>& reports) {
-    for (const auto phase : flight::all_phases) {
-        auto& entry = json["phases"][std::string(to_string(phase))];
-        const auto& fitted = model.phases[phase];
-        entry["errors"] = to_json(fitted, reports[phase].analysis.errors);
-        entry["frequency_profile"] = to_json(reports[phase].profile);
-        if (fitted.spread) entry["spread"] = to_json(*fitted.spread);
-    }
-}
+void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,
+                     const flight::PerPhase<mechanical::PhaseErrorReport>& reports);
 
-/// Adds the samples that the loss hardly listened to.
-inline void add_loss_json(nlohmann::ordered_json& json, const mechanical::ModelFit& fit) {
-    using Json = nlohmann::ordered_json;
-    for (const auto phase : flight::all_phases) {
-        Json samples = Json::array();
-        for (const auto& sample : down_weighted_samples(fit.samples[phase], fit.fits[phase])) {
-            samples.push_back({{"flight", sample.flight},
-                               {"log_time_s", sample.log_time_s},
-                               {"residual_w", sample.residual_w},
-                               {"weight", sample.weight}});
-        }
-        json["phases"][std::string(to_string(phase))]["loss"] = {{"name", to_string(fit.fits[phase].loss)},
-                                                                 {"noise_w", fit.fits[phase].loss_scale_w},
-                                                                 {"down_weighted", samples}};
-    }
-}
+/// Adds each phase's loss and the samples that it gives less than half weight.
+void add_loss_json(nlohmann::ordered_json& json, const mechanical::ModelFit& fit);
 
-inline void add_order_json(nlohmann::ordered_json& json, flight::Phase phase,
-                           const mechanical::OrderChoice& choice) {
-    using Json = nlohmann::ordered_json;
-    const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
-    Json errors = Json::array();
-    for (const auto& error : choice.errors) {
-        errors.push_back({{"order", error.order},
-                          {"rms_w", number(error.rms_w)},
-                          {"behind_best_w2", number(error.behind_best_w2)},
-                          {"standard_error_w2", number(error.standard_error_w2)},
-                          {"reason", error.reason}});
-    }
-    json["phases"][std::string(to_string(phase))]["order_choice"] = {{"order", choice.order},
-                                                                     {"best", choice.best},
-                                                                     {"how", choice.how},
-                                                                     {"folds", choice.folds},
-                                                                     {"errors", errors}};
-}
+/// Adds the chosen order of a phase with the error of every order that was tried.
+void add_order_json(nlohmann::ordered_json& json, flight::Phase phase, const mechanical::OrderChoice& choice);
 
-/// The error of foretelling against the order, on the standard error.
-inline void note_order(const cli::StageCall& call, flight::Phase phase,
-                       const mechanical::OrderChoice& choice) {
-    std::string curve;
-    for (const auto& error : choice.errors) {
-        const auto shown = error.rms_w ? fmt::format("{:.4g}", *error.rms_w) : "-";
-        curve += fmt::format("{}{}: {}", curve.empty() ? "" : ", ", error.order, shown);
-    }
-    cli::note(call,
-              fmt::format("{}: order {} (least error: {}); RMS error [W] by order, {}, {} folds: {}",
-                          to_string(phase), choice.order, choice.best, choice.how, choice.folds, curve));
-    for (const auto& error : choice.errors) {
-        if (!error.rms_w) cli::note(call, fmt::format("order {}: {}", error.order, error.reason));
-    }
-}
+/// Notes the chosen order and the prediction error of every order.
+void note_order(const StageCall& call, flight::Phase phase, const mechanical::OrderChoice& choice);
 
-/// Says where intervals hold less than they seem to.
-inline void warn_of_given_frequencies(const cli::StageCall& call, const mechanical::MechanicalModel& model) {
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        const bool constant = fitted.fourier.cos_w.empty();
-        if (constant || !fitted.errors || !fitted.errors->frequency_is_given) continue;
-        cli::warn(call, fmt::format("{}: the errors are those at the frequency as given; the coefficients "
-                                    "alone may be further off, the curve is not",
-                                    to_string(phase)));
-    }
-}
+/// Warns of intervals that are conditional on a given frequency.
+void warn_of_given_frequencies(const StageCall& call, const mechanical::MechanicalModel& model);
 
-/// How many samples the loss hardly listened to, and the three it listened to least.
-inline void note_down_weighted(const cli::StageCall& call, const mechanical::ModelFit& fit) {
-    constexpr std::size_t shown = 3;
-    for (const auto phase : flight::all_phases) {
-        const auto samples = down_weighted_samples(fit.samples[phase], fit.fits[phase]);
-        std::string list;
-        for (std::size_t i = 0; i < std::min(shown, samples.size()); ++i) {
-            list += fmt::format("{}{} at {:.1f} s ({:+.3g} W, weight {:.2g})", i == 0 ? ": " : ", ",
-                                samples[i].flight, samples[i].log_time_s, samples[i].residual_w,
-                                samples[i].weight);
-        }
-        cli::note(call, fmt::format("{}: {} of {} samples count less than half (loss {}, noise {:.3g} W){}",
-                                    to_string(phase), samples.size(), fit.fits[phase].samples,
-                                    to_string(fit.fits[phase].loss), fit.fits[phase].loss_scale_w, list));
-    }
-}
+/// Notes how many samples have less than half weight, and the three of least weight.
+void note_down_weighted(const StageCall& call, const mechanical::ModelFit& fit);
 
 }  // namespace flightwatt::cli

@@ -1,120 +1,27 @@
 #pragma once
 
 #include "base/text_table.h"
-#include "base/units.h"
 #include "mechanical/validation_score.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 /// What flightwatt validate shows.
 namespace flightwatt::cli {
 
-/// A phase, or the whole flight.
-struct ValidatedPart {
-    std::string name;
-    std::optional<flight::Phase> phase;
-};
-
-inline std::vector<ValidatedPart> validated_parts() {
-    std::vector<ValidatedPart> parts;
-    parts.reserve(std::size(flight::all_phases) + 1);
-    for (const auto phase : flight::all_phases) parts.push_back({std::string(to_string(phase)), phase});
-    parts.push_back({"total", std::nullopt});
-    return parts;
-}
-
-inline std::string shown(const std::optional<double>& value, int digits) {
-    return value ? fmt::format("{:.{}f}", *value, digits) : "-";
-}
-
 /// One row a flight, part and model.
-inline TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights) {
-    TextTable table{{"flight", "phase", "model", "measured Wh", "counter Wh", "predicted Wh", "error Wh",
-                     "error %", "95 % low", "95 % high"},
-                    {}};
-    for (const auto& flight : flights) {
-        for (const auto& part : validated_parts()) {
-            for (const auto& model : model_names(flights)) {
-                const auto energy = predicted_energy(flight, model, part.phase);
-                if (!energy) continue;
-                const auto& [measured_wh, estimate] = *energy;
-                const double error_wh = estimate.energy_wh - measured_wh;
-                const auto interval = interval_95(estimate);
-                table.rows.push_back({flight.flight, part.name, model, fmt::format("{:.3f}", measured_wh),
-                                      shown(part.phase ? flight.counter_wh[*part.phase] : std::nullopt, 3),
-                                      fmt::format("{:.3f}", estimate.energy_wh),
-                                      fmt::format("{:+.3f}", error_wh),
-                                      part.phase == flight::Phase::landing
-                                          ? "-"
-                                          : fmt::format("{:+.1f}", units::percent_of(error_wh, measured_wh)),
-                                      interval ? fmt::format("{:.3f}", interval->low_wh) : "-",
-                                      interval ? fmt::format("{:.3f}", interval->high_wh) : "-"});
-            }
-        }
-    }
-    return table;
-}
+TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights);
 
 /// One row a part and model.
-inline TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) {
-    TextTable table{
-        {"phase", "model", "flights", "mean |error| Wh", "mean |error| %", "bias Wh", "95 % interval covers"},
-        {}};
-    for (const auto& part : validated_parts()) {
-        for (const auto& model : model_names(flights)) {
-            const auto score = score_of(flights, model, part.phase);
-            if (!score) continue;
-            table.rows.push_back(
-                {part.name, model, fmt::format("{}", score->flights),
-                 fmt::format("{:.3f}", score->mean_absolute_error_wh),
-                 shown(score->mean_absolute_error_percent, 1), fmt::format("{:+.3f}", score->bias_wh),
-                 score->coverage_95 ? fmt::format("{:.0f} %", units::percent_of(*score->coverage_95, 1.0))
-                                    : "-"});
-        }
-    }
-    return table;
-}
+TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights);
 
-/// In so many words where `challenger` does not beat `baseline`, or does; not where both say the same.
-inline std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights,
-                           const std::string& challenger, const std::string& baseline) {
-    std::string text;
-    for (const auto& part : validated_parts()) {
-        const auto ours = score_of(flights, challenger, part.phase);
-        const auto theirs = score_of(flights, baseline, part.phase);
-        if (!ours || !theirs) continue;
-        if (ours->mean_absolute_error_wh == theirs->mean_absolute_error_wh) continue;
-        const bool better = ours->mean_absolute_error_wh < theirs->mean_absolute_error_wh;
-        text += fmt::format("{}: {} {} {}: {:.3f} Wh against {:.3f} Wh\n", part.name, challenger,
-                            better ? "beats" : "does not beat", baseline, ours->mean_absolute_error_wh,
-                            theirs->mean_absolute_error_wh);
-    }
-    return text;
-}
+/// One sentence a phase: whether `challenger` has the lower mean absolute error; none for ties.
+std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, const std::string& challenger,
+                    const std::string& baseline);
 
-inline nlohmann::ordered_json scores_json(const std::vector<mechanical::ValidatedFlight>& flights) {
-    using Json = nlohmann::ordered_json;
-    const auto optional = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
-    Json json{{"flights", flights.size()}};
-    for (const auto& part : validated_parts()) {
-        json[part.name] = Json::object();
-        for (const auto& model : model_names(flights)) {
-            const auto score = score_of(flights, model, part.phase);
-            if (!score) continue;
-            json[part.name][model] = {
-                {"mean_absolute_error_wh", score->mean_absolute_error_wh},
-                {"mean_absolute_error_percent", optional(score->mean_absolute_error_percent)},
-                {"bias_wh", score->bias_wh},
-                {"coverage_95", optional(score->coverage_95)},
-                {"flights", score->flights}};
-        }
-    }
-    return json;
-}
+/// The scores by phase and model.
+nlohmann::ordered_json scores_json(const std::vector<mechanical::ValidatedFlight>& flights);
 
 }  // namespace flightwatt::cli

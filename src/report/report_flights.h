@@ -3,7 +3,6 @@
 #include "batch/batch_files.h"
 #include "batch/fit_selection.h"
 #include "batch/stored_flights.h"
-#include "cli/output/fit_options.h"
 #include "cli/output/table_one_output.h"
 #include "flight/power_check.h"
 #include "mechanical/measured_flight.h"
@@ -23,10 +22,10 @@
 #include <fmt/format.h>
 
 /// What flightwatt report takes from a batch's folder.
-namespace flightwatt::cli {
+namespace flightwatt::report {
 
 struct BatchContent {
-    std::vector<report::ReportFlight> flights;
+    std::vector<ReportFlight> flights;
     std::vector<mechanical::FlightSamples> samples;  ///< what a fit takes of them
     std::vector<mechanical::MeasuredFlight> measured;
 };
@@ -37,8 +36,8 @@ inline BatchContent read_batch_content(const std::filesystem::path& out,
     BatchContent content;
     const auto needed = mechanical::samples_needed(options.phases.order);
     for (auto& [record, series, phases] : batch::read_stored_flights(out)) {
-        report::ReportFlight flight{record.flight,   record.log, record.accepted ? "" : record.error, {}, {},
-                                    record.warnings, {}};
+        ReportFlight flight{record.flight,   record.log, record.accepted ? "" : record.error, {}, {},
+                            record.warnings, {}};
         if (record.accepted) {
             auto selection = batch::select_for_fit(series, phases, record, needed, keep);
             for (const auto& left_out : selection.left_out) flight.left_out.push_back(to_string(left_out));
@@ -64,25 +63,25 @@ inline BatchContent read_batch_content(const std::filesystem::path& out,
     }
     // Readers look at the first ones first.
     std::stable_partition(content.flights.begin(), content.flights.end(),
-                          [](const report::ReportFlight& flight) { return flight.unusable_power.empty(); });
+                          [](const ReportFlight& flight) { return flight.unusable_power.empty(); });
     return content;
 }
 
 /// OUT/model.toml with bands and intervals from a fit of the same flights. Where that comes to another model
 /// (the batch had other options), the file's stands alone, and it is said. std::nullopt without model.toml.
-inline std::optional<report::ReportModel> read_batch_model(
+inline std::optional<ReportModel> read_batch_model(
     const std::filesystem::path& out, const BatchContent& content, const mechanical::ModelFitOptions& options,
     const std::optional<mechanical::MechanicalModel>& published) {
     constexpr double same_curve_w = 1e-6;
     const auto file = out / batch::model_names.front();
     if (!std::filesystem::exists(file)) return std::nullopt;
-    report::ReportModel model{mechanical::read_mechanical_model(file),
-                              "Fitted by flightwatt batch to the flights above."};
+    ReportModel model{mechanical::read_mechanical_model(file),
+                      "Fitted by flightwatt batch to the flights above."};
     auto fit = fit_model(content.samples, options);
     for (const auto phase : flight::all_phases) {
         const double apart_w = curve_rms_difference_w(fit.model.phases[phase], model.model.phases[phase]);
         if (apart_w < same_curve_w) continue;
-        model.table_one = table_of(model.model, published);
+        model.table_one = cli::table_of(model.model, published);
         model.notes.push_back(fmt::format(
             "{} was fitted with other options than this report was given ({} differs by {:.2g} W): "
             "bands, intervals and validation are left out. Give the report the batch's options.",
@@ -90,9 +89,9 @@ inline std::optional<report::ReportModel> read_batch_model(
         return model;
     }
     const auto reports = mechanical::add_errors(fit);
-    model.bands = report::curve_bands(fit, reports);
-    model.table_one = table_of(fit.model, published, mechanical::TableIntervals::present);
+    model.bands = curve_bands(fit, reports);
+    model.table_one = cli::table_of(fit.model, published, mechanical::TableIntervals::present);
     return model;
 }
 
-}  // namespace flightwatt::cli
+}  // namespace flightwatt::report

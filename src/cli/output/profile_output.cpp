@@ -1,0 +1,142 @@
+#include "cli/output/profile_output.h"
+
+#include "base/text_table.h"
+
+#include <set>
+
+#include <fmt/format.h>
+
+namespace flightwatt::cli {
+namespace {
+
+std::string component_table(const compute::ComponentEstimate& component,
+                            const compute::ProfileOutcome& outcome, bool above_idle) {
+    TextTable table;
+    table.header = component.parameters;
+    table.header.insert(table.header.end(), {"power_w", "standard_error_w", "duration_s", "energy_j",
+                                             "samples", "repeats", "source"});
+    for (const auto& node : component.nodes) {
+        const auto reported = reported_power(node.total, outcome.idle, above_idle);
+        std::vector<std::string> row;
+        for (const double value : node.qos) row.push_back(fmt::format("{}", value));
+        row.push_back(fmt::format("{:.4f}", reported.power_w));
+        row.push_back(compute::number_or(reported.standard_error_w, 4, "-"));
+        row.push_back(node.is_measured ? fmt::format("{:.2f}", node.total.duration_s) : "-");
+        row.push_back(node.is_measured ? fmt::format("{:.2f}", reported.power_w * node.total.duration_s)
+                                       : "-");
+        row.push_back(fmt::format("{}", node.total.samples));
+        row.push_back(fmt::format("{}", node.total.repeats));
+        row.push_back(node.is_measured ? "measured" : "interpolated");
+        table.rows.push_back(std::move(row));
+    }
+    return component.nodes.empty() ? "nothing could be measured\n" : to_text(table);
+}
+
+nlohmann::ordered_json to_json(const compute::PowerEstimate& estimate) {
+    return {{"power_w", estimate.power_w},       {"standard_error_w", estimate.standard_error_w},
+            {"duration_s", estimate.duration_s}, {"energy_j", estimate.energy_j},
+            {"samples", estimate.samples},       {"repeats", estimate.repeats}};
+}
+
+nlohmann::ordered_json to_json(const compute::ComponentEstimate& component,
+                               const compute::ProfileOutcome& outcome, bool above_idle) {
+    nlohmann::ordered_json json{{"name", component.name}, {"parameters", component.parameters}};
+    json["nodes"] = nlohmann::ordered_json::array();
+    for (const auto& node : component.nodes) {
+        const auto reported = reported_power(node.total, outcome.idle, above_idle);
+        nlohmann::ordered_json entry{{"qos", node.qos}};
+        entry.update(to_json(node.total));
+        entry["power_w"] = reported.power_w;
+        entry["standard_error_w"] = reported.standard_error_w;
+        entry["energy_j"] = reported.power_w * node.total.duration_s;
+        entry["total_power_w"] = node.total.power_w;
+        entry["measured"] = node.is_measured;
+        json["nodes"].push_back(std::move(entry));
+    }
+    json["failures"] = nlohmann::ordered_json::array();
+    for (const auto& run : component.failures) {
+        json["failures"].push_back({{"configuration", run.configuration},
+                                    {"repeat", run.repeat},
+                                    {"status", to_string(run.status)},
+                                    {"note", run.note}});
+    }
+    if (component.interpolation) json["leave_one_out"] = cli::to_json(*component.interpolation);
+    return json;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const compute::LeaveOneOut& error) {
+    return {{"method", error.method},
+            {"nodes", error.nodes},
+            {"mean_absolute_error_w", error.mean_absolute_w},
+            {"mean_absolute_error_percent", error.mean_absolute_percent},
+            {"rms_error_w", error.rms_w},
+            {"largest_error_w", error.largest_w}};
+}
+
+std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle) {
+    std::string text;
+    if (outcome.idle) {
+        text += fmt::format("idle: {:.4f} W, standard error {} W, {} samples in {:.2f} s\n",
+                            outcome.idle->power_w, compute::number_or(outcome.idle->standard_error_w, 4, "-"),
+                            outcome.idle->samples, outcome.idle->duration_s);
+    }
+    text += fmt::format("sampling interval: mean {:.4f} s, standard deviation {:.4f} s, longest {:.4f} s\n",
+                        outcome.jitter.mean_s, outcome.jitter.sd_s, outcome.jitter.max_s);
+    for (const auto& component : outcome.components) {
+        text += fmt::format("\n{}{}\n", component.name, above_idle ? ", above idle" : "");
+        text += component_table(component, outcome, above_idle);
+        if (component.interpolation) {
+            const auto& error = *component.interpolation;
+            text += fmt::format(
+                "interpolated by {}; leaving one of {} nodes out: mean error {:.3f} W ({:.1f} %), "
+                "RMS {:.3f} W, largest {:.3f} W\n",
+                error.method, error.nodes, error.mean_absolute_w, error.mean_absolute_percent, error.rms_w,
+                error.largest_w);
+        }
+        for (const auto& run : component.failures) {
+            text += fmt::format("{} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status),
+                                run.note);
+        }
+    }
+    return text;
+}
+
+nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool above_idle) {
+    nlohmann::ordered_json json{{"sampler", outcome.sampler}, {"above_idle", above_idle}};
+    if (outcome.idle) json["idle"] = to_json(*outcome.idle);
+    json["sampling_interval"] = {{"mean_s", outcome.jitter.mean_s},
+                                 {"standard_deviation_s", outcome.jitter.sd_s},
+                                 {"longest_s", outcome.jitter.max_s}};
+    json["components"] = nlohmann::ordered_json::array();
+    for (const auto& component : outcome.components) {
+        json["components"].push_back(to_json(component, outcome, above_idle));
+    }
+    return json;
+}
+
+std::vector<compute::LeaveOneOut> interpolation_errors(const compute::PowerProfile& profile) {
+    std::vector<compute::LeaveOneOut> errors{leave_grid_nodes_out(profile)};
+    std::set<compute::ScatteredMethod> seen;
+    for (auto& [choice, error] : compute::ranked_methods(grid_points(profile), profile.power_w)) {
+        if (seen.insert(choice.method).second) errors.push_back(std::move(error));
+    }
+    return errors;
+}
+
+std::string interpolation_text(const std::string& file, std::size_t nodes,
+                               const std::vector<compute::LeaveOneOut>& errors) {
+    TextTable table;
+    table.header = {
+        "each node from the others", "nodes", "mean |error| W", "mean |error| %", "RMS W", "largest W"};
+    for (const auto& error : errors) {
+        table.rows.push_back({error.method, fmt::format("{} of {}", error.nodes, nodes),
+                              fmt::format("{:.4f}", error.mean_absolute_w),
+                              compute::number_or(error.mean_absolute_percent, 2, "-"),
+                              fmt::format("{:.4f}", error.rms_w), fmt::format("{:.4f}", error.largest_w)});
+    }
+    return file + "\n" + to_text(table);
+}
+
+}  // namespace flightwatt::cli
