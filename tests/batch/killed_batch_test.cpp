@@ -1,5 +1,6 @@
 // The program itself, killed and interrupted in the middle of a batch: what it ends with must not tell.
 
+#include "helpers/running_program.h"
 #include "helpers/sample_logs.h"
 
 #include <chrono>
@@ -12,26 +13,22 @@
 #include <thread>
 #include <vector>
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 namespace flightwatt::batch {
 namespace {
 
 using test::contents;
 using testing::HasSubstr;
-using namespace std::chrono_literals;
 
 constexpr int logs = 12;
 
 class KilledBatch : public testing::Test {
   protected:
     std::filesystem::path folder = test::scratch_dir();
-    std::mt19937 random{std::random_device{}()};
+    std::mt19937 random{1};  ///< for the moments of the signals
 
     /// Twelve logs, no two of the same content.
     void SetUp() override {
@@ -41,36 +38,15 @@ class KilledBatch : public testing::Test {
         }
     }
 
-    /// Starts `flightwatt-batch in -o OUT --jobs JOBS`; what it says goes to stderr.OUT.
+    /// Starts `flightwatt-batch in -o OUT --jobs JOBS`; what it says goes to the file stderr.
     ::pid_t start(const std::string& out, unsigned jobs) {
-        const auto program = test::binary_dir() / "bin" / "flightwatt-batch";
-        std::vector<std::string> words{
-            program.string(), (folder / "in").string(), "-o", (folder / out).string(),
-            "--jobs",         std::to_string(jobs)};
-        std::vector<char*> arguments;
-        arguments.reserve(words.size() + 1);
-        for (auto& word : words) arguments.push_back(word.data());
-        arguments.push_back(nullptr);
-        posix_spawn_file_actions_t files;
-        ::posix_spawn_file_actions_init(&files);
-        ::posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
-        const auto said = folder / ("stderr." + out);
-        ::posix_spawn_file_actions_addopen(&files, 2, said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        ::pid_t child = -1;
-        EXPECT_EQ(::posix_spawn(&child, program.c_str(), &files, nullptr, arguments.data(), environ), 0);
-        ::posix_spawn_file_actions_destroy(&files);
-        return child;
-    }
-
-    int wait_for(::pid_t child) {
-        int status = -1;
-        ::waitpid(child, &status, 0);
-        return status;
+        return test::start_program("flightwatt-batch", {"in", "-o", out, "--jobs", std::to_string(jobs)},
+                                   folder);
     }
 
     std::map<std::string, std::string> left_alone(unsigned jobs) {
         const auto out = "alone" + std::to_string(jobs);
-        EXPECT_EQ(wait_for(start(out, jobs)), 0);
+        EXPECT_EQ(test::wait_status_of(start(out, jobs)), 0);
         return contents(folder / out);
     }
 
@@ -86,13 +62,12 @@ class KilledBatch : public testing::Test {
     /// Starts a batch and sends it a signal a little after it has `done` records. Returns its status.
     int stop_after(const std::string& out, int done, int signal) {
         const auto child = start(out, 1);
-        const auto patience = std::chrono::steady_clock::now() + 20s;
-        while (records(out) < done && std::chrono::steady_clock::now() < patience) {
-            std::this_thread::sleep_for(100us);
+        for (int look = 0; records(out) < done && look < 200000; ++look) {
+            std::this_thread::sleep_for(std::chrono::microseconds(100));
         }
         std::this_thread::sleep_for(std::chrono::microseconds(random() % 2000));
         ::kill(child, signal);
-        return wait_for(child);
+        return test::wait_status_of(child);
     }
 };
 
@@ -110,7 +85,7 @@ TEST_F(KilledBatch, EndsWithTheSameBytesAfterKills) {
         killed += WIFSIGNALED(stop_after("out", done, SIGKILL)) ? 1 : 0;
     }
     EXPECT_GE(killed, 1);  // a machine that looks away for long enough may let one finish
-    EXPECT_EQ(wait_for(start("out", 2)), 0);
+    EXPECT_EQ(test::wait_status_of(start("out", 2)), 0);
     EXPECT_EQ(contents(folder / "out"), whole);
 }
 
@@ -119,7 +94,7 @@ TEST_F(KilledBatch, GoesOnAfterCtrlC) {
     const int status = stop_after("out", 3, SIGINT);
     ASSERT_TRUE(WIFEXITED(status));
     ASSERT_EQ(WEXITSTATUS(status), 130);
-    EXPECT_THAT(read_file(folder / "stderr.out"),
+    EXPECT_THAT(read_file(folder / "stderr"),
                 testing::ContainsRegex(
                     "flightwatt-batch: stopped by SIGINT after [0-9]+ of 12 logs; the same command "
                     "goes on from there\n$"));
@@ -127,8 +102,8 @@ TEST_F(KilledBatch, GoesOnAfterCtrlC) {
         ASSERT_TRUE(whole.contains(name)) << name;  // nothing half-written
         EXPECT_EQ(content, whole.at(name)) << name;
     }
-    EXPECT_EQ(wait_for(start("out", 2)), 0);
-    EXPECT_THAT(read_file(folder / "stderr.out"), HasSubstr("flight_10: up to date"));
+    EXPECT_EQ(test::wait_status_of(start("out", 2)), 0);
+    EXPECT_THAT(read_file(folder / "stderr"), HasSubstr("flight_10: up to date"));
     EXPECT_EQ(contents(folder / "out"), whole);
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "helpers/golden_case.h"
+#include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 namespace flightwatt::cli {
 namespace {
@@ -43,28 +43,17 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
-std::string quoted(const std::filesystem::path& path) {
-    return "'" + replaced(path.string(), "'", "'\\''") + "'";
-}
-
-/// Runs the command in an empty folder; what it prints goes beside that folder, so that `ls` shows the case's
-/// own files alone.
+/// Runs the command in an empty folder.
 test::Outcome run_command(const std::string& command) {
-    const auto scratch = test::scratch_dir();
-    const auto work = scratch / "work";
-    make_directories(work);
-    write_file_atomically(scratch / "command.sh", command);
-    const auto line = "cd " + quoted(work) + " && LC_ALL=C COLUMNS=80 SOURCE=" + quoted(test::source_dir()) +
-                      " PATH=" + quoted(test::binary_dir() / "bin") +
-                      ":\"$PATH\" sh ../command.sh < /dev/null > ../stdout 2> ../stderr";
-    const int status = std::system(line.c_str());
-    const auto shown = [&](const char* file) {
+    const auto folder = test::scratch_dir();
+    const auto source = test::source_dir();
+    const auto result =
+        test::run_shell(command, folder, "LC_ALL=C COLUMNS=80 SOURCE=" + test::shell_quoted(source));
+    const auto shown = [&](const std::string& text) {
         // The scratch folder may lie in the source folder, so it goes first.
-        return replaced(replaced(read_file(scratch / file), work.string(), "SCRATCH"),
-                        test::source_dir().string(), "SOURCE");
+        return replaced(replaced(text, folder.string(), "SCRATCH"), source.string(), "SOURCE");
     };
-    return {WIFEXITED(status) ? std::to_string(WEXITSTATUS(status)) : "killed", shown("stdout"),
-            shown("stderr")};
+    return {result.code < 0 ? "killed" : std::to_string(result.code), shown(result.out), shown(result.err)};
 }
 
 class GoldenRun : public testing::TestWithParam<std::string> {};

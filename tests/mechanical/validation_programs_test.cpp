@@ -1,16 +1,15 @@
 // flightwatt-validate and flightwatt-predict as a user runs them.
 
 #include "base/atomic_file.h"
+#include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
-#include <cstdlib>
 #include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 namespace flightwatt::mechanical {
 namespace {
@@ -18,18 +17,8 @@ namespace {
 using testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
-struct Outcome {
-    int code;
-    std::string out;
-    std::string err;
-};
-
-Outcome run(const std::filesystem::path& folder, const std::string& arguments) {
-    const auto command = "cd '" + folder.string() + "' && '" + test::binary_dir().string() +
-                         "/bin/flightwatt' " + arguments + " > stdout.txt 2> stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder / "stdout.txt"),
-            read_file(folder / "stderr.txt")};
+test::ProgramResult run(const std::filesystem::path& folder, const std::string& arguments) {
+    return test::run_shell("flightwatt " + arguments, folder);
 }
 
 std::string sample(const std::string& number) {

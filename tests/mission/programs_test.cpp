@@ -2,16 +2,15 @@
 
 #include "base/atomic_file.h"
 #include "helpers/rejected.h"
+#include "helpers/running_program.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 namespace flightwatt::mission {
 namespace {
@@ -21,19 +20,10 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-struct Outcome {
-    int code;
-    std::string out;
-    std::string err;
-};
-
 /// Runs a program of ours in the test's own folder.
-Outcome run(const std::filesystem::path& folder, const std::string& program, const std::string& arguments) {
-    const auto command = "cd '" + folder.string() + "' && '" + test::binary_dir().string() +
-                         "/bin/flightwatt-" + program + "' " + arguments + " > stdout.txt 2> stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder / "stdout.txt"),
-            read_file(folder / "stderr.txt")};
+test::ProgramResult run(const std::filesystem::path& folder, const std::string& program,
+                        const std::string& arguments) {
+    return test::run_shell("flightwatt-" + program + " " + arguments, folder);
 }
 
 /// A computing mission of an hour at 25 W.

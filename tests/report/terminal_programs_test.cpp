@@ -1,9 +1,8 @@
 // compare and segment on a terminal of their own, and elsewhere.
 
-#include "base/atomic_file.h"
+#include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
-#include <cstdlib>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -17,12 +16,9 @@ using testing::Not;
 
 /// What a shell command prints; script(1) gives it a terminal. Empty if it fails.
 std::string printed(const std::string& environment, const std::string& command, bool on_terminal) {
-    const auto file = test::scratch_dir() / "printed";
-    const auto path = "PATH=" + (test::binary_dir() / "bin").string() + ":$PATH ";
     const auto run = on_terminal ? "script -qec '" + command + "' /dev/null" : command;
-    const auto line = "cd " + test::source_dir().string() + " && " + path + environment + " " + run + " > " +
-                      file.string() + " 2>&1 < /dev/null";
-    return std::system(line.c_str()) == 0 ? read_file(file) : "";
+    const auto result = test::run_shell(run + " 2>&1", test::source_dir(), environment);
+    return result.code == 0 ? result.out : "";
 }
 
 constexpr auto utf8 = "LC_ALL=C.UTF-8 TERM=xterm";

@@ -4,9 +4,14 @@
 
 #include "compute/processes/supervised_processes.h"
 #include "helpers/running_program.h"
+#include "helpers/test_paths.h"
+
+#include <csignal>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace flightwatt::compute {
 namespace {
@@ -41,59 +46,63 @@ class MisbehavingComponent : public testing::Test {
     void expect_nothing_left() const { EXPECT_EQ(test::processes_with(marker), 0); }
 };
 
+// A slow machine may start the component late: where a test waits for what that does, it has a minute.
 constexpr ProfileTiming short_time{0.15, 0.05, 600.0};
-constexpr ProfileTiming until_it_ends{std::nullopt, 0.0, 0.3};
+constexpr ProfileTiming long_time{60.0, 0.0, 600.0};
+constexpr ProfileTiming until_it_ends{std::nullopt, 0.0, 60.0};
+constexpr ProfileTiming until_too_late{std::nullopt, 0.0, 0.3};
 
 TEST_F(MisbehavingComponent, IsSampledForItsTimeAfterTheWarmUp) {
-    const auto done = run("FOREVER", short_time);
+    const auto done = run("FOREVER", {1.0, 0.05, 600.0});
     EXPECT_EQ(done.status, RunStatus::ok) << done.note;
-    EXPECT_NEAR(done.duration_s, 0.15, 1e-9);
-    ASSERT_FALSE(done.trace.time_s.empty());
+    EXPECT_NEAR(done.duration_s, 1.0, 1e-9);
+    ASSERT_GE(done.trace.time_s.size(), 3U);
     EXPECT_GE(done.trace.time_s.front(), 0.05);
-    EXPECT_LE(done.trace.time_s.back(), 0.2);
-    EXPECT_GE(done.trace.time_s.size(), 3U);
+    EXPECT_LE(done.trace.time_s.back(), 1.05);
     expect_nothing_left();
 }
 
 TEST_F(MisbehavingComponent, MayEndByItself) {
     const auto done = run("sleep 0.1", until_it_ends);
     EXPECT_EQ(done.status, RunStatus::ok) << done.note;
-    EXPECT_GT(done.duration_s, 0.09);
-    EXPECT_LT(done.duration_s, 0.3);
+    EXPECT_GE(done.duration_s, 0.09);
 }
 
 TEST_F(MisbehavingComponent, Hangs) {
-    const auto done = run("FOREVER", until_it_ends);
+    const auto done = run("FOREVER", until_too_late);
     EXPECT_EQ(done.status, RunStatus::timed_out);
     EXPECT_EQ(done.note, "still ran after 0.3 s");
     expect_nothing_left();
 }
 
 TEST_F(MisbehavingComponent, HangsAndIgnoresSigterm) {
-    const auto done = run("trap '' TERM; FOREVER; FOREVER", until_it_ends);
+    const auto done = run("trap '' TERM; FOREVER; FOREVER", {std::nullopt, 0.0, 2.0});
     EXPECT_EQ(done.status, RunStatus::timed_out);
     EXPECT_THAT(done.note, HasSubstr("did not answer SIGTERM, killed"));
     expect_nothing_left();
 }
 
 TEST_F(MisbehavingComponent, Crashes) {
-    EXPECT_EQ(run("exit 3", short_time).note, "exit code 3");
-    const auto crashed = run("kill -SEGV $$", short_time);
+    EXPECT_EQ(run("exit 3", long_time).note, "exit code 3");
+    const auto crashed = run("kill -SEGV $$", long_time);
     EXPECT_EQ(crashed.status, RunStatus::failed);
     EXPECT_EQ(crashed.note, "killed by SIGSEGV");
-    EXPECT_EQ(run("exit 0", short_time).status, RunStatus::ended_early);
+    EXPECT_EQ(run("exit 0", long_time).status, RunStatus::ended_early);
 }
 
 TEST_F(MisbehavingComponent, LeavesAChildBehind) {
-    const auto done = run("FOREVER & exit 1", short_time);
+    const auto done = run("FOREVER & exit 1", long_time);
     EXPECT_EQ(done.status, RunStatus::failed);
     EXPECT_EQ(done.note, "exit code 1; left 1 process behind, ended");
     expect_nothing_left();
 }
 
 TEST_F(MisbehavingComponent, ForksTwiceIntoASessionOfItsOwn) {
+    const auto ready = test::scratch_dir() / "ready";
     const auto done =
-        run("setsid sh -c 'trap \"\" TERM; (FOREVER; FOREVER) & exit 0' & sleep 0.1", until_it_ends);
+        run("setsid sh -c 'trap \"\" TERM; (: > " + ready.string() +
+                "; FOREVER; FOREVER) & exit 0' & while ! [ -e " + ready.string() + " ]; do sleep 0.01; done",
+            until_it_ends);
     EXPECT_EQ(done.status, RunStatus::ok) << done.note;
     EXPECT_THAT(done.note, HasSubstr("behind, ended; did not answer SIGTERM, killed"));
     expect_nothing_left();
@@ -118,9 +127,8 @@ TEST(ComponentRun, EndsWithTheFirstOfThoseThatRunTogether) {
     RunFrame frame;
     frame.sampler = &sampler;
     const auto marker = test::new_marker();
-    const auto done = run_component({{"sleep", marker}, {"sleep", "0.1"}}, {std::nullopt, 0.0, 9.0}, frame);
+    const auto done = run_component({{"sleep", marker}, {"sleep", "0.1"}}, until_it_ends, frame);
     EXPECT_EQ(done.status, RunStatus::ok) << done.note;
-    EXPECT_LT(done.duration_s, 5.0);
     EXPECT_EQ(test::processes_with(marker), 0);
 }
 

@@ -177,10 +177,10 @@ TEST_F(SensorTree, NoSensorAndBrokenSensors) {
               "class/power_supply/BAT0/power_now:1: the sensor says 'broken', expected a number");
 }
 
-/// Reads until there are `count` readings, at most for some seconds.
+/// Reads until there are `count` readings, at most for a minute.
 std::vector<PowerReading> read_some(const PowerSampler& sampler, std::size_t count) {
     std::vector<PowerReading> all;
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (all.size() < count && std::chrono::steady_clock::now() < until) {
         for (const auto& reading : sampler.read()) all.push_back(reading);
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
