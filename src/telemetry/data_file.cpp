@@ -1,6 +1,9 @@
 #include "telemetry/data_file.h"
 
 #include "base/error.h"
+#include "telemetry/text/zstd_frames.h"
+
+#include <stdexcept>
 
 #include <boost/iostreams/copy.hpp>
 #include <boost/iostreams/device/array.hpp>
@@ -27,9 +30,10 @@ bool push_decompressor(std::string_view bytes, io::filtering_istream& stream) {
     else if (bytes.starts_with("\xFD"
                                "7zXZ\0"sv))
         stream.push(io::lzma_decompressor());
-    else if (bytes.starts_with("\x28\xB5\x2F\xFD"sv))
+    else if (bytes.starts_with("\x28\xB5\x2F\xFD"sv)) {
+        if (!holds_whole_zstd_frames(bytes)) throw std::runtime_error("a zstd frame is cut off");
         stream.push(io::zstd_decompressor());
-    else
+    } else
         return false;
     return true;
 }
@@ -60,9 +64,9 @@ DataFile::DataFile(const std::filesystem::path& path) {
     if (text_.starts_with("PK\x03\x04"sv)) {
         throw InputError({path.string()}, "is a ZIP archive", "unpack it, or compress with gzip, xz or zstd");
     }
-    io::filtering_istream stream;
-    if (!push_decompressor(text_, stream)) return;
     try {
+        io::filtering_istream stream;
+        if (!push_decompressor(text_, stream)) return;
         stream.push(io::array_source(mapped_.data(), mapped_.size()));
         io::copy(stream, io::back_inserter(decompressed_));
     } catch (const std::exception& error) {

@@ -2,7 +2,6 @@
 
 #include "flight/segmentation.h"
 #include "flight/telemetry_series.h"
-#include "synthetic/log_writer.h"
 
 #include <algorithm>
 
@@ -109,13 +108,6 @@ TEST(SyntheticLog, SaysThatItIsSyntheticAndRepeatsItself) {
               log.data);
     EXPECT_NE(make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 6).data,
               log.data);
-}
-
-TEST(OcamlFloat, WritesAsPaparazziDoes) {
-    EXPECT_EQ(ocaml_float(235.0), "235.");
-    EXPECT_EQ(ocaml_float(-0.0), "-0.");
-    EXPECT_EQ(ocaml_float(-3e-06), "-3e-06");
-    EXPECT_EQ(ocaml_float(12.4214591), "12.421459");
 }
 
 }  // namespace

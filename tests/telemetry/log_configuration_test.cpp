@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "helpers/test_paths.h"
-#include "synthetic/log_writer.h"
 
 #include <fstream>
 
@@ -59,18 +58,6 @@ TEST(LogConfiguration, RefusesAFileWithoutUsableDefinitions) {
     expect_error("<configuration><conf/></configuration>", 0, "no <protocol>");
     expect_error("<configuration>\n<protocol>\n<class>\n</protocol>", 4, "is not XML");
     expect_error("\n<protocol></protocol>", 2, "defines no message");
-}
-
-TEST(LogConfiguration, ReadsWhatTheWriterWrites) {
-    synthetic::LogDocument document;
-    document.data_file = "x.data";
-    document.aircraft = {"7", "Opterra", 15.0, {{3, "Takeoff"}}, CurrentOrigin::sensor};
-    document.telemetry = {{"ENERGY", {{"power", "float", "W", "", {}}}, ".log"}};
-    const auto configuration = parse_log_configuration(to_log_xml(document), "x.log");
-    EXPECT_EQ(configuration.messages.at("ENERGY").fields[0].unit, "W");
-    EXPECT_EQ(configuration.aircraft.at("7").block_names.at(3), "Takeoff");
-    EXPECT_EQ(configuration.aircraft.at("7").current_origin, CurrentOrigin::sensor);
-    EXPECT_EQ(configuration.aircraft.at("7").ground_altitude_m, 15.0);
 }
 
 TEST(LogConfiguration, ReadsTheRealLogsThatStrictParsersRefuse) {

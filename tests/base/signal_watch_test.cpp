@@ -1,0 +1,44 @@
+#include "base/signal_watch.h"
+
+#include <csignal>
+
+#include <gtest/gtest.h>
+#include <poll.h>
+
+namespace flightwatt {
+namespace {
+
+bool is_readable(int file) {
+    pollfd watched{file, POLLIN, 0};
+    return ::poll(&watched, 1, 0) == 1;
+}
+
+TEST(SignalWatch, KeepsSignalsUntilTheyAreAskedFor) {
+    const SignalWatch watch;
+    EXPECT_FALSE(watch.caught());
+    EXPECT_FALSE(is_readable(watch.file()));
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        std::raise(signal);
+        EXPECT_TRUE(is_readable(watch.file()));
+        EXPECT_EQ(watch.caught(), signal);
+        EXPECT_FALSE(watch.caught());
+    }
+}
+
+TEST(SignalWatch, LeavesIgnoredSignalsIgnored) {
+    const auto before = std::signal(SIGHUP, SIG_IGN);
+    {
+        const SignalWatch watch;
+        std::raise(SIGHUP);
+        EXPECT_FALSE(watch.caught());
+    }
+    std::signal(SIGHUP, before);
+}
+
+TEST(SignalWatch, EndsWithItsScope) {
+    { const SignalWatch watch; }
+    EXPECT_EXIT(std::raise(SIGTERM), testing::KilledBySignal(SIGTERM), "");
+}
+
+}  // namespace
+}  // namespace flightwatt

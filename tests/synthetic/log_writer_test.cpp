@@ -1,0 +1,50 @@
+#include "synthetic/log_writer.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::synthetic {
+namespace {
+
+TEST(OcamlFloat, WritesAsPaparazziDoes) {
+    EXPECT_EQ(ocaml_float(235.0), "235.");
+    EXPECT_EQ(ocaml_float(-0.0), "-0.");
+    EXPECT_EQ(ocaml_float(-3e-06), "-3e-06");
+    EXPECT_EQ(ocaml_float(12.4214591), "12.421459");
+}
+
+TEST(OcamlFloat, RoundsToTheMillionth) {
+    EXPECT_EQ(ocaml_float(0.1234567891), "0.123457");
+    EXPECT_EQ(ocaml_float(123456.7891234), "123456.789123");
+}
+
+TEST(DataLine, IsTimeSenderNameAndFields) {
+    EXPECT_EQ(data_line(335.1494, "20", "ENERGY", {"69", "11.704956"}), "335.149 20 ENERGY 69 11.704956\n");
+    EXPECT_EQ(data_line(1.0, "20", "PONG", {}), "1.000 20 PONG \n") << "Paparazzi leaves the blank";
+}
+
+TEST(LogXml, IsReadAsItWasWritten) {
+    LogDocument document;
+    document.comment = "made by a test";
+    document.data_file = "x.data";
+    document.aircraft = {
+        "7", "Opt<e>\"ra\" & Co", 15.0, {{3, "Takeoff"}, {4, "Survey"}}, telemetry::CurrentOrigin::sensor};
+    document.telemetry = {
+        {"ENERGY", {{"power", "float", "W", "", {}}, {"energy", "uint16", "mAh", "", {}}}, ".log"},
+        {"PONG", {}, ".log"}};
+    const auto text = to_log_xml(document);
+    EXPECT_NE(text.find("<!--made by a test-->"), std::string::npos);
+    const auto configuration = telemetry::parse_log_configuration(text, "x.log");
+    ASSERT_EQ(configuration.messages.size(), 2U);
+    const auto& fields = configuration.messages.at("ENERGY").fields;
+    ASSERT_EQ(fields.size(), 2U);
+    EXPECT_EQ(fields[1].name, "energy");
+    EXPECT_EQ(fields[1].type, "uint16");
+    EXPECT_EQ(fields[1].unit, "mAh");
+    const auto& aircraft = configuration.aircraft.at("7");
+    EXPECT_EQ(aircraft.block_names, document.aircraft.block_names);
+    EXPECT_EQ(aircraft.current_origin, telemetry::CurrentOrigin::sensor);
+    EXPECT_EQ(aircraft.ground_altitude_m, 15.0);
+}
+
+}  // namespace
+}  // namespace flightwatt::synthetic
