@@ -1,7 +1,6 @@
 #include "mechanical/covariates.h"
 
 #include "flight/airspeed.h"
-#include "mechanical/prediction/level_law.h"
 
 #include <algorithm>
 #include <vector>
@@ -59,15 +58,6 @@ Covariates covariates_of(const flight::FlightSeries& series, const flight::Sorti
             mean_cubed_airspeed_m3_per_s3(series.airspeed_track, start_s, start_s + early_s);
     }
     return found;
-}
-
-std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> others,
-                                                const PhaseSamples& flight, Covariate covariate) {
-    const auto& value = flight.covariates[covariate];
-    if (!value) return std::nullopt;
-    const auto law = level_law(others, covariate);
-    if (!law) return std::nullopt;
-    return constant_power(level_at(*law, *value));
 }
 
 }  // namespace flightwatt::mechanical

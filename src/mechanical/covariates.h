@@ -2,12 +2,7 @@
 
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
-#include "mechanical/fit/phase_samples.h"
-#include "mechanical/prediction/covariate.h"
-#include "mechanical/validation/baselines.h"
-
-#include <optional>
-#include <span>
+#include "mechanical/covariate.h"
 
 namespace flightwatt::mechanical {
 
@@ -23,11 +18,5 @@ inline constexpr double early_s = 60.0;
 ///   wind_m_per_s, airspeed_m_per_s, ground_speed_m_per_s   means over the first early_s of the cruise
 ///   airspeed_cubed_m3_per_s3   mean cube of the airspeed over that time
 Covariates covariates_of(const flight::FlightSeries& series, const flight::Sortie& sortie);
-
-/// The mean power of a cruise, foretold by one covariate from other flights by their level_law. The spread of
-/// a line has n - 2 degrees of freedom: none is given for 2 flights. std::nullopt if the flight lacks the
-/// covariate or the others have no law of it.
-std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> others,
-                                                const PhaseSamples& flight, Covariate covariate);
 
 }  // namespace flightwatt::mechanical

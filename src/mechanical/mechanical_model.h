@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flight/flight_phases.h"
-#include "mechanical/prediction/level_law.h"
+#include "mechanical/level_law.h"
 #include "mechanical/uncertainty/phase_uncertainty.h"
 
 #include <cstddef>
@@ -43,14 +43,6 @@ struct LevelSpread {
     double correlation_s = 0.0;  ///< for how long that deviation lasts (exponential correlation)
 };
 
-/// Mean power of a phase after the airspeed flown: coefficient * mean of airspeed^3, drag's power in level
-/// flight at constant propulsive efficiency.
-struct AirspeedLaw {
-    std::size_t flights = 0;
-    double coefficient_w_s3_per_m3 = 0.0;
-    double relative_sd = 0.0;  ///< of the flights' own coefficients, as a part of the mean
-};
-
 /// One phase of the model: the flights' weighted average (Eqs. 5-7) and what it rests on.
 struct PhaseModel {
     FourierModel fourier;
@@ -61,10 +53,11 @@ struct PhaseModel {
     std::size_t flights = 0;
     std::optional<PhaseErrors> errors = {};  ///< absent unless they were asked for
     std::optional<PhaseSpread> spread = {};  ///< absent too where a single flight counts
-    std::optional<LevelSpread> level_spread =
-        {};                                    ///< absent with fewer than 2 flights, or if published without
-    std::optional<LevelLaw> level_law = {};    ///< absent unless it was asked for
-    std::optional<AirspeedLaw> airspeed = {};  ///< absent unless 2 flights or more measured their airspeed
+    /// Absent with fewer than 2 flights, or if published without.
+    std::optional<LevelSpread> level_spread = {};
+    std::optional<LevelLaw> level_law = {};  ///< absent unless it was asked for
+    /// Of airspeed_cubed; absent unless 2 flights or more measured their airspeed.
+    std::optional<LevelLaw> airspeed_law = {};
 };
 
 /// One flight's part in one phase.

@@ -1,50 +1,25 @@
-#include "base/toml_reader.h"
+#include "base/toml_numbers.h"
 #include "base/toml_text.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/uncertainty/phase_uncertainty_toml.h"
 
-#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
 namespace {
 
-double positive_number(const TomlTable& table, std::string_view key) {
-    const double value = table.number(key);
-    if (value <= 0.0) {
-        throw InputError(table.where(key), fmt::format("{} = {} is not positive", key, value));
-    }
-    return value;
+double positive(const TomlTable& table, std::string_view key) {
+    return number_in(more_than(0.0), table, key);
 }
 
-double number_from_zero(const TomlTable& table, std::string_view key) {
-    const double value = table.number(key);
-    if (value < 0.0) throw InputError(table.where(key), fmt::format("{} = {} is negative", key, value));
-    return value;
-}
-
-std::size_t count(const TomlTable& table, std::string_view key) {
-    constexpr double largest_exact = 9007199254740992.0;  // 2^53: beyond, a double is no count
-    const double value = number_from_zero(table, key);
-    if (value != std::floor(value) || value > largest_exact) {
-        throw InputError(table.where(key), fmt::format("{} = {} is not a whole number", key, value));
-    }
-    return static_cast<std::size_t>(value);
-}
-
-double weight(const TomlTable& table, std::string_view key) {
-    const double value = number_from_zero(table, key);
-    if (value > 1.0) {
-        throw InputError(table.where(key), fmt::format("{} = {} is more than 1", key, value),
-                         "the weights of a phase are parts of 1");
-    }
-    return value;
+double not_negative(const TomlTable& table, std::string_view key) {
+    return number_in(at_least(0.0), table, key);
 }
 
 FrequencyRange read_range(const TomlTable& table) {
-    FrequencyRange range{positive_number(table, "low_rad"), positive_number(table, "high_rad"),
-                         table.string("at_bound")};
+    FrequencyRange range{positive(table, "low_rad"), positive(table, "high_rad"), table.string("at_bound")};
     if (range.at_bound != "none" && range.at_bound != "low" && range.at_bound != "high") {
         throw InputError(table.where("at_bound"),
                          fmt::format("at_bound = '{}', expected none, low or high", range.at_bound));
@@ -57,61 +32,66 @@ FrequencyRange read_range(const TomlTable& table) {
     return range;
 }
 
-std::size_t flights_of_spread(const TomlTable& table) {
-    const auto flights = count(table, "flights");
-    if (flights < 2) {
-        throw InputError(table.where("flights"),
-                         fmt::format("flights = {}: a spread needs 2 or more", flights));
-    }
-    return flights;
-}
-
 LevelSpread read_level_spread(const TomlTable& table) {
-    const LevelSpread spread{flights_of_spread(table), number_from_zero(table, "level_sd_w"),
-                             number_from_zero(table, "drift_sd_w"), positive_number(table, "correlation_s")};
+    const LevelSpread spread{count_in(table, "flights", 2), not_negative(table, "level_sd_w"),
+                             not_negative(table, "drift_sd_w"), positive(table, "correlation_s")};
     table.refuse_unknown_keys();
     return spread;
 }
 
-AirspeedLaw read_airspeed(const TomlTable& table) {
-    const AirspeedLaw law{flights_of_spread(table), positive_number(table, "coefficient_w_s3_per_m3"),
-                          number_from_zero(table, "relative_sd")};
+Covariate read_covariate(const TomlTable& table) {
+    const auto name = table.string("covariate");
+    if (const auto covariate = covariate_from(name)) return *covariate;
+    throw InputError(table.where("covariate"), fmt::format("there is no covariate '{}'", name),
+                     fmt::format("it is one of {}", covariate_names()));
+}
+
+LevelLaw read_level_law(const TomlTable& table) {
+    const auto covariate = read_covariate(table);
+    const LevelLaw law{.covariate = covariate,
+                       .flights = count_in(table, "flights", least_flights_of_law(covariate)),
+                       .mean = table.number("mean"),
+                       .sd = positive(table, "sd"),
+                       .least = table.number("least"),
+                       .most = table.number("most"),
+                       .mean_power_w = positive(table, "mean_power_w"),
+                       .slope_w = table.number("slope_w"),
+                       .residual_sd_w = not_negative(table, "residual_sd_w")};
+    require_in(between(law.least, law.most), law.mean, "mean", table.where("mean"),
+               "the mean lies between least and most");
+    if (goes_through_origin(covariate)) require_in(more_than(0.0), law.mean, "mean", table.where("mean"));
     table.refuse_unknown_keys();
     return law;
 }
 
-LevelLaw read_level_law(const TomlTable& table) {
-    const auto name = table.string("covariate");
-    const auto covariate = covariate_from(name);
-    if (!covariate) {
-        throw InputError(table.where("covariate"), fmt::format("there is no covariate '{}'", name),
-                         fmt::format("it is one of {}", covariate_names()));
-    }
-    LevelLaw law{*covariate,
-                 count(table, "flights"),
-                 table.number("mean"),
-                 positive_number(table, "sd"),
-                 table.number("least"),
-                 table.number("most"),
-                 positive_number(table, "mean_power_w"),
-                 table.number("slope_w"),
-                 number_from_zero(table, "residual_sd_w")};
-    if (law.flights < least_flights_of_law) {
-        throw InputError(table.where("flights"), fmt::format("flights = {}: a level law needs {} or more",
-                                                             law.flights, least_flights_of_law));
-    }
-    if (!(law.least <= law.mean && law.mean <= law.most)) {
-        throw InputError(table.where("mean"), fmt::format("mean = {} is not between least = {} and most = {}",
-                                                          law.mean, law.least, law.most));
-    }
+LevelLaw read_airspeed_law(const TomlTable& table) {
+    const auto law = read_level_law(table);
+    if (law.covariate == Covariate::airspeed_cubed) return law;
+    throw InputError(table.where("covariate"), fmt::format("an airspeed law of {}", to_string(law.covariate)),
+                     fmt::format("it follows {}", to_string(Covariate::airspeed_cubed)));
+}
+
+/// The airspeed law as FlightWatt 0.1 wrote it, which did not keep its flights' airspeeds.
+LevelLaw read_airspeed_of_0_1(const TomlTable& table) {
+    const auto flights = count_in(table, "flights", 2);
+    const double coefficient = positive(table, "coefficient_w_s3_per_m3");
+    const double relative_sd = not_negative(table, "relative_sd");
     table.refuse_unknown_keys();
-    return law;
+    return {.covariate = Covariate::airspeed_cubed,
+            .flights = flights,
+            .mean = 1.0,
+            .sd = 1.0,
+            .least = 0.0,
+            .most = std::numeric_limits<double>::max(),
+            .mean_power_w = coefficient,
+            .slope_w = coefficient,
+            .residual_sd_w = coefficient * relative_sd};
 }
 
 PhaseModel read_phase(const TomlTable& table) {
     PhaseModel phase;
-    phase.duration_s = positive_number(table, "duration_s");
-    phase.fourier.omega_rad_per_s = positive_number(table, "omega_rad_per_s");
+    phase.duration_s = positive(table, "duration_s");
+    phase.fourier.omega_rad_per_s = positive(table, "omega_rad_per_s");
     phase.fourier.a0_w = table.number("a0_w");
     phase.fourier.cos_w = table.numbers("cos_w");
     phase.fourier.sin_w = table.numbers("sin_w");
@@ -120,24 +100,26 @@ PhaseModel read_phase(const TomlTable& table) {
                          fmt::format("sin_w has {} coefficients and cos_w {}, expected as many of each",
                                      phase.fourier.sin_w.size(), phase.fourier.cos_w.size()));
     }
-    if (table.has("rms_w")) phase.rms_w = number_from_zero(table, "rms_w");
-    if (table.has("samples")) phase.samples = count(table, "samples");
-    if (table.has("flights")) phase.flights = count(table, "flights");
+    if (table.has("rms_w")) phase.rms_w = not_negative(table, "rms_w");
+    if (table.has("samples")) phase.samples = count_in(table, "samples");
+    if (table.has("flights")) phase.flights = count_in(table, "flights");
     if (const auto range = table.optional_table("omega_duration")) phase.range = read_range(*range);
     const auto order = phase.fourier.cos_w.size();
     if (const auto errors = table.optional_table("errors")) phase.errors = read_errors(*errors, order);
     if (const auto spread = table.optional_table("spread")) phase.spread = read_spread(*spread);
     if (const auto spread = table.optional_table("level_spread"))
         phase.level_spread = read_level_spread(*spread);
-    if (const auto airspeed = table.optional_table("airspeed")) phase.airspeed = read_airspeed(*airspeed);
     if (const auto law = table.optional_table("level_law")) phase.level_law = read_level_law(*law);
+    if (const auto law = table.optional_table("airspeed_law")) phase.airspeed_law = read_airspeed_law(*law);
+    if (const auto old = table.optional_table("airspeed")) phase.airspeed_law = read_airspeed_of_0_1(*old);
     table.refuse_unknown_keys();
     return phase;
 }
 
 PhaseContribution read_contribution(const TomlTable& table) {
-    PhaseContribution part{weight(table, "weight"), positive_number(table, "duration_s"),
-                           number_from_zero(table, "rms_w"), count(table, "samples")};
+    PhaseContribution part{
+        number_in(between(0.0, 1.0), table, "weight", "the weights of a phase are parts of 1"),
+        positive(table, "duration_s"), not_negative(table, "rms_w"), count_in(table, "samples")};
     table.refuse_unknown_keys();
     return part;
 }
@@ -154,11 +136,11 @@ FlightContribution read_flight(const TomlTable& table) {
     return flight;
 }
 
-std::string level_law_toml(const LevelLaw& law) {
+std::string level_law_toml(std::string_view key, const LevelLaw& law) {
     return fmt::format(
-        "level_law = {{ covariate = {}, flights = {}, mean = {}, sd = {}, least = {}, most = {}, "
+        "{} = {{ covariate = {}, flights = {}, mean = {}, sd = {}, least = {}, most = {}, "
         "mean_power_w = {}, slope_w = {}, residual_sd_w = {} }}\n",
-        toml_string(to_string(law.covariate)), law.flights, toml_real(law.mean), toml_real(law.sd),
+        key, toml_string(to_string(law.covariate)), law.flights, toml_real(law.mean), toml_real(law.sd),
         toml_real(law.least), toml_real(law.most), toml_real(law.mean_power_w), toml_real(law.slope_w),
         toml_real(law.residual_sd_w.value()));
 }
@@ -182,12 +164,8 @@ std::string phase_toml(flight::Phase name, const PhaseModel& phase) {
             spread->flights, toml_real(spread->level_sd_w), toml_real(spread->drift_sd_w),
             toml_real(spread->correlation_s));
     }
-    if (const auto& law = phase.level_law) text += level_law_toml(*law);
-    if (const auto& law = phase.airspeed) {
-        text +=
-            fmt::format("airspeed = {{ flights = {}, coefficient_w_s3_per_m3 = {}, relative_sd = {} }}\n",
-                        law->flights, toml_real(law->coefficient_w_s3_per_m3), toml_real(law->relative_sd));
-    }
+    if (phase.level_law) text += level_law_toml("level_law", *phase.level_law);
+    if (phase.airspeed_law) text += level_law_toml("airspeed_law", *phase.airspeed_law);
     if (phase.errors) text += fmt::format("\n[{}.errors]\n{}", to_string(name), to_toml(*phase.errors));
     if (phase.spread) text += fmt::format("\n[{}.spread]\n{}", to_string(name), to_toml(*phase.spread));
     return text;

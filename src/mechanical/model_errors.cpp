@@ -1,6 +1,6 @@
 #include "mechanical/model_errors.h"
 
-#include "mechanical/confidence.h"
+#include "base/statistics.h"
 #include "mechanical/flight_envelope.h"
 #include "mechanical/phase_curve.h"
 
@@ -15,9 +15,8 @@ std::string phase_curve_csv(const ModelFit& fit, flight::Phase phase, const Erro
     const auto& model = fit.model.phases[phase];
     const auto points = points_of_curve(model.fourier, model.duration_s) / 5 + 1;
     const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points);
-    const double wide = half_width_in_standard_errors(analysis.errors.degrees_of_freedom);
-    const double population_wide =
-        spread ? half_width_in_standard_errors(spread->counted_flights - 1.0) : 0.0;
+    const double wide = student_t_half_width(analysis.errors.degrees_of_freedom);
+    const double population_wide = spread ? student_t_half_width(spread->counted_flights - 1.0) : 0.0;
     std::string text;
     for (std::size_t i = 0; i < points; ++i) {
         const double tau = static_cast<double>(i) / static_cast<double>(points - 1);

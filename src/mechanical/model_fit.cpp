@@ -1,6 +1,7 @@
 #include "mechanical/model_fit.h"
 
 #include "base/error.h"
+#include "mechanical/fit/level_law_fit.h"
 #include "mechanical/prediction/level_spread.h"
 
 #include <algorithm>
@@ -54,15 +55,16 @@ void refuse_what_is_no_number(flight::Phase phase, const FourierModel& model) {
 
 /// A law with the spread that a prediction needs.
 LevelLaw wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) {
-    const auto law = level_law(flights, covariate);
+    const auto law = fit_level_law(flights, covariate);
     const auto having = law ? law->flights : 0;
-    if (having >= least_flights_of_law && law->residual_sd_w) return *law;
+    constexpr std::size_t needed = 3;
+    if (having >= needed && law->residual_sd_w) return *law;
     throw NoAnswerError(fmt::format(
         "the cruise level cannot follow {}: {}, expected {} flights or more that have it and differ in it",
         to_string(covariate),
         having == 0 ? "fewer than 2 flights tell it, or all tell the same"
                     : fmt::format("{} flights tell it", having),
-        least_flights_of_law));
+        needed));
 }
 
 }  // namespace
@@ -88,7 +90,7 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     refuse_what_is_no_number(phase, fitted.model.fourier);
     fitted.model.level_spread = level_spread(fitted.model, flights);
     if (phase == flight::Phase::cruise) {
-        fitted.model.airspeed = airspeed_law(flights);
+        fitted.model.airspeed_law = fit_level_law(flights, Covariate::airspeed_cubed);
         if (options.level_covariate) fitted.model.level_law = wanted_law(flights, *options.level_covariate);
     }
     return fitted;

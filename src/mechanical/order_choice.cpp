@@ -1,6 +1,7 @@
 #include "mechanical/order_choice.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,14 +19,14 @@ constexpr std::size_t least_samples_a_block = 2;
 /// What is fitted and what is foretold.
 struct Fold {
     std::vector<PhaseSamples> seen;
-    PhaseSamples left_out;
+    PhaseSamples excluded;
 };
 
 std::vector<Fold> leave_one_flight_out(std::span<const PhaseSamples> flights) {
     std::vector<Fold> folds;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         Fold fold;
-        fold.left_out = flights[i];
+        fold.excluded = flights[i];
         for (std::size_t k = 0; k < flights.size(); ++k) {
             if (k != i) fold.seen.push_back(flights[k]);
         }
@@ -40,30 +41,30 @@ std::vector<Fold> blocks_of_time(const PhaseSamples& flight) {
     std::vector<Fold> folds(time_folds);
     for (auto& fold : folds) {
         fold.seen.push_back({flight.flight, flight.duration_s, {}, {}});
-        fold.left_out = {flight.flight, flight.duration_s, {}, {}};
+        fold.excluded = {flight.flight, flight.duration_s, {}, {}};
     }
     for (std::size_t j = 0; j < samples; ++j) {
         const std::size_t out = j * blocks / samples % time_folds;
         for (std::size_t i = 0; i < time_folds; ++i) {
-            auto& part = i == out ? folds[i].left_out : folds[i].seen.front();
+            auto& part = i == out ? folds[i].excluded : folds[i].seen.front();
             part.tau.push_back(flight.tau[j]);
             part.power_w.push_back(flight.power_w[j]);
         }
     }
-    std::erase_if(folds, [](const Fold& fold) { return fold.left_out.tau.empty(); });
+    std::erase_if(folds, [](const Fold& fold) { return fold.excluded.tau.empty(); });
     return folds;
 }
 
 double mean_square_error_w2(flight::Phase phase, const Fold& fold, const PhaseFitOptions& options,
                             const WeightOptions& weights) {
     const auto fit = fit_phase(phase, fold.seen, options);
-    const auto mean = average_phase(fit, flight_weights(fit, phase, weights));
+    const auto average = average_phase(fit, flight_weights(fit, phase, weights));
     double sum = 0.0;
-    for (std::size_t j = 0; j < fold.left_out.tau.size(); ++j) {
-        const double foretold_w = power_w(mean.fourier, fold.left_out.tau[j] * mean.duration_s);
-        sum += std::pow(fold.left_out.power_w[j] - foretold_w, 2);
+    for (std::size_t j = 0; j < fold.excluded.tau.size(); ++j) {
+        const double predicted_w = power_w(average.fourier, fold.excluded.tau[j] * average.duration_s);
+        sum += std::pow(fold.excluded.power_w[j] - predicted_w, 2);
     }
-    return sum / static_cast<double>(fold.left_out.tau.size());
+    return sum / static_cast<double>(fold.excluded.tau.size());
 }
 
 /// One order's errors, fold by fold; empty if one cannot be fitted.
@@ -86,21 +87,11 @@ FoldErrors errors_of(flight::Phase phase, const std::vector<Fold>& folds, const 
     return errors;
 }
 
-double mean_of(const std::vector<double>& values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value / static_cast<double>(values.size());
-    return sum;
-}
-
 void compare(OrderError& error, const std::vector<double>& own, const std::vector<double>& best) {
     std::vector<double> differences;
     for (std::size_t i = 0; i < own.size(); ++i) differences.push_back(own[i] - best[i]);
-    const double mean = mean_of(differences);
-    double square_sum = 0.0;
-    for (const double difference : differences) square_sum += std::pow(difference - mean, 2);
-    const auto folds = static_cast<double>(own.size());
-    error.behind_best_w2 = mean;
-    error.standard_error_w2 = std::sqrt(square_sum / (folds - 1.0) / folds);
+    error.behind_best_w2 = mean(differences);
+    error.standard_error_w2 = std::sqrt(sample_variance(differences) / static_cast<double>(own.size()));
 }
 
 }  // namespace
@@ -126,7 +117,7 @@ OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flig
         all.push_back(errors_of(phase, folds, tried, weighting));
         OrderError error{order, std::nullopt, all.back().reason, std::nullopt, std::nullopt};
         if (!all.back().mean_square_w2.empty()) {
-            const double mean_square_w2 = mean_of(all.back().mean_square_w2);
+            const double mean_square_w2 = mean(all.back().mean_square_w2);
             error.rms_w = std::sqrt(mean_square_w2);
             if (mean_square_w2 < least_w2) {
                 least_w2 = mean_square_w2;

@@ -14,11 +14,11 @@ namespace flightwatt::mechanical {
 /// The orders that are tried: from 0, a constant, to this.
 inline constexpr int highest_tried_order = 6;
 
-/// How well series of one order foretell what they have not seen.
+/// How well series of one order predict what they have not seen.
 struct OrderError {
     int order = 0;
-    std::optional<double> rms_w;              ///< of the power left out; absent if a fold cannot be fitted
-    std::string reason;                       ///< why it is absent
+    std::optional<double> rms_w;  ///< of the power that was held back; absent if a fold cannot be fitted
+    std::string reason;           ///< why it is absent
     std::optional<double> behind_best_w2;     ///< mean square error more than the best order's, over folds,
     std::optional<double> standard_error_w2;  ///< and the standard error of that
 };
@@ -31,9 +31,9 @@ struct OrderChoice {
     std::vector<OrderError> errors;  ///< of orders 0 to highest_tried_order
 };
 
-/// Chooses a phase's order by cross-validation. Several flights: each is left out in turn and its samples are
-/// foretold by the weighted mean curve of the others. One flight: the phase is cut in up to 20 blocks of
-/// consecutive samples, since neighbours in time know each other's noise, and every fifth block is left out
+/// Chooses a phase's order by cross-validation. Several flights: each is held back in turn and its samples are
+/// predicted by the weighted mean curve of the others. One flight: the phase is cut in up to 20 blocks of
+/// consecutive samples, since neighbours in time know each other's noise, and every fifth block is held back
 /// in turn. Chosen is the lowest order whose mean square error is within one standard error (of the
 /// difference, fold by fold) of the least. options.order is not read; weights by hand count as uniform.
 /// Throws NoAnswerError if no order can be fitted.

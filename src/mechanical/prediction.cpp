@@ -17,7 +17,7 @@ struct Expectation {
     double remaining_w = 0.0;
     double level_sd_w = 0.0;
     double weight_square_sum = 1.0;
-    double freedom = 1.0;        ///< of level_sd_w
+    double degrees_of_freedom = 1.0;  ///< of level_sd_w
     double shape_flown_w = 0.0;  ///< what the curve says beyond `flown_w`, where its shape is not believed
     double shape_remaining_w = 0.0;
 };
@@ -48,20 +48,17 @@ Expectation expect_level(const PhaseForecast& cruise, double flown_s, double rem
     expected.flown_w = expected.remaining_w = level.power_w;
     expected.level_sd_w = level.sd_w.value();
     expected.weight_square_sum = level.law_variance;
-    expected.freedom = level.freedom;
+    expected.degrees_of_freedom = level.degrees_of_freedom;
     return expected;
 }
 
 Expectation expect_by_airspeed(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s) {
-    if (!cruise.model.airspeed) {
+    if (!cruise.model.airspeed_law) {
         throw NoAnswerError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
     }
     if (!flown.airspeed_cubed_m3_per_s3) throw NoAnswerError("the flight has not measured its airspeed");
-    const auto& law = *cruise.model.airspeed;
-    const double level_w = law.coefficient_w_s3_per_m3 * *flown.airspeed_cubed_m3_per_s3;
-    const auto flights = static_cast<double>(law.flights);
     return expect_level(cruise, flown.cruise_s(), remaining_s,
-                        {level_w, law.relative_sd * level_w, 1.0 / flights, flights - 1.0});
+                        level_at(*cruise.model.airspeed_law, *flown.airspeed_cubed_m3_per_s3));
 }
 
 Expectation expect_by_covariate(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s) {
@@ -93,15 +90,15 @@ Expectation expect(const PhaseForecast& cruise, const FlownSoFar& flown, double 
 }
 
 /// Of gain = (B^2 + C) / (B^2 + V), to first order: B^2 and the drift's variance are themselves estimated,
-/// with relative variances 2 / freedom, and the gain changes oppositely with the logarithms of both.
-double variance_of_gain(double level_w2, double level_freedom, const Drift& drift, double flown_s,
-                        double remaining_s, double drift_freedom) {
+/// with relative variances 2 / degrees_of_freedom, and the gain changes oppositely with the logarithms of both.
+double variance_of_gain(double level_w2, double level_degrees_of_freedom, const Drift& drift, double flown_s,
+                        double remaining_s, double drift_degrees_of_freedom) {
     const double drift_w2 = variance_of_mean_w2(drift, flown_s);
     const double flown_w2 = level_w2 + drift_w2;
     if (!(flown_w2 > 0.0)) return 0.0;
     const double change =
         level_w2 * (drift_w2 - covariance_of_means_w2(drift, flown_s, remaining_s)) / (flown_w2 * flown_w2);
-    return change * change * (2.0 / level_freedom + 2.0 / drift_freedom);
+    return change * change * (2.0 / level_degrees_of_freedom + 2.0 / drift_degrees_of_freedom);
 }
 
 EnergyEstimate estimate_of(const PhaseForecast& phase, double energy_wh, double duration_s) {
@@ -172,17 +169,18 @@ RestPrediction predict_rest(const PhaseForecast& cruise, const FlownSoFar& flown
                                     rest.gain * rest.gain * variance_of_mean_w2(drift, flown_s));
     // How much a flight drifts differs from flight to flight, so many samples are no more than their flights;
     // and the curve, their average, takes one.
-    const double drift_freedom = static_cast<double>(spread.flights - 1);
-    const double gain_share_w2 =
-        average * flown_w2 *
-        variance_of_gain(level_w2, expected.freedom, drift, flown_s, remaining_s, drift_freedom);
+    const double drift_degrees_of_freedom = static_cast<double>(spread.flights - 1);
+    const double gain_share_w2 = average * flown_w2 *
+                                 variance_of_gain(level_w2, expected.degrees_of_freedom, drift, flown_s,
+                                                  remaining_s, drift_degrees_of_freedom);
     const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
-    add_share(rest.energy, {level_share_w2 * wh2_per_w2, expected.freedom});
-    add_share(rest.energy, {drift_share_w2 * wh2_per_w2, drift_freedom});
+    add_share(rest.energy, {level_share_w2 * wh2_per_w2, expected.degrees_of_freedom});
+    add_share(rest.energy, {drift_share_w2 * wh2_per_w2, drift_degrees_of_freedom});
     // A level that is even over the time errs by the curve's shape, if there is one.
     const double shape_w = expected.shape_remaining_w - rest.gain * expected.shape_flown_w;
-    add_share(rest.energy, {shape_w * shape_w * wh2_per_w2, drift_freedom});
-    add_share(rest.energy, {gain_share_w2 * wh2_per_w2, std::min(expected.freedom, drift_freedom)});
+    add_share(rest.energy, {shape_w * shape_w * wh2_per_w2, drift_degrees_of_freedom});
+    add_share(rest.energy,
+              {gain_share_w2 * wh2_per_w2, std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
     return rest;
 }
 

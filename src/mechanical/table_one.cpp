@@ -1,7 +1,7 @@
 #include "mechanical/table_one.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/confidence.h"
 #include "mechanical/phase_curve.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ std::vector<std::string> column_of(const PhaseModel& phase, std::size_t order) {
 std::vector<std::string> half_widths_of(const PhaseModel& phase, std::size_t order) {
     if (!phase.errors) return std::vector<std::string>(2 * order + 2, "-");
     const auto& errors = *phase.errors;
-    const double wide = half_width_in_standard_errors(errors.degrees_of_freedom);
+    const double wide = student_t_half_width(errors.degrees_of_freedom);
     const auto printed = [&](double error) { return fmt::format("{:.2g}", wide * error); };
     std::vector<std::string> cells{printed(errors.a0_w)};
     for (std::size_t n = 0; n < order; ++n) {

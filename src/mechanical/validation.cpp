@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "mechanical/covariates.h"
+#include "mechanical/fit/level_law_fit.h"
 #include "mechanical/prediction.h"
 #include "mechanical/validation/baselines.h"
 
@@ -64,7 +64,7 @@ void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Cova
     const double duration_s = fold.flown.duration_s;
     for (const auto covariate : covariates) {
         const auto power = fold.phase == flight::Phase::cruise
-                               ? power_by_covariate(fold.others, fold.flown, covariate)
+                               ? power_by_covariate(fold.others, covariate, fold.flown.covariates[covariate])
                                : constant_mean(fold.others);
         if (power) estimates.emplace_back(model_of(covariate), energy_of(*power, duration_s));
     }
@@ -79,7 +79,8 @@ Estimates predict_phase(const Fold& fold, const ModelFitOptions& options) {
         {"nearest_flight", energy_of(power_of_flight(fold.others, fold.nearest.value()), duration_s)}};
     if (fold.phase != flight::Phase::cruise) {
         estimates.emplace_back("airspeed_cubed", energy_of(mean, duration_s));
-    } else if (const auto power = power_at_airspeed(fold.others, fold.flown.airspeed_cubed_m3_per_s3)) {
+    } else if (const auto power = power_by_covariate(fold.others, Covariate::airspeed_cubed,
+                                                     fold.flown.airspeed_cubed_m3_per_s3)) {
         estimates.emplace_back("airspeed_cubed", energy_of(*power, duration_s));
     }
     return estimates;
@@ -112,7 +113,7 @@ Estimates predict_cruise_in_flight(const Fold& fold, const FlownSoFar& flown, do
     };
     update("in_flight", LevelSource::curve);
     update("in_flight_constant", LevelSource::constant);
-    if (forecast.model.airspeed && flown.airspeed_cubed_m3_per_s3) {
+    if (forecast.model.airspeed_law && flown.airspeed_cubed_m3_per_s3) {
         update("in_flight_airspeed", LevelSource::airspeed);
     }
     return estimates;
@@ -173,7 +174,7 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     for (std::size_t i = 0; i < flights.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             if (flights[i].samples.flight != flights[j].samples.flight) continue;
-            throw UsageError(fmt::format("flight '{}' is given twice: it would foretell itself",
+            throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself",
                                          flights[i].samples.flight));
         }
     }

@@ -37,7 +37,7 @@ struct ValidatedFlight {
 ///   fourier          the model of this project (fit_phase_model)
 ///   constant_mean    the mean power of the other flights
 ///   nearest_flight   the mean power of the flight with the nearest durations
-///   airspeed_cubed   cruise: AirspeedLaw at the airspeed that was flown, as if it had been known; other
+///   airspeed_cubed   cruise: the LevelLaw of airspeed_cubed at the airspeed that was flown, as if it had been known; other
 ///                    phases as constant_mean; only if the flight and two others measured airspeed
 ///   by_NAME          cruise: power_by_covariate, for each of `covariates`; other phases as constant_mean
 /// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without

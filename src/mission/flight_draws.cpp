@@ -1,7 +1,7 @@
 #include "mission/flight_draws.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/moments.h"
 #include "mechanical/prediction.h"
 #include "mission/disturbance.h"
 #include "mission/sampling/level_deviation.h"
@@ -61,7 +61,7 @@ void find_duration(const Mission& mission, flight::Phase phase, FlightSpreads& s
         sd_s = *stated_s;
         basis = fmt::format("sd {:.4g} s, stated", sd_s);
     } else if (flown_s.size() >= 2) {
-        const double relative = mechanical::sample_sd(flown_s) / mechanical::mean_of(flown_s);
+        const double relative = sample_sd(flown_s) / mean(flown_s);
         sd_s = mission.duration_s[phase] * relative *
                std::sqrt(1.0 + forecast_of(*mission.mechanical, phase).weight_square_sum);
         basis = fmt::format("sd {:.4g} s, of {} flights", sd_s, flown_s.size());

@@ -1,7 +1,7 @@
 #include "mission/sampled_flights.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/moments.h"
 #include "mission/flight_draws.h"
 #include "mission/flown_charge.h"
 
@@ -178,8 +178,8 @@ SampledFlights sample_flights(const Flyable& flyable, const std::vector<Disturba
     std::vector<double> final_percent;
     final_percent.reserve(landings.size());
     for (const auto& landing : landings) final_percent.push_back(landing.final_soc_percent);
-    flights.final_soc_mean_percent = mechanical::mean_of(final_percent);
-    flights.final_soc_sd_percent = mechanical::sample_sd(final_percent);
+    flights.final_soc_mean_percent = mean(final_percent);
+    flights.final_soc_sd_percent = sample_sd(final_percent);
     std::sort(final_percent.begin(), final_percent.end());
     for (std::size_t i = 0; i < shown_quantiles_percent.size(); ++i)
         flights.final_soc_quantiles_percent[i] = quantile(final_percent, shown_quantiles_percent[i]);

@@ -75,7 +75,7 @@ TEST(RealLogs, GiveTheSameModelRememberedAsAnew) {
     const auto folder = test::scratch_dir();
     const auto flights = test::shared_dir() / "flights";
     const auto anew = to_toml(fit_of(test::batch(flights, folder)));
-    EXPECT_THAT(anew, testing::HasSubstr("airspeed = {")) << "which the series CSV does not hold";
+    EXPECT_THAT(anew, testing::HasSubstr("airspeed_law = {")) << "which the series CSV does not hold";
     EXPECT_EQ(to_toml(fit_of(test::batch(flights, folder))), anew);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "helpers/made_up_flights.h"
-#include "mechanical/confidence.h"
 #include "mechanical/fit/flight_weights.h"
 #include "mechanical/fit/phase_fit.h"
 #include "mechanical/uncertainty/error_analysis.h"
@@ -76,8 +76,7 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
         const auto weights = flight_weights(fit, phase, {mechanical::Weighting::uniform, {}});
         const auto analysis = analyse_errors(flights, fit, weights);
         const auto mean = average_phase(fit, weights);
-        const double half_width =
-            mechanical::half_width_in_standard_errors(analysis.errors.degrees_of_freedom);
+        const double half_width = student_t_half_width(analysis.errors.degrees_of_freedom);
         for (int i = 0; i < points; ++i) {
             const double tau = static_cast<double>(i) / (points - 1);
             const double error_w =

@@ -1,6 +1,7 @@
 #include "mechanical/prediction.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "base/units.h"
 #include "helpers/made_up_flights.h"
 
@@ -29,7 +30,7 @@ TEST(Prediction, BeforeTheFlightIsTheStretchedCurvesEnergyWithStudentsInterval) 
     const auto cruise = forecast({4, 2.0, 1.0, 50.0});
     const auto estimate = predict_before_flight(cruise, 1200.0);
     EXPECT_NEAR(estimate.energy_wh, 2.0 * units::wh_from_joule(energy_j(cruise.model.fourier, 600.0)), 1e-9);
-    const double half_wh = student_t_95(3.0) * 2.0 * std::sqrt(1.25) * 1200.0 / 3600.0;
+    const double half_wh = student_t_half_width(3.0) * 2.0 * std::sqrt(1.25) * 1200.0 / 3600.0;
     EXPECT_NEAR(interval_95(estimate).value().high_wh, estimate.energy_wh + half_wh, 1e-9);
 }
 
@@ -72,7 +73,7 @@ TEST(Prediction, ShrinksByTheVariances) {
     // (B^2 V / (B^2 + V)^2)^2 (2/3 + 2/3) on the variance 8 of what was seen.
     EXPECT_NEAR(variance_w2, 1.25 * (1.0 + 4.0 / 3.0 + 1.0 + 8.0 / 16.0 * 4.0 / 3.0), 1e-3);
     // Each of the three rests on 4 flights.
-    EXPECT_NEAR(rest.energy.variance_square_per_freedom / std::pow(hours, 4),
+    EXPECT_NEAR(rest.energy.variance_square_per_degree_of_freedom / std::pow(hours, 4),
                 1.25 * 1.25 * (1.0 + std::pow(7.0 / 3.0, 2) + std::pow(2.0 / 3.0, 2)) / 3.0, 2e-3);
 }
 
@@ -103,7 +104,8 @@ TEST(Prediction, FollowsTheAirspeedWhereAsked) {
     auto cruise = forecast({4, 5.0, 1e-3, 1.0});
     auto flight = flown(300.0, 20.0);
     EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::airspeed), NoAnswerError);
-    cruise.model.airspeed = AirspeedLaw{3, 0.01, 0.0};
+    cruise.model.airspeed_law =
+        LevelLaw{Covariate::airspeed_cubed, 3, 2000.0, 100.0, 1900.0, 2100.0, 20.0, 1.0, 0.0};
     EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::airspeed), NoAnswerError);
     flight.airspeed_cubed_m3_per_s3 = 2500.0;
     const auto rest = predict_rest(cruise, flight, 900.0, LevelSource::airspeed);

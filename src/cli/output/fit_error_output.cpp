@@ -1,6 +1,6 @@
 #include "cli/output/fit_error_output.h"
 
-#include "mechanical/confidence.h"
+#include "base/statistics.h"
 #include "mechanical/down_weighted.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ nlohmann::ordered_json interval_json(double value, double half_width) {
 
 nlohmann::ordered_json to_json(const mechanical::PhaseModel& phase, const mechanical::PhaseErrors& errors) {
     using Json = nlohmann::ordered_json;
-    const double wide = mechanical::half_width_in_standard_errors(errors.degrees_of_freedom);
+    const double wide = student_t_half_width(errors.degrees_of_freedom);
     const auto intervals = [&](const std::vector<double>& values,
                                const std::vector<double>& standard_errors) {
         Json list = Json::array();

@@ -113,12 +113,12 @@ double simplest_frequency(std::span<const ScaledSamples> flights, int order, con
     const double total = own_square_sum(flights);
     const double rounding = std::max(rounding_level * total, std::numeric_limits<double>::min());
     const double best = std::max(rounding, projected_square_sum(flights, order, theta_rad));
-    double freedom = -1.0;
+    double degrees_of_freedom = -1.0;
     for (const auto& flight : flights) {
-        freedom += static_cast<double>(flight.tau.size()) - coefficient_count(order);
+        degrees_of_freedom += static_cast<double>(flight.tau.size()) - coefficient_count(order);
     }
-    freedom = std::max(1.0, freedom);
-    const double variance = best / freedom;
+    degrees_of_freedom = std::max(1.0, degrees_of_freedom);
+    const double variance = best / degrees_of_freedom;
     for (int multiple = order; multiple >= 2; --multiple) {
         const double reach_rad = turn_between_rad / order * multiple;
         if (multiple * theta_rad + reach_rad > range.high_rad) continue;
@@ -130,7 +130,7 @@ double simplest_frequency(std::span<const ScaledSamples> flights, int order, con
         const int lost_harmonics = order - order / multiple;
         const double lacking = 2.0 * static_cast<double>(flights.size()) * lost_harmonics;
         const double worse = std::max(rounding, simpler.square_sum) - best;
-        const boost::math::fisher_f distribution(lacking, freedom);
+        const boost::math::fisher_f distribution(lacking, degrees_of_freedom);
         const double by_chance =
             lacking * variance *
             boost::math::quantile(boost::math::complement(distribution, harmonic_significance));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flight/flight_phases.h"
-#include "mechanical/prediction/covariate.h"
+#include "mechanical/covariate.h"
 
 #include <cstddef>
 #include <optional>
@@ -21,6 +21,10 @@ struct PhaseSamples {
     std::optional<double> airspeed_cubed_m3_per_s3 = {};
     Covariates covariates = {};  ///< of the cruise, for a level that follows one
 };
+
+/// Mean power [W] of a phase over time: trapezoids between the samples, the first and last value up to the
+/// phase's ends. The samples must not be empty.
+double mean_power_w(const PhaseSamples& samples);
 
 /// One flight; a phase that it lacks, or that was not recorded, is absent.
 struct FlightSamples {

@@ -7,7 +7,7 @@ namespace flightwatt::mechanical {
 /// An independent cause of uncertainty: its variance and the degrees of freedom that the variance rests on.
 struct VarianceShare {
     double variance_wh2 = 0.0;
-    double freedom = 0.0;
+    double degrees_of_freedom = 0.0;
 };
 
 /// An energy that is predicted. Without `uncertainty_known` there is no interval: one flight alone does not
@@ -16,7 +16,8 @@ struct EnergyEstimate {
     double energy_wh = 0.0;
     bool uncertainty_known = true;
     double variance_wh2 = 0.0;
-    double variance_square_per_freedom = 0.0;  ///< sum over the shares of variance^2 / freedom
+    double variance_square_per_degree_of_freedom =
+        0.0;  ///< sum over the shares of variance^2 / degrees_of_freedom
 };
 
 void add_share(EnergyEstimate& estimate, const VarianceShare& share);
@@ -33,8 +34,5 @@ struct EnergyInterval {
 /// 95 % predictive interval: Student's t with Welch and Satterthwaite's degrees of freedom. A low
 /// end below 0 becomes 0: a drone takes no energy back. std::nullopt without known uncertainty.
 std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate);
-
-/// t that a Student variable of so many degrees of freedom stays within with 95 %; 12.7 for 1, 1.96 for many.
-double student_t_95(double freedom);
 
 }  // namespace flightwatt::mechanical

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flight/flight_series.h"
-#include "mechanical/prediction/covariate.h"
+#include "mechanical/covariate.h"
 
 #include <cstddef>
 #include <optional>

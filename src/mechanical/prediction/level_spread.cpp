@@ -1,6 +1,6 @@
 #include "mechanical/prediction/level_spread.h"
 
-#include "mechanical/moments.h"
+#include "base/statistics.h"
 #include "mechanical/prediction/drift.h"
 
 #include <algorithm>
@@ -110,14 +110,6 @@ Drift drift_of(const BlockSums& sums, double length_s, double duration_s) {
 
 }  // namespace
 
-double mean_power_w(const PhaseSamples& samples) {
-    double sum = samples.power_w.front() * samples.tau.front();
-    for (std::size_t i = 1; i < samples.tau.size(); ++i) {
-        sum += 0.5 * (samples.power_w[i] + samples.power_w[i - 1]) * (samples.tau[i] - samples.tau[i - 1]);
-    }
-    return sum + samples.power_w.back() * (1.0 - samples.tau.back());
-}
-
 std::optional<LevelSpread> level_spread(const PhaseModel& model, std::span<const PhaseSamples> flights) {
     if (flights.size() < 2) return std::nullopt;
     std::vector<double> levels_w;
@@ -136,19 +128,6 @@ std::optional<LevelSpread> level_spread(const PhaseModel& model, std::span<const
     }
     const auto drift = drift_of(sums, length_s, sum_s / static_cast<double>(flights.size()));
     return LevelSpread{flights.size(), sample_sd(levels_w), drift.sd_w, drift.correlation_s};
-}
-
-std::optional<AirspeedLaw> airspeed_law(std::span<const PhaseSamples> flights) {
-    std::vector<double> coefficients;
-    for (const auto& flight : flights) {
-        if (flight.airspeed_cubed_m3_per_s3 && *flight.airspeed_cubed_m3_per_s3 > 0.0) {
-            coefficients.push_back(mean_power_w(flight) / *flight.airspeed_cubed_m3_per_s3);
-        }
-    }
-    if (coefficients.size() < 2) return std::nullopt;
-    const double mean = mean_of(coefficients);
-    if (!(mean > 0.0)) return std::nullopt;
-    return AirspeedLaw{coefficients.size(), mean, sample_sd(coefficients) / mean};
 }
 
 }  // namespace flightwatt::mechanical

@@ -8,10 +8,6 @@
 
 namespace flightwatt::mechanical {
 
-/// Mean power [W] of a phase over time: trapezoids between the samples, the first and last value up to the
-/// phase's ends. The samples must not be empty.
-double mean_power_w(const PhaseSamples& samples);
-
 /// The spread of `flights` about the model's phase; std::nullopt for fewer than 2.
 /// level_sd_w: sample standard deviation of the flights' mean powers. The drift is what the model's curve,
 /// put at each flight's own level, leaves of the power in blocks of 30 s (a tenth of the shortest phase, if
@@ -19,9 +15,5 @@ double mean_power_w(const PhaseSamples& samples);
 /// took of them; the correlation lasts no longer than a phase. Where the phases' halves differ by more than
 /// such a drift explains, their difference sets its size.
 std::optional<LevelSpread> level_spread(const PhaseModel& model, std::span<const PhaseSamples> flights);
-
-/// The airspeed law of the flights that measured airspeed, each counting the same; std::nullopt for fewer
-/// than 2 such flights or a mean coefficient that is not positive.
-std::optional<AirspeedLaw> airspeed_law(std::span<const PhaseSamples> flights);
 
 }  // namespace flightwatt::mechanical

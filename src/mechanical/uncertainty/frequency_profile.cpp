@@ -1,6 +1,6 @@
 #include "mechanical/uncertainty/frequency_profile.h"
 
-#include "mechanical/confidence.h"
+#include "base/statistics.h"
 #include "mechanical/fourier_basis.h"
 #include "mechanical/least_squares.h"
 
@@ -69,7 +69,7 @@ FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const 
 
     const auto square_sum = [&](double theta_rad) { return square_sum_w2(flights, order, theta_rad); };
     const double best = square_sum(fit.theta_rad);
-    const double half_width = half_width_in_standard_errors(analysis.errors.degrees_of_freedom);
+    const double half_width = student_t_half_width(analysis.errors.degrees_of_freedom);
     const double limit =
         best + analysis.theta_information * std::pow(half_width * analysis.free_theta_rad, 2);
     const double step_rad = half_width * analysis.free_theta_rad / 4.0;

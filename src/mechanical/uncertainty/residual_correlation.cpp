@@ -125,8 +125,8 @@ NoiseLevel noise_level(const FlightResiduals& flight, double autocorrelation) {
     const auto count = static_cast<double>(flight.tau.size());
     const double square_trace =
         count * count / effective_samples(squares) - 2.0 * spread.squaredNorm() + within.squaredNorm();
-    const double freedom = std::max(1.0, trace * trace / std::max(square_trace, 1e-300));
-    return {flight.residual_w.squaredNorm() / std::max(trace, 1e-300), freedom};
+    const double degrees_of_freedom = std::max(1.0, trace * trace / std::max(square_trace, 1e-300));
+    return {flight.residual_w.squaredNorm() / std::max(trace, 1e-300), degrees_of_freedom};
 }
 
 }  // namespace flightwatt::mechanical

@@ -1,8 +1,7 @@
 #include "mechanical/validation/baselines.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/moments.h"
-#include "mechanical/prediction/level_spread.h"
 
 #include <cmath>
 #include <vector>
@@ -21,7 +20,7 @@ ConstantPower with_spread(double mean_w, const std::vector<double>& powers_w, do
     ConstantPower power{mean_w, std::nullopt, 0.0};
     if (powers_w.size() < 2) return power;
     power.sd_w = sample_sd(powers_w) * factor;
-    power.freedom = static_cast<double>(powers_w.size() - 1);
+    power.degrees_of_freedom = static_cast<double>(powers_w.size() - 1);
     return power;
 }
 
@@ -29,8 +28,7 @@ ConstantPower with_spread(double mean_w, const std::vector<double>& powers_w, do
 
 ConstantPower constant_mean(std::span<const PhaseSamples> flights) {
     const auto powers_w = mean_powers_w(flights);
-    return with_spread(mean_of(powers_w), powers_w,
-                       std::sqrt(1.0 + 1.0 / static_cast<double>(flights.size())));
+    return with_spread(mean(powers_w), powers_w, std::sqrt(1.0 + 1.0 / static_cast<double>(flights.size())));
 }
 
 ConstantPower power_of_flight(std::span<const PhaseSamples> flights, std::size_t index) {
@@ -38,21 +36,12 @@ ConstantPower power_of_flight(std::span<const PhaseSamples> flights, std::size_t
     return with_spread(powers_w[index], powers_w, std::sqrt(2.0));
 }
 
-std::optional<ConstantPower> power_at_airspeed(std::span<const PhaseSamples> flights,
-                                               const std::optional<double>& airspeed_cubed_m3_per_s3) {
-    const auto law = airspeed_law(flights);
-    if (!law || !airspeed_cubed_m3_per_s3) return std::nullopt;
-    const double mean_w = law->coefficient_w_s3_per_m3 * *airspeed_cubed_m3_per_s3;
-    const auto count = static_cast<double>(law->flights);
-    return ConstantPower{mean_w, mean_w * law->relative_sd * std::sqrt(1.0 + 1.0 / count), count - 1.0};
-}
-
 EnergyEstimate energy_of(const ConstantPower& power, double duration_s) {
     EnergyEstimate estimate{units::wh_from_joule(power.mean_w * duration_s), power.sd_w.has_value(), 0.0,
                             0.0};
     if (power.sd_w) {
         const double sd_wh = units::wh_from_joule(*power.sd_w * duration_s);
-        add_share(estimate, {sd_wh * sd_wh, power.freedom});
+        add_share(estimate, {sd_wh * sd_wh, power.degrees_of_freedom});
     }
     return estimate;
 }

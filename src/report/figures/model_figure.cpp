@@ -1,6 +1,6 @@
 #include "report/figures/model_figure.h"
 
-#include "mechanical/confidence.h"
+#include "base/statistics.h"
 #include "mechanical/flight_envelope.h"
 #include "report/sections/phase_words.h"
 
@@ -153,7 +153,7 @@ flight::PerPhase<CurveBand> curve_bands(const mechanical::ModelFit& fit,
     for (const auto phase : flight::all_phases) {
         const auto& fitted = fit.model.phases[phase];
         const auto& analysis = reports[phase].analysis;
-        const double wide = mechanical::half_width_in_standard_errors(analysis.errors.degrees_of_freedom);
+        const double wide = student_t_half_width(analysis.errors.degrees_of_freedom);
         auto& band = bands[phase];
         for (std::size_t i = 0; i < points; ++i) {
             const double time_s = time_at(i, fitted.duration_s);

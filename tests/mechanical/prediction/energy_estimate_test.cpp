@@ -1,20 +1,15 @@
 #include "mechanical/prediction/energy_estimate.h"
 
+#include "base/statistics.h"
+
 #include <gtest/gtest.h>
 
 namespace flightwatt::mechanical {
 namespace {
 
-TEST(EnergyEstimate, KnowsStudentsTable) {
-    EXPECT_NEAR(student_t_95(1), 12.7062, 1e-3);
-    EXPECT_NEAR(student_t_95(2), 4.3027, 1e-3);
-    EXPECT_NEAR(student_t_95(5), 2.5706, 1e-3);
-    EXPECT_NEAR(student_t_95(1e6), 1.95997, 1e-3);
-}
-
-EnergyEstimate estimate(double energy_wh, double variance_wh2, double freedom) {
+EnergyEstimate estimate(double energy_wh, double variance_wh2, double degrees_of_freedom) {
     EnergyEstimate result{energy_wh, true, 0.0, 0.0};
-    add_share(result, {variance_wh2, freedom});
+    add_share(result, {variance_wh2, degrees_of_freedom});
     return result;
 }
 
@@ -30,7 +25,7 @@ TEST(EnergyEstimate, HasAnIntervalOfItsOneShare) {
 TEST(EnergyEstimate, AddsVariancesAndDegreesOfFreedom) {
     const auto sum = sum_of(estimate(10.0, 2.0, 3.0), estimate(20.0, 2.0, 3.0));
     EXPECT_DOUBLE_EQ(sum.energy_wh, 30.0);
-    EXPECT_NEAR(interval_95(sum).value().high_wh, 30.0 + 2.0 * student_t_95(6.0), 1e-9);
+    EXPECT_NEAR(interval_95(sum).value().high_wh, 30.0 + 2.0 * student_t_half_width(6.0), 1e-9);
 }
 
 TEST(EnergyEstimate, WithoutKnownUncertaintyHasNoIntervalNorHasASum) {

@@ -21,11 +21,6 @@ PhaseSamples constant(double power_w, double duration_s) {
     return samples;
 }
 
-TEST(MeanPower, WeighsSamplesByTime) {
-    const PhaseSamples samples{"f", 100.0, {0.1, 0.2, 0.8}, {10.0, 10.0, 20.0}};
-    EXPECT_NEAR(mean_power_w(samples), 10.0 * 0.2 + 15.0 * 0.6 + 20.0 * 0.2, 1e-12);
-}
-
 TEST(LevelSpread, NeedsTwoFlights) {
     const std::vector flights{constant(20.0, 600.0)};
     EXPECT_FALSE(level_spread(cruise_of(1.0, {1.0}, {0.0}), flights).has_value());
@@ -63,18 +58,6 @@ TEST(LevelSpread, FindsTheDriftThatWasMade) {
     EXPECT_GT(spread.drift_sd_w, 0.9 * sd_w);
     EXPECT_LT(spread.drift_sd_w, 1.4 * sd_w);
     EXPECT_NEAR(spread.correlation_s, correlation_s, 0.25 * correlation_s);
-}
-
-TEST(AirspeedLaw, FindsTheCoefficientAndItsSpread) {
-    std::vector flights{constant(10.0, 600.0), constant(33.0, 600.0), constant(99.0, 600.0)};
-    EXPECT_FALSE(airspeed_law(flights).has_value());
-    flights[0].airspeed_cubed_m3_per_s3 = 1000.0;
-    EXPECT_FALSE(airspeed_law(flights).has_value());
-    flights[1].airspeed_cubed_m3_per_s3 = 3000.0;
-    const auto law = airspeed_law(flights).value();
-    EXPECT_EQ(law.flights, 2u);
-    EXPECT_NEAR(law.coefficient_w_s3_per_m3, 0.0105, 1e-12);
-    EXPECT_NEAR(law.relative_sd, std::sqrt(0.5) * 0.001 / 0.0105, 1e-9);
 }
 
 }  // namespace

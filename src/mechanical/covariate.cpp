@@ -1,4 +1,4 @@
-#include "mechanical/prediction/covariate.h"
+#include "mechanical/covariate.h"
 
 #include <string>
 

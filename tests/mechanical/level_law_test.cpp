@@ -1,4 +1,4 @@
-#include "mechanical/prediction/level_law.h"
+#include "mechanical/level_law.h"
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -14,44 +14,38 @@
 namespace flightwatt::mechanical {
 namespace {
 
-PhaseSamples cruise(double power_w, double height_m) {
-    PhaseSamples samples{"flight", 600.0, {0.0, 0.5, 1.0}, {power_w, power_w, power_w}};
-    samples.covariates[Covariate::height] = height_m;
-    samples.airspeed_cubed_m3_per_s3 = 10.0 * height_m;
-    return samples;
-}
+const LevelLaw line{Covariate::height, 3, 100.0, 10.0, 90.0, 110.0, 30.0, 2.0, 0.5};
+const LevelLaw through_origin{Covariate::airspeed_cubed, 3, 1000.0, 100.0, 900.0, 1100.0, 30.0, 3.0, 1.5};
 
-const std::vector<PhaseSamples> flights{cruise(29.0, 90.0), cruise(30.0, 100.0), cruise(31.0, 110.0)};
-
-TEST(LevelLaw, IsARidgeLineThatWeighsAsOneMoreFlight) {
-    const auto law = level_law(flights, Covariate::height).value();
-    EXPECT_EQ(law.flights, 3u);
-    EXPECT_DOUBLE_EQ(law.least, 90.0);
-    EXPECT_DOUBLE_EQ(law.most, 110.0);
-    EXPECT_NEAR(law.slope_w, 2.0 / 3.0, 1e-12);
-    EXPECT_NEAR(law.residual_sd_w.value(), std::sqrt(2.0 / 9.0), 1e-12);
-    const auto level = level_at(law, 105.0);
-    EXPECT_NEAR(level.power_w, 30.0 + 0.5 * 2.0 / 3.0, 1e-12);
-    EXPECT_NEAR(level.law_variance, 1.0 / 3.0 + 0.25 / 3.0, 1e-12);
+TEST(LevelLaw, IsALineWithTheErrorOfItsParameters) {
+    const auto level = level_at(line, 105.0);
+    EXPECT_DOUBLE_EQ(level.power_w, 31.0);
+    EXPECT_DOUBLE_EQ(level.law_variance, 1.25 / 3.0);
+    EXPECT_EQ(level.sd_w, 0.5);
+    EXPECT_EQ(level.degrees_of_freedom, 1.0);
     EXPECT_TRUE(level.within_flights);
 }
 
 TEST(LevelLaw, SaysWhereItReachesBeyondItsFlights) {
-    const auto law = level_law(flights, Covariate::height).value();
-    const auto beyond = level_at(law, 300.0);
-    EXPECT_FALSE(beyond.within_flights);
-    EXPECT_DOUBLE_EQ(beyond.power_w, level_at(law, 110.0).power_w);
+    EXPECT_FALSE(level_at(line, 300.0).within_flights);
+    EXPECT_DOUBLE_EQ(level_at(line, 300.0).power_w, level_at(line, 110.0).power_w);
 }
 
-TEST(LevelLaw, OfCubedAirspeedGoesThroughTheOriginWithARelativeSpread) {
-    const auto law = level_law(flights, Covariate::airspeed_cubed).value();
-    const double coefficient = (29.0 / 900.0 + 30.0 / 1000.0 + 31.0 / 1100.0) / 3.0;
-    const auto near = level_at(law, 1000.0);
-    const auto far = level_at(law, 2000.0);
-    EXPECT_NEAR(near.power_w, 1000.0 * coefficient, 1e-12);
-    EXPECT_NEAR(far.power_w, 2.0 * near.power_w, 1e-12);
-    EXPECT_NEAR(far.sd_w.value(), 2.0 * near.sd_w.value(), 1e-12);
-    EXPECT_EQ(near.freedom, 2.0);
+TEST(LevelLaw, OfCubedAirspeedIsProportionalAndSoIsItsSpread) {
+    const auto level = level_at(through_origin, 2000.0);
+    EXPECT_DOUBLE_EQ(level.power_w, 60.0);
+    EXPECT_DOUBLE_EQ(level.sd_w.value(), 3.0);
+    EXPECT_DOUBLE_EQ(level.law_variance, 1.0 / 3.0);
+    EXPECT_EQ(level.degrees_of_freedom, 2.0);
+    EXPECT_FALSE(level.within_flights);
+}
+
+TEST(LevelLaw, AsConstantPowerHoldsItsOwnError) {
+    const auto power = constant_power(level_at(line, 105.0));
+    EXPECT_DOUBLE_EQ(power.mean_w, 31.0);
+    EXPECT_DOUBLE_EQ(power.sd_w.value(), 0.5 * std::sqrt(1.0 + 1.25 / 3.0));
+    EXPECT_EQ(power.degrees_of_freedom, 1.0);
+    EXPECT_FALSE(constant_power({.power_w = 3.0}).sd_w);
 }
 
 /// Three cruises whose level follows the height exactly: 1 W a 10 m.

@@ -1,0 +1,13 @@
+#include "mechanical/fit/phase_samples.h"
+
+namespace flightwatt::mechanical {
+
+double mean_power_w(const PhaseSamples& samples) {
+    double sum = samples.power_w.front() * samples.tau.front();
+    for (std::size_t i = 1; i < samples.tau.size(); ++i) {
+        sum += 0.5 * (samples.power_w[i] + samples.power_w[i - 1]) * (samples.tau[i] - samples.tau[i - 1]);
+    }
+    return sum + samples.power_w.back() * (1.0 - samples.tau.back());
+}
+
+}  // namespace flightwatt::mechanical
