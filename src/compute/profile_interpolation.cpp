@@ -1,5 +1,7 @@
 #include "compute/profile_interpolation.h"
 
+#include "compute/profiling/thin_plate.h"
+
 #include <cmath>
 #include <limits>
 
@@ -18,7 +20,7 @@ std::vector<std::vector<double>> grid_points(const PowerProfile& profile) {
     return points;
 }
 
-LeaveOneOut leave_grid_nodes_out(const PowerProfile& profile) {
+LeaveOneOut leave_one_out(const PowerProfile& profile) {
     std::vector<double> errors;
     for (std::size_t k = 0; k < profile.power_w.size(); ++k) {
         double sum = 0.0;
@@ -37,7 +39,14 @@ LeaveOneOut leave_grid_nodes_out(const PowerProfile& profile) {
         errors.push_back(ways == 0 ? std::numeric_limits<double>::quiet_NaN()
                                    : sum / ways - profile.power_w[k]);
     }
-    return summarize_left_out("linear between neighbours", std::move(errors), profile.power_w);
+    return summarize_errors("linear between neighbours", std::move(errors), profile.power_w);
+}
+
+std::vector<LeaveOneOut> interpolation_errors(const PowerProfile& profile) {
+    std::vector<LeaveOneOut> errors{leave_one_out(profile)};
+    if (const auto choice = choose_scale(grid_points(profile), profile.power_w))
+        errors.push_back(choice->error);
+    return errors;
 }
 
 }  // namespace flightwatt::compute

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "compute/leave_one_out.h"
 #include "compute/power_profile.h"
-#include "compute/profiling/scattered_interpolation.h"
 
 #include <vector>
 
@@ -10,9 +10,12 @@ namespace flightwatt::compute {
 /// The nodes of a profile, in the order of its power_w.
 std::vector<std::vector<double>> grid_points(const PowerProfile& profile);
 
-/// Leaves each node of a profile out and finds it as a mission would, linearly between its neighbours: the
+/// Finds each node of a profile as a mission would, linearly between its neighbours, without itself: the
 /// mean over the axes that have a neighbour on both sides. Nodes at an end of every axis cannot be found so
 /// (a profile is never extrapolated) and are NaN.
-LeaveOneOut leave_grid_nodes_out(const PowerProfile& profile);
+LeaveOneOut leave_one_out(const PowerProfile& profile);
+
+/// That, and how well the thin plate of --trials does where there are nodes enough.
+std::vector<LeaveOneOut> interpolation_errors(const PowerProfile& profile);
 
 }  // namespace flightwatt::compute

@@ -1,7 +1,9 @@
 #include "compute/profiler.h"
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "compute/profiling/spread_nodes.h"
+#include "compute/profiling/thin_plate.h"
 
 #include <algorithm>
 #include <chrono>
@@ -14,6 +16,14 @@
 namespace flightwatt::compute {
 namespace {
 
+/// As many as say how well they are interpolated: one more than a plane needs.
+void require_enough(std::size_t trials, const ProfiledComponent& component) {
+    const auto fewest = std::max<std::size_t>(3, component.parameters.size() + 2);
+    if (trials >= fewest) return;
+    throw UsageError(
+        fmt::format("--trials is {}, expected {} or more for {}", trials, fewest, component.name));
+}
+
 std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& specification,
                                                    std::optional<std::size_t> trials) {
     std::vector<std::vector<std::size_t>> chosen;
@@ -21,6 +31,7 @@ std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& s
         std::vector<std::size_t> nodes(component.configurations.size());
         std::iota(nodes.begin(), nodes.end(), std::size_t{0});
         if (trials && *trials < nodes.size()) {
+            require_enough(*trials, component);
             std::vector<std::vector<double>> points;
             for (const auto& configuration : component.configurations) points.push_back(configuration.qos);
             nodes = spread_nodes(points, *trials);
@@ -116,7 +127,7 @@ std::vector<PowerEstimate> repeats_of(const std::vector<ProfileRun>& runs, const
     return estimates;
 }
 
-/// Fills in the configurations that were not run, by the method that finds the measured ones best.
+/// Fills in the configurations that were not run.
 void interpolate(const std::vector<std::vector<double>>& missing, ComponentEstimate& estimate) {
     if (missing.empty() || estimate.nodes.empty()) return;
     std::vector<std::vector<double>> known;
@@ -125,10 +136,10 @@ void interpolate(const std::vector<std::vector<double>>& missing, ComponentEstim
         known.push_back(node.qos);
         power_w.push_back(node.total.power_w);
     }
-    const auto ranked = ranked_methods(known, power_w, missing);
-    if (ranked.empty()) return;  // too few to say anything: the grid stays incomplete
-    estimate.interpolation = ranked.front().second;
-    const auto found_w = interpolate_scattered(ranked.front().first, known, power_w, missing);
+    const auto choice = choose_scale(known, power_w, missing);
+    if (!choice) return;  // too many runs failed: the grid stays incomplete
+    estimate.interpolation = choice->error;
+    const auto found_w = interpolate_thin_plate(choice->scale, known, power_w, missing);
     for (std::size_t i = 0; i < missing.size(); ++i) {
         NodeEstimate node{missing[i], {}, false};
         node.total.power_w = found_w[i];

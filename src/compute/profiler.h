@@ -1,8 +1,8 @@
 #pragma once
 
+#include "compute/leave_one_out.h"
 #include "compute/profile_specification.h"
 #include "compute/profiling/profile_runs.h"
-#include "compute/profiling/scattered_interpolation.h"
 
 #include <filesystem>
 #include <functional>
@@ -39,7 +39,7 @@ struct ProfileOutcome {
 
 struct ProfilerOptions {
     std::filesystem::path folder;       ///< of the results
-    std::optional<std::size_t> trials;  ///< configurations of each component to run; none: all
+    std::optional<std::size_t> trials;  ///< configurations of each component to run; absent: all
     int signals = -1;                   ///< as in RunFrame
     std::function<int()> caught;
     std::function<void(const PowerSampler&)> opened;  ///< called before the first run
@@ -48,12 +48,12 @@ struct ProfilerOptions {
 };
 
 /// Profiles: runs what is not done yet, one run after the other, keeping runs.csv and layer 1 in the folder
-/// up to date after each. Throws Interrupted (the folder then tells how far it came), NoAnswerError where
+/// up to date after each. Throws UsageError for trials too few to interpolate from, Interrupted (the folder then tells how far it came), NoAnswerError where
 /// there is no sampler or the idle computer could not be measured, InputError of the sampler's files.
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options);
 
-/// Layer 2 from the runs; configurations that were not to be run are interpolated, those that failed left
-/// out.
+/// Layer 2 from the runs; configurations that were not to be run are interpolated, those that failed are
+/// not in it.
 ComponentEstimate estimate_component(const ProfiledComponent& component, std::size_t index,
                                      const std::vector<ProfileRun>& runs);
 

@@ -281,7 +281,7 @@ TEST_F(Profiler, TrialsInterpolateTheOthers) {
     EXPECT_THAT(text("out/d.csv"), HasSubstr("leaving out one of the 6 measured nodes: RMS error"));
     EXPECT_EQ(read_power_profile(folder / "out/d.csv").power_w.size(), 12U);
     EXPECT_EQ(profile("p.toml", {"--trials", "2"}), 2);
-    EXPECT_THAT(text("stderr"), HasSubstr("--trials is 2, expected 3 or more"));
+    EXPECT_THAT(text("stderr"), HasSubstr("--trials is 2, expected 4 or more for d"));
 }
 
 TEST(PlannedRuns, AreShuffledRepeatByRepeatByTheSeed) {

@@ -45,7 +45,7 @@ TEST(LevelLaw, AsConstantPowerHoldsItsOwnError) {
     EXPECT_DOUBLE_EQ(power.mean_w, 31.0);
     EXPECT_DOUBLE_EQ(power.sd_w.value(), 0.5 * std::sqrt(1.0 + 1.25 / 3.0));
     EXPECT_EQ(power.degrees_of_freedom, 1.0);
-    EXPECT_FALSE(constant_power({.power_w = 3.0}).sd_w);
+    EXPECT_FALSE(constant_power(LawLevel{}).sd_w);
 }
 
 /// Three cruises whose level follows the height exactly: 1 W a 10 m.

@@ -2,8 +2,6 @@
 
 #include "base/text_table.h"
 
-#include <set>
-
 #include <fmt/format.h>
 
 namespace flightwatt::cli {
@@ -114,15 +112,6 @@ nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool abov
         json["components"].push_back(to_json(component, outcome, above_idle));
     }
     return json;
-}
-
-std::vector<compute::LeaveOneOut> interpolation_errors(const compute::PowerProfile& profile) {
-    std::vector<compute::LeaveOneOut> errors{leave_grid_nodes_out(profile)};
-    std::set<compute::ScatteredMethod> seen;
-    for (auto& [choice, error] : compute::ranked_methods(grid_points(profile), profile.power_w)) {
-        if (seen.insert(choice.method).second) errors.push_back(std::move(error));
-    }
-    return errors;
 }
 
 std::string interpolation_text(const std::string& file, std::size_t nodes,

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "compute/power_profile.h"
-#include "compute/profile_interpolation.h"
+#include "compute/leave_one_out.h"
 #include "compute/profile_tables.h"
 
 #include <cstddef>
@@ -21,11 +20,7 @@ nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool abov
 
 nlohmann::ordered_json to_json(const compute::LeaveOneOut& error);
 
-/// The leave-one-out error of a profile's nodes: as missions interpolate, then each method
-/// that --trials may choose, on the scale that suits it.
-std::vector<compute::LeaveOneOut> interpolation_errors(const compute::PowerProfile& profile);
-
-/// Those errors as a table under the name of the profile.
+/// The errors of interpolating a profile as a table under its name.
 std::string interpolation_text(const std::string& file, std::size_t nodes,
                                const std::vector<compute::LeaveOneOut>& errors);
 
