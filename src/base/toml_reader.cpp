@@ -51,7 +51,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
+std::set<AskedKey>* recorded_keys = nullptr;
+
+std::string path_below(const std::string& path, std::string_view key) {
+    return path.empty() ? std::string(key) : path + "." + std::string(key);
+}
+
 }  // namespace
+
+void record_asked_keys(std::set<AskedKey>* asked) { recorded_keys = asked; }
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
     std::string nearest;
@@ -66,16 +74,18 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     return nearest;
 }
 
-TomlTable::TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file)
+TomlTable::TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file,
+                     std::string path)
     : root_(std::move(root)),
       table_(table),
       file_(std::move(file)),
+      path_(std::move(path)),
       asked_(std::make_shared<std::set<std::string, std::less<>>>()) {}
 
 TomlTable parse_toml(std::string_view text, const std::string& file) {
     try {
         auto root = std::make_shared<const toml::table>(toml::parse(text, file));
-        return {root, root.get(), file};
+        return {root, root.get(), file, ""};
     } catch (const toml::parse_error& error) {
         throw InputError(location_of(file, error.source()),
                          fmt::format("is not TOML: {}", error.description()));
@@ -84,8 +94,13 @@ TomlTable parse_toml(std::string_view text, const std::string& file) {
 
 TomlTable read_toml(const std::filesystem::path& path) { return parse_toml(read_file(path), path.string()); }
 
-const toml::node* TomlTable::find(std::string_view key) const {
+void TomlTable::ask(std::string_view key) const {
     asked_->emplace(key);
+    if (recorded_keys != nullptr) recorded_keys->insert({file_, path_, std::string(key)});
+}
+
+const toml::node* TomlTable::find(std::string_view key) const {
+    ask(key);
     return table_->get(key);
 }
 
@@ -141,7 +156,7 @@ std::vector<std::string> TomlTable::strings(std::string_view key) const {
 TomlTable TomlTable::table(std::string_view key) const {
     const auto& node = require(key);
     if (!node.is_table()) wrong_type(file_, node, key, "a table");
-    return {root_, node.as_table(), file_};
+    return {root_, node.as_table(), file_, path_below(path_, key)};
 }
 
 std::optional<TomlTable> TomlTable::optional_table(std::string_view key) const {
@@ -155,7 +170,7 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
     std::vector<TomlTable> result;
     for (const auto& element : *node->as_array()) {
         if (!element.is_table()) wrong_type(file_, element, key, "a table");
-        result.push_back(TomlTable(root_, element.as_table(), file_));
+        result.push_back(TomlTable(root_, element.as_table(), file_, path_below(path_, key)));
     }
     return result;
 }
@@ -192,7 +207,7 @@ void TomlTable::refuse_unknown_keys() const {
 }
 
 void TomlTable::refuse_keys_except(std::initializer_list<std::string_view> known) const {
-    asked_->insert(known.begin(), known.end());
+    for (const auto key : known) ask(key);
     refuse_unknown_keys();
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 
+#include <compare>
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
@@ -54,7 +55,9 @@ class TomlTable {
 
   private:
     friend TomlTable parse_toml(std::string_view text, const std::string& file);
-    TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file);
+    TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file,
+              std::string path);
+    void ask(std::string_view key) const;
 
     const toml::node& require(std::string_view key) const;
     const toml::node* find(std::string_view key) const;
@@ -62,8 +65,21 @@ class TomlTable {
     std::shared_ptr<const toml::table> root_;
     const toml::table* table_;
     std::string file_;
+    std::string path_;  ///< of this table in the file: "", "components.detection", "schedule"
     std::shared_ptr<std::set<std::string, std::less<>>> asked_;
 };
+
+/// A key that a reader asked a table of a file for, whether it was there or not.
+struct AskedKey {
+    std::string file;
+    std::string table;  ///< its path in the file; empty for the file itself
+    std::string key;
+    auto operator<=>(const AskedKey&) const = default;
+};
+
+/// From now on every key that any reader asks for is put into `asked`, until this is called with nullptr. For
+/// the test that holds the documents to the readers; not while several threads read.
+void record_asked_keys(std::set<AskedKey>* asked);
 
 /// Throws InputError with line and column where the text is not TOML.
 TomlTable read_toml(const std::filesystem::path& path);

@@ -1,0 +1,165 @@
+#include "helpers/document.h"
+
+#include "base/atomic_file.h"
+#include "helpers/test_paths.h"
+
+#include <algorithm>
+#include <cctype>
+#include <regex>
+#include <sstream>
+
+namespace flightwatt::test {
+namespace {
+
+constexpr std::size_t longest_line = 120;
+
+std::vector<std::string> matches_of(const std::string& text, const std::regex& pattern) {
+    std::vector<std::string> found;
+    for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
+        found.push_back((*it)[1]);
+    return found;
+}
+
+std::vector<std::string> words_in_code(const std::string& text) {
+    static const std::regex code("`([^`]+)`");
+    return matches_of(text, code);
+}
+
+std::size_t characters_of(const std::string& line) {
+    return static_cast<std::size_t>(std::count_if(
+        line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::vector<std::string> cells_of(const std::string& row) {
+    std::vector<std::string> cells;
+    std::stringstream stream(row.substr(1));
+    for (std::string cell; std::getline(stream, cell, '|');) {
+        const auto from = cell.find_first_not_of(' ');
+        const auto to = cell.find_last_not_of(' ');
+        cells.push_back(from == std::string::npos ? "" : cell.substr(from, to - from + 1));
+    }
+    return cells;
+}
+
+/// "### `[components.NAME]`" is the anchor "componentsname".
+std::string anchor_of(const std::string& heading) {
+    std::string anchor;
+    for (const char c : heading) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (std::isalnum(byte) != 0 || c == '_' || c == '-' || byte >= 0x80) {
+            anchor += static_cast<char>(std::tolower(byte));
+        } else if (c == ' ') {
+            anchor += '-';
+        }
+    }
+    return anchor;
+}
+
+std::string without_brackets(std::string word) {
+    std::erase_if(word, [](char c) { return c == '[' || c == ']'; });
+    return word;
+}
+
+/// Goes through a page line by line.
+class Reader {
+  public:
+    explicit Reader(Document& document) : document_(document) {}
+
+    void read(const std::string& line) {
+        ++line_;
+        if (line.starts_with("```")) return fence(line);
+        if (in_fence_) {
+            if (example_ != nullptr) example_->text += line + "\n";
+            return;
+        }
+        if (line.starts_with("#")) return heading(line);
+        for (const auto& target : matches_of(line, link_)) document_.links.push_back({target, line_});
+        if (line.starts_with("|")) return row(line);
+        in_key_table_ = false;
+        if (characters_of(line) > longest_line && !line.starts_with("<!--") && !line.starts_with("!["))
+            document_.long_lines.push_back(line);
+    }
+
+  private:
+    void fence(const std::string& line) {
+        in_fence_ = !in_fence_;
+        example_ = nullptr;
+        const auto blank = line.find(' ');
+        if (!in_fence_ || blank == std::string::npos) return;
+        document_.examples.push_back({line.substr(blank + 1), "", line_});
+        example_ = &document_.examples.back();
+    }
+
+    void heading(const std::string& line) {
+        const auto level = line.find_first_not_of('#');
+        const auto text = line.substr(level + 1);
+        document_.anchors.push_back(anchor_of(text));
+        in_key_table_ = false;
+        if (level == 2) section_ = text;
+        if (level > 3) return;
+        tables_.clear();
+        if (level == 3)
+            for (const auto& word : words_in_code(text)) tables_.push_back(without_brackets(word));
+    }
+
+    void row(const std::string& line) {
+        const auto cells = cells_of(line);
+        if (cells.size() == 5 && (cells[0] == "key" || cells[0] == "column")) {
+            in_key_table_ = true;
+        } else if (in_key_table_ && !cells[0].starts_with("---")) {
+            for (const auto& key : words_in_code(cells[0]))
+                document_.keys.push_back({section_, tables_, key, cells[2], cells[3], line_});
+        }
+    }
+
+    Document& document_;
+    std::size_t line_ = 0;
+    bool in_fence_ = false;
+    bool in_key_table_ = false;
+    DocumentedExample* example_ = nullptr;
+    std::string section_;
+    std::vector<std::string> tables_;
+    const std::regex link_{R"(\]\(([^)\s]+)\))"};
+};
+
+std::vector<std::string> words_of(const std::string& path) {
+    std::vector<std::string> words;
+    std::stringstream stream(path);
+    for (std::string word; std::getline(stream, word, '.');) words.push_back(without_brackets(word));
+    return words;
+}
+
+bool is_wildcard(const std::string& word) {
+    return !word.empty() &&
+           std::all_of(word.begin(), word.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+}
+
+}  // namespace
+
+Document read_document(const std::filesystem::path& path) {
+    Document document{path, read_file(path), {}, {}, {}, {}, {}};
+    Reader reader(document);
+    std::stringstream stream(document.text);
+    for (std::string line; std::getline(stream, line);) reader.read(line);
+    return document;
+}
+
+std::vector<std::filesystem::path> all_documents() {
+    const auto root = source_dir();
+    std::vector<std::filesystem::path> found{root / "logs" / "README.md"};
+    for (const auto& folder : {root, root / "docs"}) {
+        for (const auto& entry : std::filesystem::directory_iterator(folder))
+            if (entry.path().extension() == ".md") found.push_back(entry.path());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+bool path_matches(const std::string& documented, const std::string& path) {
+    const auto words = words_of(documented);
+    const auto given = words_of(path);
+    return std::equal(words.begin(), words.end(), given.begin(), given.end(),
+                      [](const auto& word, const auto& is) { return word == is || is_wildcard(word); });
+}
+
+}  // namespace flightwatt::test
