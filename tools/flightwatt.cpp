@@ -1,12 +1,17 @@
 // The front: `flightwatt STAGE ...` runs flightwatt-STAGE, which stands beside it, as git does.
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/program_files.h"
 #include "base/toml_reader.h"
+#include "cli/help_pages.h"
 #include "cli/stage.h"
 
+#include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +20,8 @@
 #include <unistd.h>
 
 namespace {
+
+using namespace flightwatt;
 
 struct StageLine {
     std::string_view name;
@@ -25,69 +32,114 @@ constexpr StageLine stages[] = {
     {"parse", "a Paparazzi log to a table of its power samples (CSV)"},
     {"segment", "take-off, cruise and landing of every sortie in a log"},
     {"fit", "several flights to a mechanical power model and Table I"},
-    {"validate", "leaves each flight out and predicts its energy, beside simple baselines"},
+    {"validate", "leave-one-out: each flight's energy predicted by the others, beside simple baselines"},
     {"predict", "the energy to the end of a flight that is in the air"},
     {"battery", "flights to the battery that they were flown on"},
     {"batch", "parse, segment and fit every log of a folder, incrementally"},
     {"profile", "software to its power by quality of service, measured while it runs"},
     {"simulate", "a mission file to its state of charge over time"},
     {"compare", "several missions, ranked by final state of charge"},
-    {"plan", "the schedule worth most that lands a mission with its reserve"},
+    {"plan", "the schedule of highest utility that lands a mission with its reserve"},
     {"report", "flights, model and missions as one page, and figures for papers"},
-    {"synthesize", "made-up Paparazzi logs of flights after a model"},
+    {"synthesize", "synthetic Paparazzi logs of flights after a model"},
 };
 
 std::string overview() {
     std::string text =
         "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
-        "usage: flightwatt STAGE [arguments]; flightwatt STAGE --help tells more\n\nStages:\n";
+        "usage: flightwatt STAGE [arguments]; flightwatt help tells more\n\nStages:\n";
     for (const auto& [name, summary] : stages) text += fmt::format("  {:<11} {}\n", name, summary);
     return text;
 }
 
-std::filesystem::path own_folder() {
-    std::error_code error;
-    const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-    return error ? std::filesystem::path() : self.parent_path();
+bool is_stage(std::string_view name) {
+    return std::any_of(std::begin(stages), std::end(stages),
+                       [&](const StageLine& stage) { return stage.name == name; });
 }
 
-/// Prints the text; the exit code tells whether it was written.
-int show(const std::string& text) {
-    const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
-    if (written) return flightwatt::cli::ok;
-    fmt::print(stderr, "flightwatt: error: cannot write the standard output: {}\n", std::strerror(errno));
-    return flightwatt::cli::internal_error;
-}
-
-int refuse_stage(const std::string& stage) {
+std::vector<std::string> stage_names() {
     std::vector<std::string> names;
-    for (const auto& line : stages) {
-        if (line.name != stage) {
-            names.emplace_back(line.name);
-            continue;
-        }
-        fmt::print(stderr, "flightwatt: error: the program flightwatt-{} is missing beside flightwatt\n",
-                   stage);
-        return flightwatt::cli::internal_error;
+    for (const auto& stage : stages) names.emplace_back(stage.name);
+    return names;
+}
+
+/// "did you mean 'plan'?", or what to do instead where nothing is near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& known,
+                       const char* otherwise) {
+    const auto near = nearest_word(word, known);
+    return near.empty() ? otherwise : fmt::format("did you mean '{}'?", near);
+}
+
+[[noreturn]] void refuse_stage(const std::string& stage) {
+    if (is_stage(stage)) {
+        throw OutputError(fmt::format("the program flightwatt-{} is missing beside flightwatt", stage));
     }
-    const auto near = flightwatt::nearest_word(stage, names);
-    fmt::print(stderr, "flightwatt: error: there is no stage '{}'; {}\n", stage,
-               near.empty() ? "flightwatt alone lists them" : fmt::format("did you mean '{}'?", near));
-    return flightwatt::cli::usage_error;
+    throw UsageError(fmt::format("there is no stage '{}'; {}", stage,
+                                 suggestion(stage, stage_names(), "flightwatt alone lists them")));
+}
+
+/// Becomes flightwatt-STAGE. `arguments` ends with nullptr; its first becomes the program's name.
+[[noreturn]] void run_program(const std::string& stage, char** arguments) {
+    if (stage.find('/') != std::string::npos || stage.starts_with('-')) refuse_stage(stage);
+    const auto program = "flightwatt-" + stage;
+    const auto beside = program_folder() / program;
+    ::execv(beside.c_str(), arguments);
+    if (errno == ENOENT) ::execvp(program.c_str(), arguments);
+    if (errno == ENOENT) refuse_stage(stage);
+    throw OutputError(fmt::format("cannot run {}: {}", beside.string(), std::strerror(errno)));
+}
+
+std::filesystem::path documentation() {
+    return program_files("docs", "FLIGHTWATT_DOCS", "the pages of the documentation");
+}
+
+void list_topics() {
+    std::string text =
+        "usage: flightwatt help STAGE   what a stage does and its options\n"
+        "       flightwatt help PAGE    a page of the documentation\n\nPages:\n";
+    for (const auto& page : cli::help_pages(documentation())) {
+        text += fmt::format("  {:<11} {}\n", page.topic, page.title);
+    }
+    cli::print(text + "\nStages:\n");
+    for (const auto& [name, summary] : stages) cli::print(fmt::format("  {:<11} {}\n", name, summary));
+}
+
+void help(const std::string& topic) {
+    if (is_stage(topic)) {
+        std::string words[] = {topic, "--help"};
+        char* arguments[] = {words[0].data(), words[1].data(), nullptr};
+        run_program(topic, arguments);
+    }
+    auto known = stage_names();
+    for (const auto& page : cli::help_pages(documentation())) {
+        if (page.topic == topic) return cli::show_page(read_file(page.file));
+        known.push_back(page.topic);
+    }
+    throw UsageError(fmt::format("there is no help on '{}'; {}", topic,
+                                 suggestion(topic, known, "flightwatt help lists what there is")));
+}
+
+int run(int argc, char** argv) {
+    const std::string stage = argc > 1 ? argv[1] : "--help";
+    if (stage == "--help" || stage == "-h") {
+        cli::print(overview());
+    } else if (stage == "--version") {
+        cli::print("flightwatt " FLIGHTWATT_VERSION "\n");
+    } else if (stage != "help") {
+        run_program(stage, argv + 1);
+    } else if (argc > 3) {
+        throw UsageError(
+            fmt::format("unexpected argument '{}'; usage: flightwatt help [STAGE|PAGE]", argv[3]));
+    } else if (argc == 3) {
+        help(argv[2]);
+    } else {
+        list_topics();
+    }
+    return cli::ok;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::string stage = argc > 1 ? argv[1] : "--help";
-    if (stage == "--help" || stage == "-h") return show(overview());
-    if (stage == "--version") return show("flightwatt " FLIGHTWATT_VERSION "\n");
-    if (stage.find('/') != std::string::npos || stage.starts_with('-')) return refuse_stage(stage);
-    const auto program = "flightwatt-" + stage;
-    const auto beside = own_folder() / program;
-    ::execv(beside.c_str(), argv + 1);
-    if (errno == ENOENT) ::execvp(program.c_str(), argv + 1);
-    if (errno == ENOENT) return refuse_stage(stage);
-    fmt::print(stderr, "flightwatt: error: cannot run {}: {}\n", beside.string(), std::strerror(errno));
-    return flightwatt::cli::internal_error;
+    return cli::run_guarded("flightwatt", [&] { return run(argc, argv); });
 }

@@ -1,6 +1,7 @@
 // flightwatt batch: parse and segment every log, incrementally, and fit them.
 
 #include "base/atomic_file.h"
+#include "base/signal_watch.h"
 #include "base/toml_reader.h"
 #include "batch/batch_files.h"
 #include "batch/batch_run.h"
@@ -51,10 +52,8 @@ batch::BatchProgress progress_of(const cli::StageCall& call, Watch& watch) {
 std::function<void(int)> farewell_of(const cli::StageCall& call, Watch& watch) {
     return [&](int signal) {
         if (watch.bar) watch.bar->clear();
-        const auto* name = ::sigabbrev_np(signal);
-        cli::note(call,
-                  fmt::format("stopped by SIG{} after {} of {} logs; the same command goes on from there",
-                              name == nullptr ? "?" : name, watch.done.load(), watch.all));
+        cli::note(call, fmt::format("stopped by {} after {} of {} logs; the same command goes on from there",
+                                    signal_name(signal), watch.done.load(), watch.all));
     };
 }
 

@@ -147,10 +147,8 @@ int profile_components(const cli::StageCall& call) {
     try {
         return conclude(call, profile(specification, options), specification);
     } catch (const compute::Interrupted& interrupted) {
-        const auto* name = ::sigabbrev_np(interrupted.signal());
-        cli::note(call,
-                  fmt::format("stopped by SIG{} after {} of {} runs; the same command goes on from there",
-                              name == nullptr ? "?" : name, done, all));
+        cli::note(call, fmt::format("stopped by {} after {} of {} runs; the same command goes on from there",
+                                    signal_name(interrupted.signal()), done, all));
         return killed_by_signal + interrupted.signal();
     }
 }

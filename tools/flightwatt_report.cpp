@@ -1,5 +1,6 @@
 // flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
 
+#include "cli/numeric_options.h"
 #include "cli/output/fit_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
@@ -11,7 +12,6 @@
 #include "report/report_flights.h"
 
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 
 #include <fmt/chrono.h>
@@ -52,19 +52,9 @@ std::string time_of_report() {
     return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
 }
 
-std::uint64_t read_most(const cli::StageCall& call, const std::string& option) {
-    const auto text = call.get<std::string>(option);
-    const auto number = parse_unsigned(text);
-    if (!number) throw UsageError(fmt::format("--{} {}: expected a whole number from 0", option, text));
-    return *number;
-}
-
 battery::IdentificationOptions read_identification_options(const cli::StageCall& call) {
     battery::IdentificationOptions options;
-    options.capacity_ah = call.maybe<double>("capacity");
-    if (options.capacity_ah && !(*options.capacity_ah > 0.0 && std::isfinite(*options.capacity_ah))) {
-        throw UsageError(fmt::format("--capacity is {} Ah, expected more than 0", *options.capacity_ah));
-    }
+    options.capacity_ah = cli::positive_option(call, "capacity", "Ah");
     return options;
 }
 
@@ -79,7 +69,7 @@ void add_model(const cli::StageCall& call, const report::BatchContent& content,
     for (const auto& note : model->notes) cli::warn(call, note);
     sections.push_back(model_section(*model, figures, "model"));
     if (!model->notes.empty()) return;
-    const auto most = read_most(call, "most-validated");
+    const auto most = cli::count_option(call, "max-validation-flights");
     if (content.measured.size() < 2 || content.measured.size() > most) {
         head.notes.push_back(fmt::format(
             "The model is validated with 2 to {} flights, and there are {}; flightwatt validate does it.",
@@ -105,8 +95,8 @@ void add_batch(const cli::StageCall& call, const std::filesystem::path& out,
     sections.push_back(
         report::flights_section(content.flights, model ? std::optional(model->model) : std::nullopt));
     add_model(call, content, model, figures, head, sections);
-    sections.push_back(report::battery_section(
-        report::identify_for_report(content.flights, identification, read_most(call, "most-battery"))));
+    sections.push_back(report::battery_section(report::identify_for_report(
+        content.flights, identification, cli::count_option(call, "max-battery-flights"))));
 }
 
 nlohmann::ordered_json summary_json(const report::PageHead& head,
@@ -140,11 +130,11 @@ int write_page(const cli::StageCall& call) {
     if (const auto title = call.maybe<std::string>("title")) head.title = report::valid_utf8(*title);
     head.facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}};
     report::PublishedFigures published;
-    if (const auto folder = call.maybe<std::string>("digitised")) {
+    if (const auto folder = call.maybe<std::string>("reference-figures")) {
         published = report::read_published_figures(*folder);
         head.facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
     } else {
-        head.facts.emplace_back("beside", "no digitised figures: none were given (--digitised)");
+        head.facts.emplace_back("beside", "no reference figures: none were given (--reference-figures)");
     }
     std::vector<report::Section> sections;
     if (inputs.out) add_batch(call, *inputs.out, published, head, sections);
@@ -173,27 +163,24 @@ int main(int argc, char** argv) {
     stage.name = "report";
     stage.arguments = "[OUT] [MISSION.toml...] -o report.html";
     stage.description =
-        "Writes one HTML page, to be opened offline, of what flightwatt batch left in the folder OUT "
-        "(flights,\n"
-        "model, validation, battery) and of missions (software, schedules, quality of service, plan). Its "
-        "figures are "
-        "Vega-Lite\n"
-        "specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node) "
-        "and\n"
-        ".pdf (where rsvg-convert is). Give the fit options that the batch was given.";
+        R"(Writes one HTML page, to be opened offline, of what flightwatt batch left in the folder OUT (flights,
+model, validation, battery) and of missions (software, schedules, quality of service, plan). Its figures are
+Vega-Lite specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node)
+and .pdf (where rsvg-convert is). Give the fit options that the batch was given.)";
     cli::add_fit_options(stage.options);
     cli::add_keep_option(stage.options);
-    stage.options.add_options()("figures", po::value<std::string>()->value_name("DIR"),
-                                "write every figure to DIR")(
-        "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
-        "digitised", po::value<std::string>()->value_name("DIR"),
-        "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others")(
-        "title", po::value<std::string>()->value_name("TITLE"), "of the page")(
-        "most-validated", po::value<std::string>()->value_name("N")->default_value("30"),
-        "leave flights out in turn where there are no more than N: the work grows with their square")(
-        "capacity", po::value<double>()->value_name("AH"),
-        "the capacity of the flights' battery; without it, what flightwatt battery would say")(
-        "most-battery", po::value<std::string>()->value_name("N")->default_value("12"),
+    const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+    auto add = stage.options.add_options();
+    add("figures", text("DIR"), "write every figure to DIR");
+    add("published", text("MODEL.toml"), "show Table I beside this model's");
+    add("reference-figures", text("DIR"),
+        "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others");
+    add("title", text("TITLE"), "of the page");
+    add("max-validation-flights", text("N")->default_value("30"),
+        "validate by leave-one-out with no more than N flights: the work grows with their square");
+    add("capacity", po::value<double>()->value_name("AH"),
+        "the capacity of the flights' battery; without it, what flightwatt battery would say");
+    add("max-battery-flights", text("N")->default_value("12"),
         "identify the battery from no more than N flights: the work grows with their square");
     return cli::run_stage(argc, argv, stage, write_page);
 }

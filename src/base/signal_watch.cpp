@@ -11,15 +11,25 @@
 
 namespace flightwatt {
 
+std::string signal_name(int signal) {
+    const auto* name = ::sigabbrev_np(signal);
+    return std::string("SIG") + (name == nullptr ? "?" : name);
+}
+
+std::vector<int> ending_signals() {
+    std::vector<int> signals;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction action {};
+        const bool known = ::sigaction(signal, nullptr, &action) == 0;
+        if (known && action.sa_handler != SIG_IGN) signals.push_back(signal);
+    }
+    return signals;
+}
+
 SignalWatch::SignalWatch() {
     sigset_t watched;
     sigemptyset(&watched);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        struct sigaction action {};
-        if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
-            sigaddset(&watched, signal);
-        }
-    }
+    for (const int signal : ending_signals()) sigaddset(&watched, signal);
     ::sigprocmask(SIG_BLOCK, &watched, &before_);
     file_ = ::signalfd(-1, &watched, SFD_CLOEXEC | SFD_NONBLOCK);
     if (file_ >= 0) return;

@@ -2,12 +2,20 @@
 
 #include <csignal>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace flightwatt {
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP do not end the program but wait here to be asked for: for
-/// programs of one thread that have something to put in order first. Signals that the program was started to
-/// ignore (nohup) stay ignored. Throws OutputError where the system has no more files.
+/// "SIGTERM"; "SIG?" for a number without a name.
+std::string signal_name(int signal);
+
+/// SIGINT, SIGTERM and SIGHUP, without those that the program was started to ignore (nohup).
+std::vector<int> ending_signals();
+
+/// While it lives, the ending signals do not end the program but wait here to be asked for: for programs of
+/// one thread that have something to put in order first. Throws OutputError where the system has no more
+/// files.
 class SignalWatch {
   public:
     SignalWatch();

@@ -1,5 +1,7 @@
 #include "batch/interruption.h"
 
+#include "base/signal_watch.h"
+
 #include <csignal>
 #include <utility>
 
@@ -16,17 +18,6 @@ sigset_t set_of(const std::vector<int>& signals) {
     sigemptyset(&set);
     for (const int signal : signals) sigaddset(&set, signal);
     return set;
-}
-
-std::vector<int> signals_not_ignored() {
-    std::vector<int> signals;
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        struct sigaction action {};
-        if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
-            signals.push_back(signal);
-        }
-    }
-    return signals;
 }
 
 void change_mask(int how, const std::vector<int>& signals) {
@@ -55,7 +46,7 @@ bool WriteGate::close(std::chrono::milliseconds patience) {
 }
 
 Interruption::Interruption(WriteGate& gate, std::function<void(int signal)> farewell)
-    : signals_(signals_not_ignored()) {
+    : signals_(ending_signals()) {
     if (signals_.empty()) return;
     change_mask(SIG_BLOCK, signals_);
     const auto wait = [this, &gate, farewell = std::move(farewell), over = over_.get_token()] {

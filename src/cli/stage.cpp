@@ -84,11 +84,10 @@ int run(int argc, char** argv, const StageDefinition& definition, const StageBod
 
 }  // namespace
 
-int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
+int run_guarded(const std::string& program, const std::function<int()>& body) {
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is then a failed write, reported below
-    const std::string program = "flightwatt-" + definition.name;
     try {
-        const int code = run(argc, argv, definition, body);
+        const int code = body();
         if (std::fflush(stdout) != 0 || std::fclose(stdout) != 0) {
             throw OutputError(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
         }
@@ -113,6 +112,10 @@ int run_stage(int argc, char** argv, const StageDefinition& definition, const St
         print_error(program, "", fmt::format("internal error: {}", error.what()));
         return internal_error;
     }
+}
+
+int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
+    return run_guarded("flightwatt-" + definition.name, [&] { return run(argc, argv, definition, body); });
 }
 
 }  // namespace flightwatt::cli

@@ -45,9 +45,12 @@ struct StageCall {
 
 using StageBody = std::function<int(const StageCall&)>;
 
-/// The frame of every stage program: parses options, runs the body, turns exceptions into one line on the
-/// standard error and the exit code of the house, and makes sure that the standard output was written.
+/// Parses the options of a stage, answers --help and --version, and runs the body, guarded as below.
 int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body);
+
+/// The exit code of the body. An exception becomes one line on the standard error and its exit code; an
+/// output that was not written (full disk, closed pipe) is an error as well. Closes the standard output.
+int run_guarded(const std::string& program, const std::function<int()>& body);
 
 /// The result to --output's file (atomically), or to the standard output unless --json claims that.
 void write_result(const StageCall& call, std::string_view content);

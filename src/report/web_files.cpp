@@ -2,25 +2,12 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-
-#include <cstdlib>
+#include "base/program_files.h"
 
 namespace flightwatt::report {
 
 std::filesystem::path web_folder() {
-    std::filesystem::path folder;
-    if (const char* named = std::getenv("FLIGHTWATT_WEB")) {
-        folder = named;
-    } else {
-        std::error_code error;
-        const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-        folder = program.parent_path().parent_path() / "share" / "flightwatt" / "web";
-    }
-    if (!std::filesystem::is_directory(folder)) {
-        throw InputError({folder.string()}, "the report's web files are not there",
-                         "FLIGHTWATT_WEB can name the project's folder web/");
-    }
-    return folder;
+    return program_files("web", "FLIGHTWATT_WEB", "the report's web files");
 }
 
 WebFiles read_web_files(const std::filesystem::path& folder) {

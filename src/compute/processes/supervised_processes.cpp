@@ -1,6 +1,7 @@
 #include "compute/processes/supervised_processes.h"
 
 #include "base/error.h"
+#include "base/signal_watch.h"
 #include "compute/processes/supervisor.h"
 
 #include <cerrno>
@@ -33,8 +34,7 @@ std::string to_string(const EndedCommand& ended) {
         return fmt::format("cannot be started: {}", std::strerror(ended.start_error));
     }
     if (WIFSIGNALED(ended.wait_status)) {
-        const auto* name = ::sigabbrev_np(WTERMSIG(ended.wait_status));
-        return fmt::format("killed by SIG{}", name == nullptr ? "?" : name);
+        return fmt::format("killed by {}", signal_name(WTERMSIG(ended.wait_status)));
     }
     return fmt::format("exit code {}", WEXITSTATUS(ended.wait_status));
 }
