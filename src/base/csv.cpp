@@ -5,6 +5,7 @@
 #include "base/number.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -107,6 +108,18 @@ std::string csv_cell(std::string_view text) {
         quoted += c;
     }
     return quoted + '"';
+}
+
+CsvWriter::CsvWriter(const std::vector<std::string_view>& columns, int digits)
+    : columns_(columns.size()), digits_(digits), text_(fmt::format("{}\n", fmt::join(columns, ","))) {}
+
+std::string CsvWriter::cell(double number) const {
+    return digits_ > 0 ? fmt::format("{:.{}g}", number, digits_) : fmt::format("{}", number);
+}
+
+void CsvWriter::add_row(const std::vector<std::string>& cells) {
+    if (cells.size() != columns_) throw std::logic_error("a CSV row of another length than its header");
+    text_ += fmt::format("{}\n", fmt::join(cells, ","));
 }
 
 }  // namespace flightwatt

@@ -2,9 +2,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace flightwatt {
 
@@ -39,5 +43,36 @@ double cell_number(const CsvTable& table, const CsvTable::Row& row, std::size_t 
 
 /// `text` as one CSV cell: quoted if it holds a comma, a quote or a line break.
 std::string csv_cell(std::string_view text);
+
+/// A CSV text, written row by row.
+class CsvWriter {
+  public:
+    /// `digits`: the significant digits of numbers that are not whole; 0: as many as reading them back takes.
+    explicit CsvWriter(const std::vector<std::string_view>& columns, int digits = 0);
+
+    /// One row: numbers, texts (quoted where they need it), true and false; an absent optional is an empty
+    /// cell. Throws std::logic_error for more or fewer cells than columns.
+    template <typename... Cells>
+    void add(const Cells&... cells) {
+        add_row({cell(cells)...});
+    }
+    const std::string& text() const { return text_; }
+
+  private:
+    std::string cell(double number) const;
+    std::string cell(std::string_view text) const { return csv_cell(text); }
+    template <typename T>
+    requires std::is_integral_v<T> std::string cell(T number)
+    const { return fmt::format("{}", number); }
+    template <typename T>
+    std::string cell(const std::optional<T>& value) const {
+        return value ? cell(*value) : std::string();
+    }
+    void add_row(const std::vector<std::string>& cells);
+
+    std::size_t columns_;
+    int digits_;
+    std::string text_;
+};
 
 }  // namespace flightwatt

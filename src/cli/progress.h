@@ -17,7 +17,7 @@ struct ProgressState {
 };
 
 /// The state as one line of at most `width` characters: "[#####.....] 512/1000, 42.1 logs/s, 0:12 left". What
-/// does not fit goes: the bar gets shorter, then rate and remaining time are left out.
+/// does not fit goes: the bar gets shorter, then rate and remaining time are not shown.
 std::string progress_text(const ProgressState& state, const std::string& unit, std::size_t width);
 
 /// A progress bar on a terminal, drawn at most ten times a second in the terminal's width. It draws nothing

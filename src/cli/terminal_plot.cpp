@@ -132,10 +132,10 @@ std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) 
         text += labels[row] + "\n";
     }
     const auto end = fmt::format("{:.0f} {}", x_high, plot.x_label);
-    const auto begin = fmt::format("{:.0f}", x_low);
+    const auto start = fmt::format("{:.0f}", x_low);
     const auto gap =
-        canvas.columns > begin.size() + end.size() ? canvas.columns - begin.size() - end.size() : 1;
-    return text + fmt::format("{:>{}}{}{:>{}}{}\n", "", axis_columns, begin, "", gap, end);
+        canvas.columns > start.size() + end.size() ? canvas.columns - start.size() - end.size() : 1;
+    return text + fmt::format("{:>{}}{}{:>{}}{}\n", "", axis_columns, start, "", gap, end);
 }
 
 }  // namespace flightwatt::cli

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "cli/output/battery_output.h"
 #include "report/figures/battery_figures.h"
 #include "report/html.h"
 
@@ -17,24 +18,24 @@ namespace {
 /// What the error says, without the place of a file that the reader did not write.
 std::string reason_of(const InputError& error, const std::string& flight) {
     const std::string text = error.what();
-    const auto begin = text.find(flight + ": ");
-    return begin == std::string::npos ? text : text.substr(begin + flight.size() + 2);
+    const auto start = text.find(flight + ": ");
+    return start == std::string::npos ? text : text.substr(start + flight.size() + 2);
 }
 
 /// The flight's record, or why it has none.
 void add_record(ReportBattery& battery, const ReportFlight& flight) {
     if (!flight.rejected.empty()) {
-        battery.silent.push_back({flight.name, "rejected: " + flight.rejected});
+        battery.excluded.push_back({flight.name, "rejected: " + flight.rejected});
         return;
     }
     if (!flight.unusable_power.empty()) {
-        battery.silent.push_back({flight.name, flight.unusable_power});
+        battery.excluded.push_back({flight.name, flight.unusable_power});
         return;
     }
     try {
         battery.records.push_back(battery::discharge_record(flight.series));
     } catch (const InputError& error) {
-        battery.silent.push_back({flight.name, reason_of(error, flight.name)});
+        battery.excluded.push_back({flight.name, reason_of(error, flight.name)});
     }
 }
 
@@ -49,60 +50,31 @@ std::vector<battery::DischargeRecord> spread_evenly(std::vector<battery::Dischar
     return chosen;
 }
 
+/// The circuit's parameters, and the capacity.
 TextTable parameters_table(const battery::BatteryIdentification& identified) {
-    TextTable table{{"parameter", "value", "95 %, low", "95 %, high", "known from"}, {}};
-    const auto add = [&](const std::string& name, double value,
-                         const std::optional<battery::Interval>& interval, const std::string& origin) {
-        const auto end = [&](double battery::Interval::*side) {
-            return interval ? fmt::format("{:.4g}", (*interval).*side) : std::string("-");
-        };
-        table.rows.push_back({name, fmt::format("{:.4g}", value), end(&battery::Interval::low),
-                              end(&battery::Interval::high), origin});
+    auto table = cli::parameters_table(identified);
+    const auto& capacity = identified.capacity;
+    const auto end = [&](double battery::Interval::*side) {
+        return capacity.interval_ah ? fmt::format("{:.4g}", (*capacity.interval_ah).*side) : std::string("-");
     };
-    const std::string voltages = "voltage under load";
-    add("series resistance [ohm]", identified.fit.resistance_ohm, identified.errors.resistance_ohm, voltages);
-    if (identified.fit.rc_resistance_ohm > 0.0) {
-        add("RC pair: resistance [ohm]", identified.fit.rc_resistance_ohm,
-            identified.errors.rc_resistance_ohm, voltages);
-        add("RC pair: time constant [s]", identified.fit.rc_time_constant_s,
-            identified.errors.rc_time_constant_s, voltages);
-    }
-    add("capacity [Ah]", identified.capacity.value_ah, identified.capacity.interval_ah,
-        to_string(identified.capacity.origin));
-    return table;
-}
-
-TextTable records_table(const ReportBattery& battery) {
-    TextTable table{{"flight", "at rest [V]", "missing [Ah]", "drawn [Ah]", "samples", "unused",
-                     "fitted [mV]", "left out [mV]", "beyond the others [%]"},
-                    {}};
-    const auto& flights = battery.identified->flights;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto& flight = flights[i];
-        table.rows.push_back({flight.flight, fmt::format("{:.3f}", flight.resting_voltage_v),
-                              fmt::format("{:.3f}", flight.initial_charge_ah),
-                              fmt::format("{:.3f}", flight.drawn_ah), fmt::format("{}", flight.samples),
-                              fmt::format("{}", flight.unused),
-                              fmt::format("{:.1f}", units::mv_from_v(flight.voltage_rms_v)), "-", "-"});
-        if (i >= battery.left_out.size()) continue;
-        auto& row = table.rows.back();
-        row[row.size() - 2] = fmt::format("{:.1f}", units::mv_from_v(battery.left_out[i].voltage_rms_v));
-        row.back() = fmt::format("{:.0f}", battery.left_out[i].beyond_percent);
-    }
+    table.rows.push_back({"capacity_ah", fmt::format("{:.4g}", capacity.value_ah),
+                          end(&battery::Interval::low), end(&battery::Interval::high)});
+    table.header.emplace_back("known from");
+    for (auto& row : table.rows) row.emplace_back("voltage under load");
+    table.rows.back().back() = to_string(capacity.origin);
     return table;
 }
 
 std::string rests_on(const ReportBattery& battery) {
     auto text = fmt::format(
         "A Th\u00e9venin circuit, identified from voltage, current and charge of {} flight{}, {} LiPo cells "
-        "in "
-        "series: voltages are met within {:.1f} mV RMS.",
+        "in series: voltages are met within {:.1f} mV RMS.",
         battery.records.size(), battery.records.size() == 1 ? "" : "s", battery.identified->cells,
         units::mv_from_v(battery.identified->fit.rms_v));
     if (battery.records.size() < battery.usable) {
         text += fmt::format(
-            " They are spread evenly among the {} that could be used: --most-battery limits "
-            "them, because the work grows with their square.",
+            " They are spread evenly among the {} that could be used: --max-battery-flights "
+            "limits them, because the work grows with their square.",
             battery.usable);
     }
     return text;
@@ -118,16 +90,16 @@ std::string some_of(const std::vector<std::string>& names) {
     return text;
 }
 
-std::string silent_html(const ReportBattery& battery) {
-    if (battery.silent.empty()) return "";
+std::string excluded_html(const ReportBattery& battery) {
+    if (battery.excluded.empty()) return "";
     std::map<std::string, std::vector<std::string>> flights_of_reason;
-    for (const auto& silence : battery.silent) flights_of_reason[silence.reason].push_back(silence.flight);
+    for (const auto& [flight, reason] : battery.excluded) flights_of_reason[reason].push_back(flight);
     TextTable table{{"flights", "number", "why"}, {}};
     for (const auto& [reason, flights] : flights_of_reason) {
         table.rows.push_back({some_of(flights), fmt::format("{}", flights.size()), reason});
     }
     return "<h3>Not used for the battery</h3>\n" +
-           table_html(table, {"Flights that say nothing of the battery, and why", false, {}});
+           table_html(table, {"Flights that were excluded, and why", false, {}});
 }
 
 void add_identified(Section& section, const ReportBattery& battery) {
@@ -146,10 +118,11 @@ void add_identified(Section& section, const ReportBattery& battery) {
     }
     section.html += table_html(parameters_table(identified), {"Parameters of the battery", false, {}});
     add_figure(section, voltage_figure(identified.battery, battery.records, "battery-voltage"));
-    section.html += table_html(records_table(battery), {"Flights in the fit of the battery", true, {}});
+    section.html += table_html(cli::flights_table(*battery.identified, battery.leave_one_out),
+                               {"Flights in the fit of the battery", true, {}});
     section.html += paragraph(
-        "Left out: how far the battery of the other flights is off this flight's voltage, RMS; beyond the "
-        "others: part of its samples with more charge drawn than in any other flight.",
+        "Left out: RMS error of this flight's voltage by the battery of the other flights; beyond the others: "
+        "part of its samples with more charge drawn than in any other flight.",
         "soft");
     add_figure(section, open_circuit_figure(identified, "battery-open-circuit"));
 }
@@ -164,12 +137,12 @@ ReportBattery identify_for_report(std::span<const ReportFlight> flights,
     battery.records = spread_evenly(std::move(battery.records), most);
     if (battery.records.empty()) {
         battery.no_answer = battery.usable == 0 ? "no flight has a voltage and a current to identify it from"
-                                                : "--most-battery is 0";
+                                                : "--max-battery-flights is 0";
         return battery;
     }
     try {
         battery.identified = identify_battery(battery.records, options);
-        battery.left_out = leave_each_out(battery.records, options);
+        battery.leave_one_out = leave_each_out(battery.records, options);
     } catch (const NoAnswerError& error) {
         battery.no_answer = error.what();
     }
@@ -180,17 +153,17 @@ Section battery_section(const ReportBattery& battery) {
     Section section{"battery", "Battery", "", {}};
     if (battery.identified) {
         add_identified(section, battery);
-        if (battery.left_out.empty()) {
+        if (battery.leave_one_out.empty()) {
             section.html +=
                 paragraph(battery.no_answer.empty()
-                              ? "A single flight: none can be left out to check the battery."
-                              : "Flights could not be left out to check the battery: " + battery.no_answer,
+                              ? "A single flight: there is no other one to check the battery with."
+                              : "The battery was not checked by leave-one-out: " + battery.no_answer,
                           "soft");
         }
     } else {
         section.html += paragraph("The battery was not identified: " + battery.no_answer + ".", "warning");
     }
-    section.html += silent_html(battery);
+    section.html += excluded_html(battery);
     return section;
 }
 

@@ -11,20 +11,20 @@
 
 namespace flightwatt::report {
 
-/// A flight that says nothing of the battery.
-struct BatterySilence {
+/// A flight that the identification does not use.
+struct ExcludedFlight {
     std::string flight;
     std::string reason;
 };
 
-/// The battery that flights were flown on, as far as they tell it.
+/// The battery that the flights were flown on, as identified from them.
 struct ReportBattery {
     std::vector<battery::DischargeRecord> records;  ///< of the flights that it rests on
-    std::vector<BatterySilence> silent;
+    std::vector<ExcludedFlight> excluded;
     std::size_t usable = 0;  ///< flights that could be used; more than records where their number is limited
     std::optional<battery::BatteryIdentification> identified;
-    std::vector<battery::LeftOutCheck> left_out;  ///< one a record, or empty
-    std::string no_answer;                        ///< why it was not identified
+    std::vector<battery::LeftOutCheck> leave_one_out;  ///< one a record, or empty
+    std::string no_answer;                             ///< why it was not identified
 };
 
 /// Identifies the battery from the flights that have measured current and voltage: from `most` of them,
@@ -33,8 +33,8 @@ struct ReportBattery {
 ReportBattery identify_for_report(std::span<const ReportFlight> flights,
                                   const battery::IdentificationOptions& options, std::size_t most);
 
-/// Measured against modelled voltage, the open-circuit curve, parameters with intervals and how well flights
-/// are foretold that the fit has not seen; or why there is no such battery.
+/// Measured against modelled voltage, the open-circuit curve, parameters with intervals and how well each
+/// flight is predicted by the others; or why there is no such battery.
 Section battery_section(const ReportBattery& battery);
 
 }  // namespace flightwatt::report

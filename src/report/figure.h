@@ -43,7 +43,7 @@ class FigureData {
     VegaJson format() const;
 };
 
-/// A specification's begin: schema and description.
+/// The start of a specification: schema and description.
 VegaJson new_spec(const Figure& figure);
 
 /// A channel of numbers: {"field", "type", "title"} and whatever `more` adds.

@@ -62,7 +62,7 @@ std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie
     cells.push_back(closure_percent(sums));
     cells.push_back(fmt::format("{}", sums.gaps));
     cells.push_back(fmt::format("{}", flight.warnings.size()));
-    cells.emplace_back(flight.left_out.empty() ? "all" : flight.unusable_power.empty() ? "in part" : "no");
+    cells.emplace_back(flight.exclusions.empty() ? "all" : flight.unusable_power.empty() ? "in part" : "no");
     return cells;
 }
 
@@ -87,7 +87,7 @@ std::string flights_table_html(std::span<const ReportFlight> flights) {
 
 /// Every reason once, with the flights that it holds for, in their order.
 std::string excluded_html(std::span<const ReportFlight> flights) {
-    TextTable table{{"flights", "left out", "reason"}, {}};
+    TextTable table{{"flights", "excluded", "reason"}, {}};
     const auto add = [&](const std::string& flight, const std::string& what, const std::string& reason) {
         const auto same = std::find_if(table.rows.begin(), table.rows.end(),
                                        [&](const auto& row) { return row[1] == what && row[2] == reason; });
@@ -99,13 +99,14 @@ std::string excluded_html(std::span<const ReportFlight> flights) {
     };
     for (const auto& flight : flights) {
         if (!flight.rejected.empty()) add(flight.name, "rejected", flight.rejected);
-        for (const auto& reason : flight.left_out) {
+        for (const auto& reason : flight.exclusions) {
             const auto name = flight.name + ": ";
-            add(flight.name, "of the model", reason.starts_with(name) ? reason.substr(name.size()) : reason);
+            add(flight.name, "from the model",
+                reason.starts_with(name) ? reason.substr(name.size()) : reason);
         }
     }
-    if (table.rows.empty()) return paragraph("Nothing was left out.");
-    return "<h3>Left out, and why</h3>\n" + table_html(table, {"What was left out, and why", false, {}});
+    if (table.rows.empty()) return paragraph("Nothing was excluded.");
+    return "<h3>Excluded, and why</h3>\n" + table_html(table, {"What was excluded, and why", false, {}});
 }
 
 double seconds_in_air(const ReportFlight& flight) {
@@ -142,10 +143,9 @@ Section flights_section(std::span<const ReportFlight> flights,
                                         [](const ReportFlight& flight) { return !flight.rejected.empty(); });
     section.html +=
         paragraph(fmt::format("{} logs, {} of them rejected. Durations, mean power and energy are those of "
-                              "the power samples between "
-                              "lift-off and touchdown; counter is the autopilot's own energy counter over "
-                              "the same time, closure how "
-                              "much the integral lies above it. A click on a column sorts.",
+                              "the power samples between lift-off and touchdown; counter is the autopilot's "
+                              "own energy counter over the same time, closure how much the integral lies "
+                              "above it. A click on a column sorts.",
                               flights.size(), rejected));
     section.html += flights_table_html(flights);
     section.html += excluded_html(flights);

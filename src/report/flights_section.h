@@ -10,7 +10,7 @@
 namespace flightwatt::report {
 
 /// All flights as a table (durations, power, energy, closure of integral and counter, gaps, warnings), those
-/// that are left out with their reasons, and a part a flight that is drawn when it is opened.
+/// that are excluded with their reasons, and a part a flight that is drawn when it is opened.
 Section flights_section(std::span<const ReportFlight> flights,
                         const std::optional<mechanical::MechanicalModel>& model);
 

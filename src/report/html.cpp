@@ -9,9 +9,10 @@
 namespace flightwatt::report {
 namespace {
 
-bool is_number_or_dash(const std::string& cell) {
-    return cell == "-" || parse_number(cell).has_value() ||
-           (cell.starts_with('+') && parse_number(cell.substr(1)).has_value());
+bool is_number_or_dash(std::string_view cell) {
+    if (cell.ends_with(" %")) cell.remove_suffix(2);
+    if (cell.starts_with('+')) cell.remove_prefix(1);
+    return cell == "-" || parse_number(cell).has_value();
 }
 
 std::vector<bool> text_columns(const TextTable& table) {

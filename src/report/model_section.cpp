@@ -1,6 +1,7 @@
 #include "report/model_section.h"
 
 #include "base/units.h"
+#include "cli/output/validation_output.h"
 #include "report/figures/validation_figure.h"
 #include "report/html.h"
 
@@ -31,13 +32,12 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
 Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights) {
     Section section{"validation", "Validation against the baselines", "", {}};
     section.html += paragraph(
-        "Each flight is left out in turn, the model is fitted to the others and predicts its energy from its "
-        "durations alone: beside the constant mean power of each phase, the nearest flight's power, and, "
-        "where "
-        "it was measured, cruise power after the airspeed cubed.");
+        "Leave-one-out: the model is fitted to all flights but one and predicts the energy of that one from "
+        "its durations alone; beside the constant mean power of each phase, the nearest flight's power, and, "
+        "where it was measured, cruise power after the airspeed cubed.");
     add_figure(section, validation_figure(flights, "validation-errors"));
     section.html +=
-        table_html(validation_table(flights), {"Scores of the models on flights left out", true, {}});
+        table_html(cli::scores_table(flights), {"Scores of the models on flights not fitted", true, {}});
     constexpr std::size_t few = 20;
     if (flights.size() < few) {
         section.html += paragraph(

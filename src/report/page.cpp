@@ -23,9 +23,8 @@ std::string head_html(const PageHead& head, const WebFiles& web) {
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src "
-        "'unsafe-inline' "
-        "'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:\">\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+        "script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:\">\n"
         "<meta name=\"generator\" content=\"flightwatt " FLIGHTWATT_VERSION
         "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n",
         escaped(head.title), web.style);
@@ -47,8 +46,7 @@ std::string opening_html(const PageHead& head, const std::vector<Section>& secti
     html += "</dl>\n";
     for (const auto& note : head.notes) html += paragraph(note, "warning");
     return html + contents_html(sections) +
-           "<p class=\"soft keys\">In figures over time: drag to move, Ctrl and wheel to zoom, double-click "
-           "for "
+           "<p class=\"soft keys\">In figures over time: drag to move, Ctrl and wheel to zoom, double-click for "
            "all; with the keyboard + and \u2212, arrows, 0, and the tab key for the series. The menu in a "
            "figure's corner saves it.</p>\n"
            "<noscript><p class=\"warning\">The figures need JavaScript; the tables do not.</p></noscript>\n"

@@ -9,7 +9,7 @@
 
 namespace flightwatt::report {
 
-/// What the page begins with.
+/// What stands at the top of the page.
 struct PageHead {
     std::string title;
     std::vector<std::pair<std::string, std::string>> facts;  ///< "computed" - "2026-01-01 12:00 UTC", ...

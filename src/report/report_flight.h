@@ -1,5 +1,6 @@
 #pragma once
 
+#include "batch/flight_record.h"
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
 
@@ -7,12 +8,6 @@
 #include <vector>
 
 namespace flightwatt::report {
-
-/// What the autopilot says of an edge of a phase.
-struct EdgeVerdict {
-    double time_s = 0.0;
-    std::string text;
-};
 
 /// One log as the report shows it.
 struct ReportFlight {
@@ -22,8 +17,8 @@ struct ReportFlight {
     flight::FlightSeries series;  ///< of a log that was not rejected
     flight::FlightPhases phases;  ///< with the evidence at their edges
     std::vector<std::string> warnings;
-    std::vector<std::string> left_out;  ///< what the model was not fitted to, and why
-    std::vector<EdgeVerdict> verdicts = {};
+    std::vector<std::string> exclusions;  ///< what the model was not fitted to, and why
+    std::vector<batch::RecordedVerdict> verdicts = {};
     std::string unusable_power = {};  ///< why its power record is used for nothing; empty if it is
 };
 

@@ -40,7 +40,7 @@ inline BatchContent read_batch_content(const std::filesystem::path& out,
                             record.warnings, {}};
         if (record.accepted) {
             auto selection = batch::select_for_fit(series, phases, record, needed, keep);
-            for (const auto& left_out : selection.left_out) flight.left_out.push_back(to_string(left_out));
+            for (const auto& left_out : selection.left_out) flight.exclusions.push_back(to_string(left_out));
             if (!selection.flights.empty()) {
                 for (auto& measured : mechanical::measure_flights(series, phases, needed).flights) {
                     batch::restore_airspeed(record, measured.samples);
@@ -49,7 +49,7 @@ inline BatchContent read_batch_content(const std::filesystem::path& out,
             }
             std::move(selection.flights.begin(), selection.flights.end(),
                       std::back_inserter(content.samples));
-            for (const auto& [time_s, text] : record.verdicts) flight.verdicts.push_back({time_s, text});
+            flight.verdicts = record.verdicts;
             if (!keep.contains(record.flight)) {
                 flight.unusable_power = !record.why_not_fitted.empty() ? record.why_not_fitted
                                         : record.absurdities.empty()
@@ -84,7 +84,7 @@ inline std::optional<ReportModel> read_batch_model(
         model.table_one = cli::table_of(model.model, published);
         model.notes.push_back(fmt::format(
             "{} was fitted with other options than this report was given ({} differs by {:.2g} W): "
-            "bands, intervals and validation are left out. Give the report the batch's options.",
+            "bands, intervals and validation are not shown. Give the report the batch's options.",
             file.filename().string(), to_string(phase), apart_w));
         return model;
     }

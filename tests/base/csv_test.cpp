@@ -2,6 +2,10 @@
 
 #include "base/error.h"
 
+#include <optional>
+#include <stdexcept>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -48,6 +52,27 @@ TEST(Csv, RefusesBadTablesWithTheirPlace) {
     expect_error("time_s,power_w\n1\n", 2, 0, "1 cells, expected 2");
     expect_error("time_s,power_w\n1,\"2\n", 2, 3, "a quote is opened and not closed");
     expect_error("time_s,power_kw\n1,2\n", 1, 0, "has no column 'power_w'");
+}
+
+TEST(CsvWriter, WritesNumbersTextsAndWhatIsAbsent) {
+    CsvWriter csv({"time_s", "phase", "count", "used", "current_a"});
+    csv.add(0.1, "a, b", std::size_t{3}, true, std::optional<double>());
+    csv.add(1.0 / 3.0, std::string("cruise"), -1, false, std::optional<double>(2.5));
+    EXPECT_EQ(
+        csv.text(),
+        "time_s,phase,count,used,current_a\n0.1,\"a, b\",3,true,\n0.3333333333333333,cruise,-1,false,2.5\n");
+}
+
+TEST(CsvWriter, RoundsToTheDigitsAskedFor) {
+    CsvWriter csv({"time_s"}, 3);
+    csv.add(1234.56);
+    csv.add(2.0 / 3.0);
+    EXPECT_EQ(csv.text(), "time_s\n1.23e+03\n0.667\n");
+}
+
+TEST(CsvWriter, RefusesARowOfAnotherLength) {
+    CsvWriter csv({"a", "b"});
+    EXPECT_THROW(csv.add(1), std::logic_error);
 }
 
 }  // namespace

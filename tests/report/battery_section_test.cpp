@@ -37,7 +37,7 @@ TEST(BatterySection, ShowsVoltagesParametersAndTheCurve) {
     const auto pack = test::known_pack();
     const auto battery = identify_for_report(flights_on(pack, 2), with_capacity(pack), 12);
     ASSERT_TRUE(battery.identified) << battery.no_answer;
-    EXPECT_EQ(battery.left_out.size(), 2U);
+    EXPECT_EQ(battery.leave_one_out.size(), 2U);
     const auto section = battery_section(battery);
     ASSERT_EQ(section.figures.size(), 2U);
     EXPECT_EQ(section.figures[0].spec["concat"].size(), 2U);
@@ -46,7 +46,7 @@ TEST(BatterySection, ShowsVoltagesParametersAndTheCurve) {
     const auto knots = section.figures[1].spec["data"]["values"].get<std::string>();
     EXPECT_EQ(static_cast<std::size_t>(std::count(knots.begin(), knots.end(), '\n')),
               battery.identified->battery.thevenin->open_circuit.soc_percent.size());
-    EXPECT_THAT(section.html, HasSubstr("series resistance [ohm]"));
+    EXPECT_THAT(section.html, HasSubstr("resistance_ohm"));
     EXPECT_THAT(section.html, HasSubstr("identified from voltage, current and charge of 2 flights"));
     EXPECT_THAT(section.html, testing::Not(HasSubstr("Not used for the battery")));
 }

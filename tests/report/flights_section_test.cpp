@@ -26,7 +26,7 @@ TEST(FlightsSection, NamesEveryReasonOnceWithItsFlights) {
     auto two = sample_flight("hazards/hazard_01_two-sorties");
     for (auto* flight : {&one, &two}) {
         flight->unusable_power = "made for <segmentation>";
-        flight->left_out = {flight->name + ": it is left out: made for <segmentation>"};
+        flight->exclusions = {flight->name + ": it is left out: made for <segmentation>"};
     }
     const std::vector<ReportFlight> flights{whole, one, two};
     const auto section = flights_section(flights, std::nullopt);

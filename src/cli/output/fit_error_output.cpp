@@ -1,6 +1,7 @@
 #include "cli/output/fit_error_output.h"
 
 #include "base/statistics.h"
+#include "cli/output/json_text.h"
 #include "mechanical/down_weighted.h"
 
 #include <algorithm>
@@ -95,13 +96,12 @@ void add_loss_json(nlohmann::ordered_json& json, const mechanical::ModelFit& fit
 void add_order_json(nlohmann::ordered_json& json, flight::Phase phase,
                     const mechanical::OrderChoice& choice) {
     using Json = nlohmann::ordered_json;
-    const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
     Json errors = Json::array();
     for (const auto& error : choice.errors) {
         errors.push_back({{"order", error.order},
-                          {"rms_w", number(error.rms_w)},
-                          {"behind_best_w2", number(error.behind_best_w2)},
-                          {"standard_error_w2", number(error.standard_error_w2)},
+                          {"rms_w", optional_json(error.rms_w)},
+                          {"behind_best_w2", optional_json(error.behind_best_w2)},
+                          {"standard_error_w2", optional_json(error.standard_error_w2)},
                           {"reason", error.reason}});
     }
     json["phases"][std::string(to_string(phase))]["order_choice"] = {{"order", choice.order},

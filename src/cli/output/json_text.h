@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -8,5 +9,11 @@ namespace flightwatt::cli {
 
 /// Indented, with a line break at its end. A name that is not UTF-8 (a file's) does not spoil the answer.
 std::string json_text(const nlohmann::ordered_json& json);
+
+/// null for what is not known.
+template <typename T>
+nlohmann::ordered_json optional_json(const std::optional<T>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
 
 }  // namespace flightwatt::cli

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/output/json_text.h"
 #include "flight/edge_witness.h"
 #include "flight/phase_statistics.h"
 #include "flight/power_check.h"
@@ -11,11 +12,6 @@
 namespace flightwatt::cli {
 
 using Json = nlohmann::ordered_json;
-
-template <typename T>
-Json optional_json(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
 
 inline Json to_json(const flight::PhaseEdge& edge) {
     return {{"altitude_m", edge.altitude_m},

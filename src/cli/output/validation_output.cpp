@@ -1,6 +1,7 @@
 #include "cli/output/validation_output.h"
 
 #include "base/units.h"
+#include "cli/output/json_text.h"
 
 #include <optional>
 
@@ -93,7 +94,6 @@ std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, con
 
 nlohmann::ordered_json scores_json(const std::vector<mechanical::ValidatedFlight>& flights) {
     using Json = nlohmann::ordered_json;
-    const auto optional = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
     Json json{{"flights", flights.size()}};
     for (const auto& part : validated_parts()) {
         json[part.name] = Json::object();
@@ -102,9 +102,9 @@ nlohmann::ordered_json scores_json(const std::vector<mechanical::ValidatedFlight
             if (!score) continue;
             json[part.name][model] = {
                 {"mean_absolute_error_wh", score->mean_absolute_error_wh},
-                {"mean_absolute_error_percent", optional(score->mean_absolute_error_percent)},
+                {"mean_absolute_error_percent", optional_json(score->mean_absolute_error_percent)},
                 {"bias_wh", score->bias_wh},
-                {"coverage_95", optional(score->coverage_95)},
+                {"coverage_95", optional_json(score->coverage_95)},
                 {"flights", score->flights}};
         }
     }

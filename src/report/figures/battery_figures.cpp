@@ -106,7 +106,7 @@ Figure voltage_figure(const battery::Battery& battery, std::span<const battery::
     Figure figure;
     figure.id = id;
     figure.caption =
-        "The model foretells the voltage from the measured current and the voltage at rest before the flight "
+        "The model predicts the voltage from the measured current and the voltage at rest before the flight "
         "alone. Both are broken where the record contradicts itself: a current that the motor did not draw.";
     figure.description =
         fmt::format("Terminal voltage of {} flights over time, measured and modelled.", records.size());

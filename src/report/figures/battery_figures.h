@@ -8,7 +8,7 @@
 
 namespace flightwatt::report {
 
-/// Terminal voltage over time, measured and modelled, a panel a flight: the model foretells it from the
+/// Terminal voltage over time, measured and modelled, a panel a flight: the model predicts it from the
 /// current and the resting voltage alone. `records` is not empty.
 Figure voltage_figure(const battery::Battery& battery, std::span<const battery::DischargeRecord> records,
                       const std::string& id);

@@ -1,8 +1,6 @@
 #include "report/figures/validation_figure.h"
 
-#include "base/units.h"
 #include "mechanical/validation_score.h"
-#include "report/sections/phase_words.h"
 
 #include <optional>
 
@@ -10,17 +8,6 @@
 
 namespace flightwatt::report {
 namespace {
-
-struct Part {
-    std::string name;
-    std::optional<flight::Phase> phase;
-};
-
-std::vector<Part> parts() {
-    std::vector<Part> list{{"whole flight", std::nullopt}};
-    for (const auto phase : flight::all_phases) list.push_back({std::string(phase_word(phase)), phase});
-    return list;
-}
 
 FigureData error_rows(std::span<const mechanical::ValidatedFlight> flights) {
     FigureData data({"error_wh", "measured_wh", "predicted_wh"}, {"model", "flight"});
@@ -37,7 +24,8 @@ FigureData error_rows(std::span<const mechanical::ValidatedFlight> flights) {
 }
 
 std::string described(std::span<const mechanical::ValidatedFlight> flights) {
-    std::string text = fmt::format("Error of the predicted energy of {} flights left out.", flights.size());
+    std::string text = fmt::format(
+        "Error of the predicted energy of {} flights, each predicted by the others.", flights.size());
     for (const auto& model : model_names(flights)) {
         const auto score = score_of(flights, model, std::nullopt);
         if (!score) continue;
@@ -52,9 +40,8 @@ Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, c
     Figure figure;
     figure.id = id;
     figure.caption =
-        "Energy of the whole flight, predicted from its durations by the other flights, less measured. A "
-        "ring "
-        "is a flight.";
+        "Energy of the whole flight, predicted from its durations by the other flights, less measured. "
+        "A ring is a flight.";
     figure.description = described(flights);
     const auto data = error_rows(flights);
     figure.spec = new_spec(figure);
@@ -77,26 +64,6 @@ Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, c
                                      quantity("error_wh", "error [Wh]", {{"format", "+.3f"}})}}}}};
     figure.spec["layer"] = {zero, flights_layer};
     return figure;
-}
-
-TextTable validation_table(std::span<const mechanical::ValidatedFlight> flights) {
-    TextTable table{{"phase", "model", "flights", "mean |error| [Wh]", "mean |error| [%]", "bias [Wh]",
-                     "95 % interval covers [%]"},
-                    {}};
-    for (const auto& part : parts()) {
-        for (const auto& model : model_names(flights)) {
-            const auto score = score_of(flights, model, part.phase);
-            if (!score) continue;
-            const auto& percent = score->mean_absolute_error_percent;
-            table.rows.push_back(
-                {part.name, model, fmt::format("{}", score->flights),
-                 fmt::format("{:.3f}", score->mean_absolute_error_wh),
-                 percent ? fmt::format("{:.1f}", *percent) : "-", fmt::format("{:+.3f}", score->bias_wh),
-                 score->coverage_95 ? fmt::format("{:.0f}", units::percent_of(*score->coverage_95, 1.0))
-                                    : "-"});
-        }
-    }
-    return table;
 }
 
 }  // namespace flightwatt::report

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace flightwatt::report {
+namespace flightwatt::cli {
 namespace {
 
 using testing::HasSubstr;
@@ -22,7 +22,7 @@ std::string printed(const std::string& environment, const std::string& command, 
 }
 
 constexpr auto utf8 = "LC_ALL=C.UTF-8 TERM=xterm";
-constexpr auto braille_begin = "\xE2\xA0";  // of its first half
+constexpr auto braille_start = "\xE2\xA0";  // of its first half
 constexpr auto escape = "\x1b[";
 
 class OnATerminal : public testing::Test {
@@ -38,27 +38,27 @@ TEST_F(OnATerminal, CompareDrawsTheStateOfCharge) {
     const std::string compare = "flightwatt compare missions/paper/phased.toml missions/paper/adaptive.toml";
     const auto picture = printed(utf8, compare, true);
     EXPECT_THAT(picture, HasSubstr("state of charge [%] over time"));
-    EXPECT_THAT(picture, HasSubstr(braille_begin));
+    EXPECT_THAT(picture, HasSubstr(braille_start));
     EXPECT_THAT(picture, HasSubstr(escape));
     EXPECT_THAT(printed(std::string(utf8) + " NO_COLOR=1", compare, true), Not(HasSubstr(escape)));
     for (const auto* plain : {"LC_ALL=C.UTF-8 TERM=dumb", "LC_ALL=C TERM=xterm"}) {
         const auto table = printed(plain, compare, true);
         EXPECT_THAT(table, HasSubstr("adaptive")) << plain;
-        EXPECT_THAT(table, Not(HasSubstr(braille_begin))) << plain;
+        EXPECT_THAT(table, Not(HasSubstr(braille_start))) << plain;
     }
-    EXPECT_THAT(printed(utf8, compare, false), Not(HasSubstr(braille_begin)));
-    EXPECT_THAT(printed(utf8, compare + " --markdown", true), Not(HasSubstr(braille_begin)));
+    EXPECT_THAT(printed(utf8, compare, false), Not(HasSubstr(braille_start)));
+    EXPECT_THAT(printed(utf8, compare + " --markdown", true), Not(HasSubstr(braille_start)));
 }
 
 TEST_F(OnATerminal, SegmentDrawsTheAltitude) {
     const std::string segment = "flightwatt segment logs/opterra_synthetic_01.data";
     const auto picture = printed(utf8, segment, true);
     EXPECT_THAT(picture, HasSubstr("altitude [m] over time"));
-    EXPECT_THAT(picture, HasSubstr(braille_begin));
+    EXPECT_THAT(picture, HasSubstr(braille_start));
     EXPECT_THAT(picture, HasSubstr("cruise 92 to 662 s"));
-    EXPECT_THAT(printed(utf8, segment, false), Not(HasSubstr(braille_begin)));
-    EXPECT_THAT(printed(utf8, segment + " --json", true), Not(HasSubstr(braille_begin)));
+    EXPECT_THAT(printed(utf8, segment, false), Not(HasSubstr(braille_start)));
+    EXPECT_THAT(printed(utf8, segment + " --json", true), Not(HasSubstr(braille_start)));
 }
 
 }  // namespace
-}  // namespace flightwatt::report
+}  // namespace flightwatt::cli

@@ -1,7 +1,8 @@
+#include "report/missions_section.h"
+
 #include "base/error.h"
 #include "helpers/test_paths.h"
 #include "report/figures/qos_map.h"
-#include "report/missions_section.h"
 
 #include <algorithm>
 
@@ -55,12 +56,6 @@ TEST(MissionSections, HaveEachModelAndSoftwareOnce) {
     }
     EXPECT_THAT(figures, testing::ElementsAre("mission-model-1-curves", "profile-1", "schedules-soc",
                                               "quality-1", "quality-2"));
-}
-
-TEST(MissionSections, TellMissionsOfOneNameApart) {
-    const auto missions = simulated({"phased", "phased"});
-    EXPECT_EQ(missions[0].title, "phased");
-    EXPECT_EQ(missions[1].title, "phased (2)");
 }
 
 TEST(MissionSections, ShowWhereTheBatteryCannotDeliver) {

@@ -1,0 +1,102 @@
+// What a fit says of its errors, outliers and orders.
+
+#include "cli/output/fit_error_output.h"
+
+#include "helpers/made_up_flights.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<mechanical::FlightSamples> recorded_flights() {
+    std::vector<mechanical::FlightSamples> flights(3);
+    for (const auto phase : flight::all_phases) {
+        const auto samples = test::record_flights(phase, flights.size(), 0.5, 1);
+        for (std::size_t i = 0; i < flights.size(); ++i) {
+            flights[i].flight = samples[i].flight;
+            flights[i].phases[phase] = samples[i];
+        }
+    }
+    return flights;
+}
+
+nlohmann::ordered_json json_of_phases() {
+    nlohmann::ordered_json json;
+    for (const auto phase : flight::all_phases) json["phases"][std::string(to_string(phase))] = {};
+    return json;
+}
+
+TEST(AddErrorsJson, PutsIntervalsAboutTheEstimates) {
+    auto fit = fit_model(recorded_flights());
+    const auto reports = add_errors(fit);
+    auto json = json_of_phases();
+    add_errors_json(json, fit.model, reports);
+    const auto& cruise = fit.model.phases[flight::Phase::cruise];
+    const auto& entry = json["phases"]["cruise"];
+    EXPECT_EQ(entry["errors"]["standard_error"]["a0_w"], cruise.errors->a0_w);
+    const double low = entry["errors"]["interval_95"]["a0_w"]["low"];
+    const double high = entry["errors"]["interval_95"]["a0_w"]["high"];
+    EXPECT_NEAR((low + high) / 2.0, cruise.fourier.a0_w, 1e-9);
+    EXPECT_GT(high - low, 2.0 * 1.9 * cruise.errors->a0_w) << "a 95 % interval";
+    EXPECT_EQ(entry["spread"]["counted_flights"], cruise.spread->counted_flights);
+    EXPECT_FALSE(entry["frequency_profile"]["rms_w"].empty());
+}
+
+TEST(AddLossJson, ListsTheOutliersThatCountLess) {
+    auto flights = recorded_flights();
+    auto& power_w = flights.front().phases[flight::Phase::cruise]->power_w;
+    power_w[power_w.size() / 2] += 100.0;
+    mechanical::ModelFitOptions options;
+    options.phases.loss = mechanical::Loss::huber;
+    const auto fit = fit_model(flights, options);
+    auto json = json_of_phases();
+    add_loss_json(json, fit);
+    const auto& loss = json["phases"]["cruise"]["loss"];
+    EXPECT_EQ(loss["name"], "huber");
+    ASSERT_FALSE(loss["down_weighted"].empty());
+    EXPECT_EQ(loss["down_weighted"][0]["flight"], "flight1");
+    EXPECT_NEAR(loss["down_weighted"][0]["residual_w"].get<double>(), 100.0, 5.0);
+}
+
+TEST(AddOrderJson, HasNullForAnOrderThatWasNotFitted) {
+    mechanical::OrderChoice choice;
+    choice.order = 2;
+    choice.errors.resize(2);
+    choice.errors[0].rms_w = 1.5;
+    choice.errors[1].reason = "too few samples";
+    auto json = json_of_phases();
+    add_order_json(json, flight::Phase::landing, choice);
+    const auto& entry = json["phases"]["landing"]["order_choice"];
+    EXPECT_EQ(entry["order"], 2);
+    EXPECT_EQ(entry["errors"][0]["rms_w"], 1.5);
+    EXPECT_TRUE(entry["errors"][1]["rms_w"].is_null());
+    EXPECT_EQ(entry["errors"][1]["reason"], "too few samples");
+}
+
+TEST(NoteOrder, ShowsTheErrorOfEveryOrder) {
+    mechanical::OrderChoice choice;
+    choice.order = 1;
+    choice.errors.resize(2);
+    choice.errors[0].order = 1;
+    choice.errors[0].rms_w = 1.5;
+    choice.errors[1].order = 2;
+    choice.errors[1].reason = "too few samples";
+    StageCall call;
+    call.program = "flightwatt-fit";
+    testing::internal::CaptureStderr();
+    note_order(call, flight::Phase::cruise, choice);
+    const auto said = testing::internal::GetCapturedStderr();
+    EXPECT_THAT(said, HasSubstr("flightwatt-fit: cruise: order 1"));
+    EXPECT_THAT(said, HasSubstr("1: 1.5, 2: -"));
+    EXPECT_THAT(said, HasSubstr("order 2: too few samples"));
+}
+
+}  // namespace
+}  // namespace flightwatt::cli

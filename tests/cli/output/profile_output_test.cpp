@@ -1,0 +1,73 @@
+// What is printed of a profile.
+
+#include "cli/output/profile_output.h"
+
+#include "compute/profile_interpolation.h"
+#include "compute/profile_reader.h"
+#include "helpers/test_paths.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using testing::HasSubstr;
+
+/// A measured and an interpolated node of one component, 2 W idle.
+compute::ProfileOutcome outcome() {
+    compute::ProfileOutcome profiled;
+    profiled.sampler = "command meter";
+    profiled.idle = compute::PowerEstimate{2.0, 0.1, 10.0, 20.0, 100, 1};
+    compute::ComponentEstimate component;
+    component.name = "detection";
+    component.parameters = {"fps"};
+    component.nodes.push_back({{10.0}, {5.0, 0.1, 4.0, 20.0, 40, 2}, true});
+    component.nodes.push_back({{20.0}, {6.0, std::nan(""), 0.0, 0.0, 0, 0}, false});
+    profiled.components.push_back(component);
+    return profiled;
+}
+
+TEST(ProfileText, ShowsTotalPowerOrThatAboveIdle) {
+    const auto total = profile_text(outcome(), false);
+    EXPECT_THAT(total, HasSubstr("idle: 2.0000 W"));
+    EXPECT_THAT(total, HasSubstr("\ndetection\n"));
+    EXPECT_THAT(total, HasSubstr("5.0000"));
+    EXPECT_THAT(total, HasSubstr("interpolated"));
+    const auto above = profile_text(outcome(), true);
+    EXPECT_THAT(above, HasSubstr("\ndetection, above idle\n"));
+    EXPECT_THAT(above, HasSubstr("3.0000"));
+}
+
+TEST(ProfileText, SaysThatNothingCouldBeMeasured) {
+    auto failed = outcome();
+    failed.components.front().nodes.clear();
+    EXPECT_THAT(profile_text(failed, false), HasSubstr("detection\nnothing could be measured\n"));
+}
+
+TEST(ProfileJson, HoldsReportedAndTotalPower) {
+    const auto json = to_json(outcome(), true);
+    const auto& node = json["components"][0]["nodes"][0];
+    EXPECT_EQ(node["qos"][0], 10.0);
+    EXPECT_EQ(node["power_w"], 3.0);
+    EXPECT_EQ(node["total_power_w"], 5.0);
+    EXPECT_EQ(node["energy_j"], 12.0);
+    EXPECT_NEAR(node["standard_error_w"].get<double>(), std::hypot(0.1, 0.1), 1e-12)
+        << "that of idle as well";
+    EXPECT_FALSE(json["components"][0]["nodes"][1]["measured"].get<bool>());
+}
+
+TEST(InterpolationText, HasARowAMethodUnderTheProfilesName) {
+    const auto file = test::source_dir() / "fits" / "compute" / "tx2-detection.csv";
+    const auto profile = compute::read_power_profile(file);
+    const auto errors = compute::interpolation_errors(profile);
+    ASSERT_FALSE(errors.empty());
+    const auto text = interpolation_text("a.csv", profile.power_w.size(), errors);
+    EXPECT_TRUE(text.starts_with("a.csv\neach node from the others"));
+    for (const auto& error : errors) EXPECT_THAT(text, HasSubstr(error.method));
+}
+
+}  // namespace
+}  // namespace flightwatt::cli
