@@ -68,7 +68,7 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
         call.output ? std::filesystem::path(*call.output).stem().string() : "fitted");
     const auto name = call.get<std::string>("loss");
     const auto loss = mechanical::loss_from(name);
-    if (!loss) throw UsageError(fmt::format("--loss {}: expected none, huber or cauchy", name));
+    if (!loss) throw UsageError(fmt::format("--loss {}: expected none or huber", name));
     options.phases.loss = *loss;
     if (const auto covariate = call.maybe<std::string>("level-covariate")) {
         options.level_covariate = mechanical::covariate_from(*covariate);
@@ -170,7 +170,7 @@ int main(int argc, char** argv) {
         "let the cruise level follow what 'flightwatt validate --covariate all' found to foretell it: "
         "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]")(
         "loss", po::value<std::string>()->value_name("HOW")->default_value("none"),
-        "none, huber or cauchy: how outliers count in the last refinement")(
+        "none or huber: how outliers count in the last refinement")(
         "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
     return cli::run_stage(argc, argv, stage, fit);
 }

@@ -1,6 +1,7 @@
 #include "battery/identification.h"
 
 #include "base/error.h"
+#include "base/piecewise_linear.h"
 #include "base/units.h"
 #include "battery/lipo_chart.h"
 
@@ -132,10 +133,7 @@ double initial_soc_percent(const Battery& battery, const DischargeRecord& record
     const auto& [soc, volts] = circuit.open_circuit;
     const double initial_v = initial_voltage_v(record, battery.resistance_ohm + circuit.rc_resistance_ohm);
     if (initial_v >= volts.back() - std::max(unreadable_v, record.resolution_v)) return soc.back();
-    if (initial_v <= volts.front()) return soc.front();
-    const auto above = std::upper_bound(volts.begin(), volts.end(), initial_v);
-    const auto i = static_cast<std::size_t>(above - volts.begin());
-    return std::lerp(soc[i - 1], soc[i], (initial_v - volts[i - 1]) / (volts[i] - volts[i - 1]));
+    return interpolate_clamped(volts, soc, initial_v);
 }
 
 std::vector<IdentifiedFlight> identified_flights(const AlignedFit& aligned) {

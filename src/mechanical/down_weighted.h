@@ -9,7 +9,7 @@
 
 namespace flightwatt::mechanical {
 
-/// A sample that a robust fit hardly listened to.
+/// A sample whose robust weight is below 0.5.
 struct DownWeightedSample {
     std::string flight;
     double log_time_s = 0.0;  ///< on the log's own clock
@@ -17,8 +17,8 @@ struct DownWeightedSample {
     double weight = 1.0;      ///< what it counted, less than a half
 };
 
-/// The samples that counted less than half of a sample on the curve (with normal noise, 0.7 % do with Huber's
-/// loss and 1.7 % with Cauchy's), those that counted least first. None for a plain fit. `flights` are those
+/// The samples that counted less than half of a sample on the curve (0.7 % do with normal
+/// noise), those that counted least first. None for a plain fit. `flights` are those
 /// that were fitted, in their order.
 std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSamples> flights,
                                                       const PhaseFit& fit);

@@ -4,6 +4,10 @@
 
 namespace flightwatt::mechanical {
 
+std::string_view to_string(FrequencyBound bound) {
+    return bound == FrequencyBound::low ? "low" : bound == FrequencyBound::high ? "high" : "none";
+}
+
 double power_w(const FourierModel& model, double time_s) {
     double power = model.a0_w;
     for (std::size_t n = 0; n < model.cos_w.size(); ++n) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::mechanical {
@@ -27,11 +28,17 @@ double power_w(const FourierModel& model, double time_s);
 /// The integral of f from 0 to `time_s` [J], in closed form.
 double energy_j(const FourierModel& model, double time_s);
 
+/// Which end of its range a frequency stands at.
+enum class FrequencyBound { none, low, high };
+
+/// "none", "low", "high".
+std::string_view to_string(FrequencyBound bound);
+
 /// Where the frequency of a fit was allowed to be, as omega * duration [rad].
 struct FrequencyRange {
-    double low_rad = 0.0;           ///< below, the basis becomes collinear
-    double high_rad = 0.0;          ///< above, the third harmonic is faster than the samples
-    std::string at_bound = "none";  ///< "none", "low" or "high"
+    double low_rad = 0.0;   ///< below, the basis becomes collinear
+    double high_rad = 0.0;  ///< above, the third harmonic is faster than the samples
+    FrequencyBound at_bound = FrequencyBound::none;
 };
 
 /// How the flights of one phase differ from the model and change meanwhile: what a prediction's interval

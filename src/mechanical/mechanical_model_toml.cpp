@@ -1,3 +1,4 @@
+#include "base/format_version.h"
 #include "base/toml_numbers.h"
 #include "base/toml_text.h"
 #include "mechanical/mechanical_model.h"
@@ -18,16 +19,18 @@ double not_negative(const TomlTable& table, std::string_view key) {
     return number_in(at_least(0.0), table, key);
 }
 
+FrequencyBound read_bound(const TomlTable& table) {
+    const auto name = table.string("at_bound");
+    for (const auto bound : {FrequencyBound::none, FrequencyBound::low, FrequencyBound::high}) {
+        if (name == to_string(bound)) return bound;
+    }
+    throw InputError(table.where("at_bound"),
+                     fmt::format("at_bound = '{}', expected none, low or high", name));
+}
+
 FrequencyRange read_range(const TomlTable& table) {
-    FrequencyRange range{positive(table, "low_rad"), positive(table, "high_rad"), table.string("at_bound")};
-    if (range.at_bound != "none" && range.at_bound != "low" && range.at_bound != "high") {
-        throw InputError(table.where("at_bound"),
-                         fmt::format("at_bound = '{}', expected none, low or high", range.at_bound));
-    }
-    if (range.high_rad < range.low_rad) {
-        throw InputError(table.where("high_rad"),
-                         fmt::format("high_rad = {} is below low_rad = {}", range.high_rad, range.low_rad));
-    }
+    const double low_rad = positive(table, "low_rad");
+    const FrequencyRange range{low_rad, number_in(at_least(low_rad), table, "high_rad"), read_bound(table)};
     table.refuse_unknown_keys();
     return range;
 }
@@ -151,7 +154,7 @@ std::string phase_toml(flight::Phase name, const PhaseModel& phase) {
     if (phase.range) {
         text += fmt::format("omega_duration = {{ low_rad = {}, high_rad = {}, at_bound = {} }}\n",
                             toml_real(phase.range->low_rad), toml_real(phase.range->high_rad),
-                            toml_string(phase.range->at_bound));
+                            toml_string(to_string(phase.range->at_bound)));
     }
     text += fmt::format("a0_w = {}\ncos_w = {}\nsin_w = {}\n", toml_real(phase.fourier.a0_w),
                         toml_reals(phase.fourier.cos_w), toml_reals(phase.fourier.sin_w));
@@ -187,6 +190,7 @@ std::string flight_toml(const FlightContribution& flight) {
 
 MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
     const auto root = read_toml(path);
+    require_known_format(root);
     MechanicalModel model;
     model.name = root.string("name");
     model.description = root.optional_string("description").value_or("");
@@ -202,6 +206,7 @@ std::string to_toml(const MechanicalModel& model) {
     std::string text =
         "# Mechanical power of a flight, one Fourier series a phase (t in seconds since the phase began):\n"
         "#   power_w(t) = a0_w + sum over n of cos_w[n] cos(n omega t) + sin_w[n] sin(n omega t)\n";
+    text += format_line();
     text += fmt::format("name = {}\ndescription = {}\nweighting = {}\n", toml_string(model.name),
                         toml_string(model.description), toml_string(model.weighting));
     for (const auto phase : flight::all_phases) text += phase_toml(phase, model.phases[phase]);

@@ -1,6 +1,8 @@
 #include "mechanical/phase_curve.h"
 
 #include "base/units.h"
+#include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +32,19 @@ double curve_rms_difference_w(const PhaseModel& a, const PhaseModel& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < points; ++i) sum += std::pow(curve_a[i] - curve_b[i], 2);
     return std::sqrt(sum / static_cast<double>(points));
+}
+
+std::optional<FourierModel> nearest_series(std::span<const double> tau, std::span<const double> power_w,
+                                           int order, double omega_rad_per_s, double duration_s) {
+    const Eigen::Map<const Eigen::VectorXd> values(power_w.data(), static_cast<Eigen::Index>(power_w.size()));
+    const auto fit = solve_least_squares(fourier_basis(tau, order, omega_rad_per_s * duration_s), values);
+    if (!fit) return std::nullopt;
+    FourierModel series{omega_rad_per_s, fit->coefficients[0], {}, {}};
+    for (Eigen::Index n = 1; n <= order; ++n) {
+        series.cos_w.push_back(fit->coefficients[2 * n - 1]);
+        series.sin_w.push_back(fit->coefficients[2 * n]);
+    }
+    return series;
 }
 
 }  // namespace flightwatt::mechanical

@@ -89,16 +89,43 @@ Expectation expect(const PhaseForecast& cruise, const FlownSoFar& flown, double 
     throw NoAnswerError("no such source of the cruise level");
 }
 
-/// Of gain = (B^2 + C) / (B^2 + V), to first order: B^2 and the drift's variance are themselves estimated,
-/// with relative variances 2 / degrees_of_freedom, and the gain changes oppositely with the logarithms of both.
-double variance_of_gain(double level_w2, double level_degrees_of_freedom, const Drift& drift, double flown_s,
-                        double remaining_s, double drift_degrees_of_freedom) {
-    const double drift_w2 = variance_of_mean_w2(drift, flown_s);
-    const double flown_w2 = level_w2 + drift_w2;
+/// The variances [W^2] of the mean powers x (flown) and y (remaining) less what was expected, by their causes.
+struct Variances {
+    double level_w2 = 0.0;
+    double flown_drift_w2 = 0.0;
+    double remaining_drift_w2 = 0.0;
+    double drift_covariance_w2 = 0.0;
+};
+
+/// Of gain = (level + covariance) / (level + flown drift), to first order: level and drift are themselves
+/// estimated, with relative variances 2 / degrees of freedom, and the gain changes oppositely with the
+/// logarithms of both.
+double variance_of_gain(const Variances& of, double level_degrees_of_freedom,
+                        double drift_degrees_of_freedom) {
+    const double flown_w2 = of.level_w2 + of.flown_drift_w2;
     if (!(flown_w2 > 0.0)) return 0.0;
-    const double change =
-        level_w2 * (drift_w2 - covariance_of_means_w2(drift, flown_s, remaining_s)) / (flown_w2 * flown_w2);
+    const double change = of.level_w2 * (of.flown_drift_w2 - of.drift_covariance_w2) / (flown_w2 * flown_w2);
     return change * change * (2.0 / level_degrees_of_freedom + 2.0 / drift_degrees_of_freedom);
+}
+
+/// The variance of the error y - gain x, share by share (prediction.h).
+void add_shares(RestPrediction& rest, const Expectation& expected, const Variances& of,
+                double drift_degrees_of_freedom, double remaining_s) {
+    const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
+    const double gain = rest.gain;
+    auto& energy = rest.energy;
+    const double average = 1.0 + expected.weight_square_sum;
+    const double kept = 1.0 - gain;
+    const double drift_w2 = std::max(
+        0.0, of.remaining_drift_w2 - 2.0 * gain * of.drift_covariance_w2 + gain * gain * of.flown_drift_w2);
+    const double gain_w2 = (of.level_w2 + of.flown_drift_w2) *
+                           variance_of_gain(of, expected.degrees_of_freedom, drift_degrees_of_freedom);
+    const double shape_w = expected.shape_remaining_w - gain * expected.shape_flown_w;
+    add_share(energy, {average * kept * kept * of.level_w2 * wh2_per_w2, expected.degrees_of_freedom});
+    add_share(energy, {average * drift_w2 * wh2_per_w2, drift_degrees_of_freedom});
+    add_share(energy, {shape_w * shape_w * wh2_per_w2, drift_degrees_of_freedom});
+    add_share(energy, {average * gain_w2 * wh2_per_w2,
+                       std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
 }
 
 EnergyEstimate estimate_of(const PhaseForecast& phase, double energy_wh, double duration_s) {
@@ -148,39 +175,19 @@ RestPrediction predict_rest(const PhaseForecast& cruise, const FlownSoFar& flown
     const auto expected = expect(cruise, flown, remaining_s, source);
     const auto& spread = *cruise.model.level_spread;
     const Drift drift{spread.drift_sd_w, spread.correlation_s};
-    const double level_w2 = expected.level_sd_w * expected.level_sd_w;
-    const double covariance_w2 = level_w2 + covariance_of_means_w2(drift, flown_s, remaining_s);
-    const double flown_w2 = level_w2 + variance_of_mean_w2(drift, flown_s);
+    const Variances of{expected.level_sd_w * expected.level_sd_w, variance_of_mean_w2(drift, flown_s),
+                       variance_of_mean_w2(drift, remaining_s),
+                       covariance_of_means_w2(drift, flown_s, remaining_s)};
+    const double flown_w2 = of.level_w2 + of.flown_drift_w2;
     // Flights that are all alike, without any drift: the model is right, whatever is measured.
-    rest.gain = flown_w2 > 0.0 ? std::min(covariance_w2 / flown_w2, 1.0) : 0.0;
+    rest.gain = flown_w2 > 0.0 ? std::min((of.level_w2 + of.drift_covariance_w2) / flown_w2, 1.0) : 0.0;
     rest.expected_w = expected.flown_w;
     rest.flown_w = units::joule_from_wh(flown.cruise_energy_wh) / flown_s;
     rest.remaining_mean_w = expected.remaining_w + rest.gain * (rest.flown_w - rest.expected_w);
     rest.energy.energy_wh = units::wh_from_joule(rest.remaining_mean_w * remaining_s);
-
-    // The error y - gain x, by its causes: this flight's level and drift, and those of the flights that the
-    // model is an average of.
-    const double kept = 1.0 - rest.gain;
-    const double average = 1.0 + expected.weight_square_sum;
-    const double level_share_w2 = average * kept * kept * level_w2;
-    const double drift_share_w2 =
-        average * std::max(0.0, variance_of_mean_w2(drift, remaining_s) -
-                                    2.0 * rest.gain * covariance_of_means_w2(drift, flown_s, remaining_s) +
-                                    rest.gain * rest.gain * variance_of_mean_w2(drift, flown_s));
     // How much a flight drifts differs from flight to flight, so many samples are no more than their flights;
     // and the curve, their average, takes one.
-    const double drift_degrees_of_freedom = static_cast<double>(spread.flights - 1);
-    const double gain_share_w2 = average * flown_w2 *
-                                 variance_of_gain(level_w2, expected.degrees_of_freedom, drift, flown_s,
-                                                  remaining_s, drift_degrees_of_freedom);
-    const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
-    add_share(rest.energy, {level_share_w2 * wh2_per_w2, expected.degrees_of_freedom});
-    add_share(rest.energy, {drift_share_w2 * wh2_per_w2, drift_degrees_of_freedom});
-    // A level that is even over the time errs by the curve's shape, if there is one.
-    const double shape_w = expected.shape_remaining_w - rest.gain * expected.shape_flown_w;
-    add_share(rest.energy, {shape_w * shape_w * wh2_per_w2, drift_degrees_of_freedom});
-    add_share(rest.energy,
-              {gain_share_w2 * wh2_per_w2, std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
+    add_shares(rest, expected, of, static_cast<double>(spread.flights - 1), remaining_s);
     return rest;
 }
 

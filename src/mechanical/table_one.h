@@ -3,6 +3,8 @@
 #include "base/text_table.h"
 #include "mechanical/mechanical_model.h"
 
+#include <string>
+
 namespace flightwatt::mechanical {
 
 /// Whether a table has a column beside each phase for half the width of the coefficients' 95 % intervals, as
@@ -18,5 +20,9 @@ TextTable table_one(const MechanicalModel& model, TableIntervals intervals = Tab
 /// curves over the phase [W] and by how many percent of the published a0 the regenerated one differs.
 TextTable table_one_beside(const MechanicalModel& published, const MechanicalModel& regenerated,
                            TableIntervals intervals = TableIntervals::absent);
+
+/// Table I as a LaTeX table environment like the paper's: its caption on top, coefficients as $a_0$ ...
+/// $\xi$, numbers in mathematical mode, "+-" columns as half widths of 95 % intervals. Needs no package.
+std::string to_latex(const TextTable& table);
 
 }  // namespace flightwatt::mechanical

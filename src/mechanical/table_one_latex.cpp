@@ -1,6 +1,5 @@
-#include "mechanical/table_one_latex.h"
-
 #include "base/number.h"
+#include "mechanical/table_one.h"
 
 #include <algorithm>
 #include <string_view>

@@ -1,12 +1,10 @@
 #include "synthetic/flight_spread.h"
 
 #include "base/error.h"
-#include "mechanical/fourier_basis.h"
-#include "mechanical/least_squares.h"
+#include "mechanical/phase_curve.h"
 
 #include <random>
-
-#include <Eigen/Core>
+#include <utility>
 
 namespace flightwatt::synthetic {
 namespace {
@@ -21,24 +19,18 @@ struct Deviation {
 /// The Fourier series of the phase's frequency next to level and tilt within the band.
 mechanical::FourierModel deviation_series(flight::Phase phase, const mechanical::PhaseModel& model,
                                           const Deviation& deviation) {
-    constexpr int points = 200;
+    constexpr std::size_t points = 200;
     std::vector<double> tau(points);
-    Eigen::VectorXd watts(points);
-    for (int i = 0; i < points; ++i) {
-        const double t = (i + 0.5) / points;
-        tau[static_cast<std::size_t>(i)] = t;
-        watts[i] = band_w(phase, t) * (deviation.level + deviation.tilt * (2.0 * t - 1.0));
+    std::vector<double> power_w(points);
+    for (std::size_t i = 0; i < points; ++i) {
+        tau[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(points);
+        power_w[i] = band_w(phase, tau[i]) * (deviation.level + deviation.tilt * (2.0 * tau[i] - 1.0));
     }
     const auto order = static_cast<int>(model.fourier.cos_w.size());
-    const double theta_rad = model.fourier.omega_rad_per_s * model.duration_s;
-    const auto fit = mechanical::solve_least_squares(mechanical::fourier_basis(tau, order, theta_rad), watts);
-    if (!fit) throw NoAnswerError("the model's frequency is too low to spread flights about it");
-    mechanical::FourierModel series{model.fourier.omega_rad_per_s, fit->coefficients[0], {}, {}};
-    for (Eigen::Index n = 1; n <= order; ++n) {
-        series.cos_w.push_back(fit->coefficients[2 * n - 1]);
-        series.sin_w.push_back(fit->coefficients[2 * n]);
-    }
-    return series;
+    auto series =
+        mechanical::nearest_series(tau, power_w, order, model.fourier.omega_rad_per_s, model.duration_s);
+    if (!series) throw NoAnswerError("the model's frequency is too low to spread flights about it");
+    return *std::move(series);
 }
 
 mechanical::PhaseModel deviated(flight::Phase phase, const mechanical::PhaseModel& model,

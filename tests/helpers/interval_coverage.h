@@ -87,7 +87,7 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
         }
         const double a0_error_w = mean.fourier.a0_w - truth.fourier.a0_w;
         coverage.a0_covered += std::abs(a0_error_w) <= half_width * analysis.errors.a0_w ? 1.0 : 0.0;
-        coverage.at_bound += fit.range.at_bound != "none" ? 1 : 0;
+        coverage.at_bound += fit.range.at_bound != mechanical::FrequencyBound::none ? 1 : 0;
         ++coverage.fits;
     }
     const auto fits = static_cast<double>(coverage.fits);

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
 #include "mechanical/table_one.h"
-#include "mechanical/table_one_latex.h"
 
 #include <algorithm>
 

@@ -1,22 +1,21 @@
 #include "battery/identification/circuit_errors.h"
 
+#include "base/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 namespace flightwatt::battery {
 namespace {
 
-constexpr double upper_tail = 0.975;  // of a two-sided 95 % interval
 constexpr double wanted_blocks = 30.0;
 constexpr double shortest_block_s = 15.0;
 constexpr std::size_t enough_records = 3;
 constexpr double tells_nothing = 10.0;  // of a logarithm: beyond a factor e^10 an interval is all there is
 
-/// A stretch of rows, and by how much rounding may be off throughout.
+/// Rows that follow each other, and by how much rounding may be off throughout.
 struct Block {
     Eigen::Index first = 0;
     Eigen::Index count = 0;
@@ -100,11 +99,6 @@ Eigen::VectorXd jackknife(const Eigen::MatrixXd& columns, const Eigen::VectorXd&
     return ((count - 1.0) / count * squares + rounding.cwiseAbs2()).cwiseSqrt();
 }
 
-double students_half_width(double degrees_of_freedom) {
-    const boost::math::students_t distribution(std::max(1.0, degrees_of_freedom));
-    return boost::math::quantile(distribution, upper_tail);
-}
-
 /// How far the parameters move, in the order of the derivatives, if the curve has twice the segments.
 Eigen::VectorXd moved_by_finer_curve(std::span<const AlignedRecord> records, const CircuitFit& fit) {
     std::vector<double> knots_ah;
@@ -146,17 +140,16 @@ CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const Circu
     const double degrees_of_freedom =
         static_cast<double>(in_time.size()) - static_cast<double>(columns.cols());
     Eigen::VectorXd half_width =
-        jackknife(columns, fit.residual_v, in_time) * students_half_width(degrees_of_freedom);
+        jackknife(columns, fit.residual_v, in_time) * student_t_half_width(degrees_of_freedom);
     if (records.size() >= enough_records) {
-        const double t = students_half_width(static_cast<double>(records.size()) - 1.0);
+        const double t = student_t_half_width(static_cast<double>(records.size()) - 1.0);
         half_width = half_width.cwiseMax(jackknife(columns, fit.residual_v, blocks_of_records(records)) * t);
     }
     half_width = half_width.cwiseQuotient(length) + moved_by_finer_curve(records, fit);
 
     const auto knots = static_cast<Eigen::Index>(fit.knots_ah.size());
-    const double normal = boost::math::quantile(boost::math::normal(), upper_tail);
     for (Eigen::Index i = 0; i < knots; ++i) {
-        errors.open_circuit_standard_error_v.push_back(half_width[i] / normal);
+        errors.open_circuit_standard_error_v.push_back(half_width[i] / normal_half_width());
     }
     const auto around = [](double value, double half) { return Interval{value - half, value + half}; };
     errors.resistance_ohm = around(fit.resistance_ohm, half_width[knots]);

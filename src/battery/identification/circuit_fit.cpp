@@ -1,10 +1,13 @@
 #include "battery/identification/circuit_fit.h"
 
 #include "base/error.h"
+#include "base/piecewise_linear.h"
+#include "base/statistics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/QR>
 #include <boost/math/tools/minima.hpp>
@@ -37,13 +40,6 @@ Eigen::VectorXd gathered(std::span<const AlignedRecord> records, const Channel& 
     return values;
 }
 
-/// Which line a charge lies on, and how far along it.
-std::pair<Eigen::Index, double> place_of(const std::vector<double>& knots_ah, double charge_ah) {
-    const auto above = std::upper_bound(knots_ah.begin() + 1, knots_ah.end() - 1, charge_ah);
-    const auto i = above - knots_ah.begin();
-    return {i - 1, (charge_ah - *(above - 1)) / (*above - *(above - 1))};
-}
-
 /// What is linear whatever the time constant: the knots' voltages, and the resistance.
 Eigen::MatrixXd linear_columns(std::span<const AlignedRecord> records, const std::vector<double>& knots_ah) {
     const auto knots = static_cast<Eigen::Index>(knots_ah.size());
@@ -54,9 +50,10 @@ Eigen::MatrixXd linear_columns(std::span<const AlignedRecord> records, const std
     });
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(charge.size(), knots + 1);
     for (Eigen::Index row = 0; row < charge.size(); ++row) {
-        const auto [line, part] = place_of(knots_ah, charge[row]);
-        columns(row, line) = 1.0 - part;
-        columns(row, line + 1) = part;
+        const auto place = place_among(knots_ah, charge[row]);
+        const auto lower = static_cast<Eigen::Index>(place.lower);
+        columns(row, lower) = 1.0 - place.fraction;
+        columns(row, lower + 1) = place.fraction;
     }
     columns.col(knots) = -gathered(records, [](const AlignedRecord& a) { return a.record->current_a; });
     return columns;
@@ -77,9 +74,7 @@ std::pair<double, double> time_constant_range(std::span<const AlignedRecord> rec
         longest_s = std::max(longest_s, time_s.back() - time_s.front());
         for (std::size_t i = 1; i < time_s.size(); ++i) intervals.push_back(time_s[i] - time_s[i - 1]);
     }
-    const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-    std::nth_element(intervals.begin(), middle, intervals.end());
-    const double low_s = 2.0 * *middle;
+    const double low_s = 2.0 * median(std::move(intervals));
     return {std::log(low_s), std::log(std::max(2.0 * low_s, longest_part * longest_s))};
 }
 
@@ -181,9 +176,7 @@ Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, cons
 }
 
 double open_circuit_voltage_v(const CircuitFit& fit, double charge_ah) {
-    const auto [line, part] = place_of(fit.knots_ah, charge_ah);
-    const auto i = static_cast<std::size_t>(line);
-    return fit.open_circuit_v[i] + part * (fit.open_circuit_v[i + 1] - fit.open_circuit_v[i]);
+    return interpolate_extended(fit.knots_ah, fit.open_circuit_v, charge_ah);
 }
 
 }  // namespace flightwatt::battery

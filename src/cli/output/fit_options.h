@@ -5,7 +5,6 @@
 #include "base/units.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
-#include "mechanical/fourier_basis.h"
 #include "mechanical/model_fit.h"
 
 #include <cstdint>
@@ -138,7 +137,7 @@ inline nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) 
         if (fitted.range) {
             entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},
                                            {"high", fitted.range->high_rad},
-                                           {"at_bound", fitted.range->at_bound}};
+                                           {"at_bound", to_string(fitted.range->at_bound)}};
         }
     }
     for (const auto& flight : model.flights) {
@@ -156,13 +155,14 @@ inline nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) 
 inline void warn_of_bounds(const cli::StageCall& call, const mechanical::MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
-        if (!fitted.range || fitted.range->at_bound == "none") continue;
+        if (!fitted.range || fitted.range->at_bound == mechanical::FrequencyBound::none) continue;
         cli::warn(
             call,
             fmt::format("{}: omega * duration stands at its {} bound, {:.3f} rad: the frequency is not "
                         "determined by the data, the curve is",
-                        to_string(phase), fitted.range->at_bound,
-                        fitted.range->at_bound == "low" ? fitted.range->low_rad : fitted.range->high_rad));
+                        to_string(phase), to_string(fitted.range->at_bound),
+                        fitted.range->at_bound == mechanical::FrequencyBound::low ? fitted.range->low_rad
+                                                                                  : fitted.range->high_rad));
     }
 }
 

@@ -1,7 +1,6 @@
 #include "cli/output/table_one_output.h"
 
 #include "base/error.h"
-#include "mechanical/table_one_latex.h"
 
 #include <fmt/format.h>
 

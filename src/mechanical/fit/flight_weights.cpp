@@ -1,6 +1,7 @@
 #include "mechanical/fit/flight_weights.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "base/toml_reader.h"
 #include "mechanical/phase_curve.h"
 
@@ -71,19 +72,13 @@ std::vector<double> disagreements(const PhaseFit& fit) {
     return distances;
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2.0;
-}
-
 std::vector<double> by_agreement(const PhaseFit& fit) {
     const auto count = static_cast<double>(fit.flights.size());
     std::vector<double> equal(fit.flights.size(), 1.0 / count);
     if (fit.flights.size() <= 2) return equal;
     const auto distances = disagreements(fit);
     double usual = median(distances);
-    if (usual == 0.0) usual = std::accumulate(distances.begin(), distances.end(), 0.0) / count;
+    if (usual == 0.0) usual = mean(distances);
     if (usual == 0.0) return equal;
     std::vector<double> weights;
     weights.reserve(distances.size());
@@ -100,9 +95,8 @@ double weight_by_hand(const std::string& flight, flight::Phase phase,
         if (!weight.phase) found = &weight;
     }
     if (found == nullptr) {
-        throw UsageError(
-            fmt::format("flight '{}' has no weight by hand in {}; give it one, 0 to leave it out", flight,
-                        to_string(phase)));
+        throw UsageError(fmt::format("flight '{}' has no weight by hand in {}; give it one, 0 to exclude it",
+                                     flight, to_string(phase)));
     }
     return found->weight;
 }

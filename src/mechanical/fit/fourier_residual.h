@@ -1,7 +1,7 @@
 #pragma once
 
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/phase_samples.h"
-#include "mechanical/fourier_basis.h"
 
 #include <span>
 

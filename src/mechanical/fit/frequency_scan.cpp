@@ -1,8 +1,8 @@
 #include "mechanical/fit/frequency_scan.h"
 
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/projected_fit.h"
 #include "mechanical/fit/trigonometric_sums.h"
-#include "mechanical/fourier_basis.h"
 
 #include <algorithm>
 #include <cmath>

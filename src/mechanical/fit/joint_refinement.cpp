@@ -1,9 +1,9 @@
 #include "mechanical/fit/joint_refinement.h"
 
 #include "base/error.h"
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/fourier_residual.h"
-#include "mechanical/fourier_basis.h"
-#include "mechanical/least_squares.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <memory>
 

@@ -1,13 +1,13 @@
 #include "mechanical/fit/phase_fit.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "base/units.h"
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/frequency_scan.h"
 #include "mechanical/fit/joint_refinement.h"
-#include "mechanical/fit/median_gap.h"
 #include "mechanical/fit/projected_fit.h"
 #include "mechanical/fit/robust_refinement.h"
-#include "mechanical/fourier_basis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,8 +65,8 @@ void check_samples(flight::Phase phase, const PhaseSamples& samples) {
 void check_count(flight::Phase phase, const PhaseSamples& samples, int order) {
     if (samples.tau.size() >= samples_needed(order)) return;
     throw NoAnswerError(
-        fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: leave "
-                    "its {} out, or lower the order",
+        fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: "
+                    "exclude its {}, or lower the order",
                     samples.flight, samples.tau.size(), to_string(phase), order, samples_needed(order),
                     to_string(phase)));
 }
@@ -84,16 +84,15 @@ Scaling scaled(std::span<const PhaseSamples> flights) {
     double count = 0.0;
     for (const auto& flight : flights) {
         ScaledSamples samples{flight.tau, flight.power_w, flight.flight};
-        double mean = 0.0;
-        for (const double power : flight.power_w) mean += power / static_cast<double>(flight.power_w.size());
+        const double mean_w = mean(flight.power_w);
         for (double& value : samples.value) {
             largest = std::max(largest, std::abs(value));
-            value -= mean;
+            value -= mean_w;
             square_sum += value * value;
         }
         count += static_cast<double>(flight.tau.size());
         scaling.flights.push_back(std::move(samples));
-        scaling.mean_w.push_back(mean);
+        scaling.mean_w.push_back(mean_w);
     }
     const double deviation_w = std::sqrt(square_sum / count);
     const bool varies = deviation_w > constant_level * largest;
@@ -116,11 +115,11 @@ FourierModel in_watts(const Eigen::VectorXd& coefficients, double unit_w, double
     return model;
 }
 
-std::string bound_reached(const FrequencyRange& range, double theta_rad) {
+FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
     const double near = bound_tolerance * theta_rad;
-    if (theta_rad - range.low_rad <= near) return "low";
-    if (range.high_rad - theta_rad <= near) return "high";
-    return "none";
+    if (theta_rad - range.low_rad <= near) return FrequencyBound::low;
+    if (range.high_rad - theta_rad <= near) return FrequencyBound::high;
+    return FrequencyBound::none;
 }
 
 /// Order 0: the values less their means are 0 but for noise, whatever the frequency.
@@ -146,7 +145,7 @@ PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling
     fit.theta_rad = joint.theta_rad;
     fit.range = range;
     const bool has_frequency = joint.coefficients.front().size() > 1;
-    fit.range.at_bound = has_frequency ? bound_reached(range, joint.theta_rad) : "none";
+    fit.range.at_bound = has_frequency ? bound_reached(range, joint.theta_rad) : FrequencyBound::none;
     double square_sum = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         FlightCurve curve;
@@ -170,7 +169,7 @@ std::size_t samples_needed(int order) { return static_cast<std::size_t>(coeffici
 
 FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
-    FrequencyRange range{options.low_rad, units::rad_from_turns(options.high_periods), "none"};
+    FrequencyRange range{options.low_rad, units::rad_from_turns(options.high_periods)};
     for (const auto& flight : flights) {
         const double gap = median_gap(flight.tau);
         // A constant needs no frequency: it is content with what a first order needs.
@@ -199,7 +198,7 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights,
         const auto range = admissible_range(flights, options);
         const auto joint = least_squares(scaling, options.order, range);
         if (options.loss == Loss::none) return result_of(flights, scaling, joint, range);
-        const auto robust = refine_robustly(scaling.flights, range, joint, options.loss);
+        const auto robust = refine_robustly(scaling.flights, range, joint);
         auto fit = result_of(flights, scaling, robust.joint, range);
         fit.loss = options.loss;
         fit.loss_scale_w = robust.scale * scaling.unit_w;

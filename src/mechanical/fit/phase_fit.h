@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/flight_phases.h"
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/phase_samples.h"
 #include "mechanical/fit/robust_loss.h"
 #include "mechanical/mechanical_model.h"
@@ -14,7 +15,7 @@
 namespace flightwatt::mechanical {
 
 struct PhaseFitOptions {
-    int order = 3;  ///< of the Fourier series, 0 (a constant) to 8
+    int order = 3;  ///< of the Fourier series, 0 (a constant) to max_order
     /// Lowest omega * duration. The fewer periods a phase has, the more alike its harmonics are: at order 3
     /// the condition number of the basis is 1 at 2 pi, 38 at the paper's landing (3.63), 108 at pi, where a
     /// phase is half a period, but 2500 at 2 rad and 230000 at 1 rad (basis_condition). Noise in the
@@ -23,7 +24,7 @@ struct PhaseFitOptions {
     /// Most periods in a phase; the sampling may allow fewer. 120 in ten minutes are 5 s each: nothing that
     /// an aircraft does over and over in cruise is faster.
     double high_periods = 120.0;
-    Loss loss = Loss::none;  ///< other than none: outliers count less in the last refinement
+    Loss loss = Loss::none;  ///< huber: outliers count less in the last refinement
 };
 
 /// One flight's own curve in one phase, in that flight's own seconds.

@@ -1,5 +1,10 @@
 #include "mechanical/fit/phase_samples.h"
 
+#include "base/statistics.h"
+
+#include <algorithm>
+#include <utility>
+
 namespace flightwatt::mechanical {
 
 double mean_power_w(const PhaseSamples& samples) {
@@ -8,6 +13,15 @@ double mean_power_w(const PhaseSamples& samples) {
         sum += 0.5 * (samples.power_w[i] + samples.power_w[i - 1]) * (samples.tau[i] - samples.tau[i - 1]);
     }
     return sum + samples.power_w.back() * (1.0 - samples.tau.back());
+}
+
+double median_gap(std::vector<double> tau) {
+    std::sort(tau.begin(), tau.end());
+    std::vector<double> gaps;
+    for (std::size_t i = 1; i < tau.size(); ++i) {
+        if (tau[i] > tau[i - 1]) gaps.push_back(tau[i] - tau[i - 1]);
+    }
+    return gaps.empty() ? 0.0 : median(std::move(gaps));
 }
 
 }  // namespace flightwatt::mechanical

@@ -26,6 +26,9 @@ struct PhaseSamples {
 /// phase's ends. The samples must not be empty.
 double mean_power_w(const PhaseSamples& samples);
 
+/// The median of the gaps between samples, as a part of the phase; 0 if all samples are at one time.
+double median_gap(std::vector<double> tau);
+
 /// One flight; a phase that it lacks, or that was not recorded, is absent.
 struct FlightSamples {
     std::string flight;

@@ -1,6 +1,6 @@
 #include "mechanical/fit/projected_fit.h"
 
-#include "mechanical/fourier_basis.h"
+#include "mechanical/fit/fourier_basis.h"
 
 #include <algorithm>
 #include <array>

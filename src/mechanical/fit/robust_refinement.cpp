@@ -1,12 +1,14 @@
 #include "mechanical/fit/robust_refinement.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/fourier_residual.h"
-#include "mechanical/fourier_basis.h"
-#include "mechanical/least_squares.h"
+#include "mechanical/fit/least_squares.h"
+#include "mechanical/fit/robust_loss.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <ceres/ceres.h>
@@ -51,25 +53,18 @@ class SampleCost final : public ceres::CostFunction {
     const Eigen::MatrixXd& from_orthonormal_;
 };
 
-ceres::LossFunction* loss_function(Loss loss, double scale) {
-    if (loss == Loss::cauchy) return new ceres::CauchyLoss(bend_of(loss) * scale);
-    return new ceres::HuberLoss(bend_of(loss) * scale);
-}
-
 double scale_of(std::span<const ScaledSamples> flights, const JointFit& fit) {
     std::vector<double> sizes;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         const auto at = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]);
         for (const double residual : at.residual) sizes.push_back(std::abs(residual));
     }
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return deviations_per_median * *middle;
+    return deviations_per_median * median(std::move(sizes));
 }
 
 /// The least loss at a fixed scale.
 JointFit minimised(std::span<const ScaledSamples> flights, const FrequencyRange& range, const JointFit& start,
-                   Loss loss, double scale) {
+                   double scale) {
     const auto order = static_cast<int>(start.coefficients.front().size() - 1) / 2;
     auto result = start;
     std::vector<Eigen::MatrixXd> from_orthonormal;
@@ -86,7 +81,7 @@ JointFit minimised(std::span<const ScaledSamples> flights, const FrequencyRange&
         for (std::size_t j = 0; j < flights[i].tau.size(); ++j) {
             problem.AddResidualBlock(
                 new SampleCost(flights[i].tau[j], flights[i].value[j], from_orthonormal[i]),
-                loss_function(loss, scale), &result.theta_rad, z[i].data());
+                new ceres::HuberLoss(tuning_constant * scale), &result.theta_rad, z[i].data());
         }
     }
     problem.SetParameterLowerBound(&result.theta_rad, 0, range.low_rad);
@@ -99,8 +94,7 @@ JointFit minimised(std::span<const ScaledSamples> flights, const FrequencyRange&
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     if (summary.termination_type != ceres::CONVERGENCE) {
-        throw NoAnswerError(fmt::format("the robust fit with the {} loss did not converge: {}",
-                                        to_string(loss), summary.message));
+        throw NoAnswerError(fmt::format("the robust fit did not converge: {}", summary.message));
     }
     for (std::size_t i = 0; i < flights.size(); ++i) {
         result.coefficients[i] = from_orthonormal[i] * z[i];
@@ -113,12 +107,11 @@ JointFit minimised(std::span<const ScaledSamples> flights, const FrequencyRange&
 }  // namespace
 
 RobustFit refine_robustly(std::span<const ScaledSamples> flights, const FrequencyRange& range,
-                          const JointFit& start, Loss loss) {
+                          const JointFit& start) {
     RobustFit fit{start, 0.0};
-    if (loss == Loss::cauchy) fit = refine_robustly(flights, range, start, Loss::huber);
     fit.scale = scale_of(flights, fit.joint);
     for (int i = 0; i < most_scalings && fit.scale > rounding_level; ++i) {
-        fit.joint = minimised(flights, range, fit.joint, loss, fit.scale);
+        fit.joint = minimised(flights, range, fit.joint, fit.scale);
         const double scale = scale_of(flights, fit.joint);
         const bool stays = std::abs(scale - fit.scale) <= same_scale * fit.scale;
         fit.scale = scale;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "mechanical/fit/joint_refinement.h"
-#include "mechanical/fit/robust_loss.h"
 
 #include <span>
 
@@ -12,12 +11,11 @@ struct RobustFit {
     double scale = 0.0;  ///< of the noise: 1.4826 times the median of the absolute residuals
 };
 
-/// Moves a least-squares fit to the least robust loss of all flights' residuals (an M-estimate), theta and
-/// all coefficients together, sample by sample with Ceres's loss functions. The scale of the noise is taken
-/// from the residuals anew until it stays; Cauchy's loss, which has local minima, starts at Huber's answer.
-/// If more than half of the residuals are 0 there is nothing to weigh and the fit stays. Throws NoAnswerError
+/// Moves a least-squares fit to the least Huber loss of all flights' residuals (an M-estimate), theta and all
+/// coefficients together, sample by sample with Ceres's loss function. The scale of the noise is taken from
+/// the residuals anew until it stays. If more than half of the residuals are 0 there is nothing to weigh and the fit stays. Throws NoAnswerError
 /// if it does not converge.
 RobustFit refine_robustly(std::span<const ScaledSamples> flights, const FrequencyRange& range,
-                          const JointFit& start, Loss loss);
+                          const JointFit& start);
 
 }  // namespace flightwatt::mechanical

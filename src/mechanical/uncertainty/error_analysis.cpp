@@ -1,10 +1,9 @@
 #include "mechanical/uncertainty/error_analysis.h"
 
 #include "base/error.h"
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/fourier_residual.h"
-#include "mechanical/fit/median_gap.h"
-#include "mechanical/fourier_basis.h"
-#include "mechanical/least_squares.h"
+#include "mechanical/fit/least_squares.h"
 #include "mechanical/uncertainty/residual_correlation.h"
 
 #include <algorithm>
@@ -23,10 +22,10 @@ constexpr double rounding_level = 1e-10;
 /// What the errors of one flight are made of.
 struct FlightPart {
     FlightResiduals residuals;
-    Eigen::MatrixXd orthonormal;        ///< Q of the flight's basis
-    Eigen::MatrixXd from_orthonormal;   ///< coefficients = this * Q' * power
-    Eigen::VectorXd theta_direction;    ///< d curve / d theta, less what coefficients can make up for
-    Eigen::VectorXd coefficients_turn;  ///< by how much coefficients rise as theta falls by 1 rad
+    Eigen::MatrixXd orthonormal;              ///< Q of the flight's basis
+    Eigen::MatrixXd from_orthonormal;         ///< coefficients = this * Q' * power
+    Eigen::VectorXd theta_direction;          ///< d curve / d theta, less what coefficients can make up for
+    Eigen::VectorXd coefficient_sensitivity;  ///< by how much coefficients rise as theta falls by 1 rad
     double square_sum_about_mean = 0.0;
     double condition = 0.0;
 };
@@ -60,8 +59,8 @@ double condition_of(Eigen::MatrixXd basis) {
     return singular(0) / singular(singular.size() - 1);
 }
 
-/// Residuals as they push the estimate: those of least squares as they are, those of a robust fit bent.
-Eigen::VectorXd pushing(Eigen::VectorXd residual_w, const PhaseFit& fit) {
+/// Residuals for least squares; Huber's pseudo-residuals psi(r) / mean(psi') for robust fits.
+Eigen::VectorXd pseudo_residuals(Eigen::VectorXd residual_w, const PhaseFit& fit) {
     if (fit.loss == Loss::none || fit.loss_scale_w <= 0.0) return residual_w;
     double slope = 0.0;
     for (double& residual : residual_w) {
@@ -85,10 +84,10 @@ FlightPart part_of(const PhaseSamples& unsorted, const FlightCurve& curve, const
     FlightPart part;
     part.residuals.tau = samples.tau;
     part.residuals.step = median_gap(samples.tau);
-    part.residuals.residual_w = pushing(-at.residual, fit);
+    part.residuals.residual_w = pseudo_residuals(-at.residual, fit);
     part.from_orthonormal = qr->from_orthonormal;
     part.orthonormal = at.by_coefficients * qr->from_orthonormal;
-    part.coefficients_turn = qr->coefficients;
+    part.coefficient_sensitivity = qr->coefficients;
     part.theta_direction = at.by_theta - at.by_coefficients * qr->coefficients;
     if (part.theta_direction.norm() <= rounding_level * at.by_theta.norm()) part.theta_direction.setZero();
     const Eigen::Map<const Eigen::VectorXd> power_w(samples.power_w.data(), at.residual.size());
@@ -98,22 +97,23 @@ FlightPart part_of(const PhaseSamples& unsorted, const FlightCurve& curve, const
 }
 
 /// The flights' parts and what they make together.
-struct Mean {
+struct MeanCurveParts {
     std::vector<FlightPart> parts;
     Eigen::VectorXd coefficients_w;
-    Eigen::VectorXd turn;      ///< coefficients_turn of the mean
-    double information = 0.0;  ///< of all flights about theta
+    Eigen::VectorXd sensitivity;  ///< coefficient_sensitivity of the mean
+    double information = 0.0;     ///< of all flights about theta
     double duration_s = 0.0;
 };
 
-Mean mean_of(std::span<const PhaseSamples> flights, const PhaseFit& fit, std::span<const double> weights) {
-    Mean mean;
+MeanCurveParts mean_curve_parts(std::span<const PhaseSamples> flights, const PhaseFit& fit,
+                                std::span<const double> weights) {
+    MeanCurveParts mean;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         const Eigen::VectorXd own = coefficients_of(fit.flights[i].fourier);
-        if (i == 0) mean.coefficients_w = mean.turn = Eigen::VectorXd::Zero(own.size());
+        if (i == 0) mean.coefficients_w = mean.sensitivity = Eigen::VectorXd::Zero(own.size());
         mean.parts.push_back(part_of(flights[i], fit.flights[i], fit));
         mean.coefficients_w += weights[i] * own;
-        mean.turn += weights[i] * mean.parts[i].coefficients_turn;
+        mean.sensitivity += weights[i] * mean.parts[i].coefficient_sensitivity;
         mean.information += mean.parts[i].theta_direction.squaredNorm();
         mean.duration_s += weights[i] * flights[i].duration_s;
     }
@@ -131,7 +131,7 @@ double explained_part(const std::vector<FlightPart>& parts, const PhaseFit& fit)
 }
 
 /// The flights' residuals with the directions that coefficients and, unless it is given, theta have used up.
-std::vector<FlightResiduals> residuals_of(const Mean& mean, bool frequency_is_given) {
+std::vector<FlightResiduals> residuals_of(const MeanCurveParts& mean, bool frequency_is_given) {
     std::vector<FlightResiduals> all;
     for (const auto& part : mean.parts) {
         auto residuals = part.residuals;
@@ -146,20 +146,20 @@ std::vector<FlightResiduals> residuals_of(const Mean& mean, bool frequency_is_gi
 }
 
 /// How theta, were it free, follows the noise of flight i.
-Eigen::VectorXd theta_response(const Mean& mean, std::size_t i) {
+Eigen::VectorXd theta_response(const MeanCurveParts& mean, std::size_t i) {
     const auto& direction = mean.parts[i].theta_direction;
     if (mean.information <= 0.0) return Eigen::VectorXd::Zero(direction.size());
     return direction / mean.information;
 }
 
 /// How theta and the mean's coefficients follow the noise of flight i: samples x (1 + coefficients).
-Eigen::MatrixXd response(const Mean& mean, std::size_t i, double weight, bool frequency_is_given) {
+Eigen::MatrixXd response(const MeanCurveParts& mean, std::size_t i, double weight, bool frequency_is_given) {
     const auto& part = mean.parts[i];
     Eigen::MatrixXd rows(part.orthonormal.rows(), 1 + part.orthonormal.cols());
     rows.col(0).setZero();
     if (!frequency_is_given) rows.col(0) = theta_response(mean, i);
-    rows.rightCols(part.orthonormal.cols()) =
-        weight * part.orthonormal * part.from_orthonormal.transpose() - rows.col(0) * mean.turn.transpose();
+    rows.rightCols(part.orthonormal.cols()) = weight * part.orthonormal * part.from_orthonormal.transpose() -
+                                              rows.col(0) * mean.sensitivity.transpose();
     return rows;
 }
 
@@ -215,13 +215,13 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
                              std::span<const double> weights) {
     ErrorAnalysis analysis;
     auto& errors = analysis.errors;
-    const auto mean = mean_of(flights, fit, weights);
+    const auto mean = mean_curve_parts(flights, fit, weights);
     analysis.theta_rad = fit.theta_rad;
     analysis.coefficients_w = mean.coefficients_w;
     analysis.theta_information = mean.information;
     errors.r2 = explained_part(mean.parts, fit);
     for (const auto& part : mean.parts) errors.condition = std::max(errors.condition, part.condition);
-    errors.frequency_is_given = fit.range.at_bound != "none" || mean.information <= 0.0;
+    errors.frequency_is_given = fit.range.at_bound != FrequencyBound::none || mean.information <= 0.0;
 
     const auto residuals = residuals_of(mean, errors.frequency_is_given);
     errors.autocorrelation = estimate_autocorrelation(residuals);

@@ -1,8 +1,8 @@
 #include "mechanical/uncertainty/frequency_profile.h"
 
 #include "base/statistics.h"
-#include "mechanical/fourier_basis.h"
-#include "mechanical/least_squares.h"
+#include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
 #include <cmath>

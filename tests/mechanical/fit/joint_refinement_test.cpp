@@ -11,7 +11,7 @@
 namespace flightwatt::mechanical {
 namespace {
 
-const FrequencyRange wide{std::numbers::pi, 500.0, "none"};
+const FrequencyRange wide{std::numbers::pi, 500.0};
 
 TEST(JointRefinement, StandsAtAMinimum) {
     std::vector<ScaledSamples> flights;
@@ -29,7 +29,7 @@ TEST(JointRefinement, StaysInTheRange) {
     std::mt19937 random(1);
     const auto phase = test::cruise_of(2.0, {3.0}, {2.0});
     const std::vector flights{test::centred(test::record(phase, {600.0, 1.0, 0.1, 0.0}, random))};
-    const auto fit = refine_jointly(flights, 1, {12.8, 20.0, "none"}, 13.0);  // the answer is 12.57
+    const auto fit = refine_jointly(flights, 1, {12.8, 20.0}, 13.0);  // the answer is 12.57
     EXPECT_DOUBLE_EQ(fit.theta_rad, 12.8);
 }
 

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
 #include "mechanical/fit/fourier_residual.h"
-#include "mechanical/least_squares.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ TEST(PhaseFit, RecoversTableOneFromExactSamples) {
             const auto fit = fit_phase(phase, std::vector{samples});
             EXPECT_NEAR(fit.theta_rad, test::theta_rad(published), 1e-8) << to_string(phase);
             EXPECT_LT(fit.rms_w, 1e-9);
-            EXPECT_EQ(fit.range.at_bound, "none");
+            EXPECT_EQ(fit.range.at_bound, FrequencyBound::none);
             const auto& curve = fit.flights.front().fourier;
             EXPECT_NEAR(curve.omega_rad_per_s, published.fourier.omega_rad_per_s, 1e-9);
             EXPECT_NEAR(curve.a0_w, published.fourier.a0_w, 1e-6);
@@ -172,10 +172,10 @@ TEST(PhaseFit, TheSharedFrequencyIsTheSameForTwinsAsForOne) {
 TEST(PhaseFit, ReportsThatItStandsAtABound) {
     const auto flights = test::record_flights(flight::Phase::cruise, 2, 0.0, 8);  // theta is 5.04
     const auto low = fit_phase(flight::Phase::cruise, flights, {.low_rad = 5.3});
-    EXPECT_EQ(low.range.at_bound, "low");
+    EXPECT_EQ(low.range.at_bound, FrequencyBound::low);
     EXPECT_NEAR(low.theta_rad, 5.3, 1e-5);
     const auto high = fit_phase(flight::Phase::cruise, flights, {.high_periods = 0.75});
-    EXPECT_EQ(high.range.at_bound, "high");
+    EXPECT_EQ(high.range.at_bound, FrequencyBound::high);
     EXPECT_NEAR(high.theta_rad, 1.5 * std::numbers::pi, 1e-5);
 }
 

@@ -1,8 +1,8 @@
 #include "mechanical/fit/projected_fit.h"
 
 #include "helpers/made_up_flights.h"
-#include "mechanical/fourier_basis.h"
-#include "mechanical/least_squares.h"
+#include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <numbers>
 

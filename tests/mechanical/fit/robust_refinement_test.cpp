@@ -29,7 +29,6 @@ TEST(RobustRefinement, OutliersHardlyMoveTheCurve) {
     const auto flights = with_outliers();
     EXPECT_GT(off_by_w(fit_phase(flight::Phase::cruise, flights), 1), 0.2);
     EXPECT_LT(off_by_w(fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber}), 1), 0.04);
-    EXPECT_LT(off_by_w(fit_phase(flight::Phase::cruise, flights, {.loss = Loss::cauchy}), 1), 0.03);
 }
 
 TEST(RobustRefinement, KnowsTheNoiseInSpiteOfThem) {
@@ -38,9 +37,9 @@ TEST(RobustRefinement, KnowsTheNoiseInSpiteOfThem) {
     EXPECT_GT(fit.rms_w, 0.5);  // that of all samples, the outliers among them
 }
 
-TEST(RobustRefinement, NamesTheSamplesThatItDidNotListenTo) {
+TEST(RobustRefinement, NamesTheSamplesThatItDownWeighted) {
     const auto flights = with_outliers();
-    const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = Loss::cauchy});
+    const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber});
     const auto found = down_weighted_samples(flights, fit);
     const std::size_t outliers = (flights[1].tau.size() - 5 + 24) / 25;
     ASSERT_GE(found.size(), outliers);
@@ -48,7 +47,7 @@ TEST(RobustRefinement, NamesTheSamplesThatItDidNotListenTo) {
     for (std::size_t i = 0; i < outliers; ++i) {
         EXPECT_EQ(found[i].flight, "flight2");
         EXPECT_NEAR(found[i].residual_w, 8.0, 0.5);
-        EXPECT_LT(found[i].weight, 0.01);
+        EXPECT_LT(found[i].weight, 0.05);
         EXPECT_GT(found[i].log_time_s, 1000.0);
     }
     EXPECT_TRUE(down_weighted_samples(flights, fit_phase(flight::Phase::cruise, flights)).empty());
@@ -56,33 +55,31 @@ TEST(RobustRefinement, NamesTheSamplesThatItDidNotListenTo) {
 
 TEST(RobustRefinement, StandsAtTheLeastLoss) {
     const auto flights = with_outliers();
-    for (const auto loss : {Loss::huber, Loss::cauchy}) {
-        const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = loss});
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            // The weighted residuals are orthogonal to the constant and to the first cosine.
-            double constant = 0.0;
-            double cosine = 0.0;
-            for (std::size_t j = 0; j < flights[i].tau.size(); ++j) {
-                const double time_s = flights[i].tau[j] * flights[i].duration_s;
-                const double residual_w = flights[i].power_w[j] - power_w(fit.flights[i].fourier, time_s);
-                const double push_w = residual_w * sample_weight(loss, residual_w / fit.loss_scale_w);
-                constant += push_w;
-                cosine += push_w * std::cos(fit.theta_rad * flights[i].tau[j]);
-            }
-            EXPECT_NEAR(constant, 0.0, 1e-2) << to_string(loss);
-            EXPECT_NEAR(cosine, 0.0, 1e-2) << to_string(loss);
+    const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber});
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        // The weighted residuals are orthogonal to the constant and to the first cosine.
+        double constant = 0.0;
+        double cosine = 0.0;
+        for (std::size_t j = 0; j < flights[i].tau.size(); ++j) {
+            const double time_s = flights[i].tau[j] * flights[i].duration_s;
+            const double residual_w = flights[i].power_w[j] - power_w(fit.flights[i].fourier, time_s);
+            const double push_w = residual_w * sample_weight(Loss::huber, residual_w / fit.loss_scale_w);
+            constant += push_w;
+            cosine += push_w * std::cos(fit.theta_rad * flights[i].tau[j]);
         }
+        EXPECT_NEAR(constant, 0.0, 1e-2);
+        EXPECT_NEAR(cosine, 0.0, 1e-2);
     }
 }
 
 TEST(RobustRefinement, ExactSamplesStayExact) {
     const auto flights = test::record_flights(flight::Phase::cruise, 2, 0.0, 2);
-    const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = Loss::cauchy});
+    const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber});
     EXPECT_LT(fit.rms_w, 1e-9);
 }
 
 TEST(RobustLoss, TheInfluenceIsTheDerivativeOfThePush) {
-    for (const auto loss : {Loss::none, Loss::huber, Loss::cauchy}) {
+    for (const auto loss : {Loss::none, Loss::huber}) {
         for (const double at : {-5.0, -1.0, 0.2, 1.2, 3.0}) {
             const auto push = [&](double residual) { return residual * sample_weight(loss, residual); };
             EXPECT_NEAR(sample_influence(loss, at), (push(at + 1e-6) - push(at - 1e-6)) / 2e-6, 1e-6);

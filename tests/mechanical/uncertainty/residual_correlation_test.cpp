@@ -1,6 +1,6 @@
 #include "mechanical/uncertainty/residual_correlation.h"
 
-#include "mechanical/fourier_basis.h"
+#include "mechanical/fit/fourier_basis.h"
 
 #include <cmath>
 #include <random>

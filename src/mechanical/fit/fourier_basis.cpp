@@ -1,4 +1,4 @@
-#include "mechanical/fourier_basis.h"
+#include "mechanical/fit/fourier_basis.h"
 
 #include <cmath>
 #include <vector>

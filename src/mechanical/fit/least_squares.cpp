@@ -1,4 +1,4 @@
-#include "mechanical/least_squares.h"
+#include "mechanical/fit/least_squares.h"
 
 #include <Eigen/QR>
 

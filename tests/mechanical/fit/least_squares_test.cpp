@@ -1,6 +1,6 @@
-#include "mechanical/least_squares.h"
+#include "mechanical/fit/least_squares.h"
 
-#include "mechanical/fourier_basis.h"
+#include "mechanical/fit/fourier_basis.h"
 
 #include <cmath>
 #include <numbers>
