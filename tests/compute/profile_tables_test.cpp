@@ -1,0 +1,97 @@
+#include "compute/profile_tables.h"
+
+#include "base/atomic_file.h"
+#include "compute/power_profile.h"
+#include "compute/profile_reader.h"
+#include "helpers/rejected.h"
+#include "helpers/test_paths.h"
+
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::compute {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// 5 and 7 W at 1 and 2, and 6 W between them, interpolated; the idle computer takes 2 W.
+ProfileOutcome outcome() {
+    ProfileOutcome made;
+    made.sampler = "a meter";
+    made.idle = PowerEstimate{2.0, 0.4, 10.0, 20.0, 100, 1};
+    ComponentEstimate component;
+    component.name = "load";
+    component.parameters = {"n"};
+    component.nodes = {{{1.0}, {5.0, 0.3, 4.0, 20.0, 40, 2}, true},
+                       {{1.5}, {6.0, 0.5, 0.0, 0.0, 0, 0}, false},
+                       {{2.0}, {7.0, unknown, 4.0, 28.0, 40, 2}, true}};
+    made.components = {component};
+    return made;
+}
+
+ProfileSpecification specification(bool above_idle) {
+    ProfileSpecification made;
+    made.above_idle = above_idle;
+    return made;
+}
+
+TEST(ReportedPower, AboveIdleHoldsTheErrorOfBoth) {
+    const auto power = reported_power({5.0, 0.3}, PowerEstimate{2.0, 0.4}, true);
+    EXPECT_DOUBLE_EQ(power.power_w, 3.0);
+    EXPECT_DOUBLE_EQ(power.standard_error_w, 0.5);
+    EXPECT_DOUBLE_EQ(reported_power({5.0, 0.3}, PowerEstimate{2.0, 0.4}, false).power_w, 5.0);
+    EXPECT_DOUBLE_EQ(reported_power({5.0, 0.3}, std::nullopt, false).standard_error_w, 0.3);
+}
+
+TEST(NumberOr, SaysWhatIsUnknown) {
+    EXPECT_EQ(number_or(1.23456, 2, "-"), "1.23");
+    EXPECT_EQ(number_or(unknown, 2, "-"), "-");
+}
+
+TEST(LayerTwo, SaysOfWhatItsPowerConsists) {
+    const auto made = outcome();
+    const auto above = layer2_csv(made.components[0], made, specification(true));
+    EXPECT_THAT(above, HasSubstr("on top of the idle computer, which draws 2 W"));
+    EXPECT_THAT(above,
+                HasSubstr("\n1,3.000000,0.500000,5.000000,3.000000,4.000000,12.000000,40,2,measured\n"));
+    EXPECT_THAT(above, HasSubstr("\n1.5,4.000000,0.640312,6.000000,4.000000,,,0,0,interpolated\n"));
+    EXPECT_THAT(above, EndsWith("\n2,5.000000,,7.000000,5.000000,4.000000,20.000000,40,2,measured\n"));
+    const auto whole = layer2_csv(made.components[0], made, specification(false));
+    EXPECT_THAT(whole, HasSubstr("the 2 W of the idle one among it"));
+    EXPECT_THAT(whole,
+                HasSubstr("\n1,5.000000,0.300000,5.000000,3.000000,4.000000,20.000000,40,2,measured\n"));
+}
+
+TEST(LayerTwo, IsReadByMissions) {
+    const auto folder = test::scratch_dir();
+    const auto made = outcome();
+    write_profiles(made, specification(true), folder, true);
+    EXPECT_DOUBLE_EQ(power_w(read_power_profile(folder / "load.csv"), {1.25}), 3.5);
+    EXPECT_DOUBLE_EQ(power_w(read_power_profile(folder / "idle.csv"), {}), 2.0);
+    EXPECT_EQ(read_file(folder / "powprofiler" / "load.csv"), "200,100,130\n1,5,20\n2,7,28\n")
+        << "measured nodes alone";
+}
+
+TEST(WriteProfiles, LeavesNoFileOfAComponentWithoutPower) {
+    const auto folder = test::scratch_dir();
+    auto made = outcome();
+    write_profiles(made, specification(false), folder, false);
+    EXPECT_TRUE(std::filesystem::exists(folder / "load.csv"));
+    made.components[0].nodes.clear();
+    write_profiles(made, specification(false), folder, false);
+    EXPECT_FALSE(std::filesystem::exists(folder / "load.csv")) << "of an earlier call";
+}
+
+TEST(LayerOne, OfPowprofilerHasNoTime) {
+    EXPECT_EQ(powprofiler_layer1_csv({{0.0, 0.1}, {4.0, 5.25}}), "100\n4\n5.25\n");
+}
+
+}  // namespace
+}  // namespace flightwatt::compute

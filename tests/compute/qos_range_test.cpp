@@ -1,0 +1,45 @@
+#include "compute/qos_range.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::compute {
+namespace {
+
+using Values = std::vector<double>;
+
+TEST(EvenlySpaced, EndsAtTheLastWholeStep) {
+    EXPECT_EQ(evenly_spaced(1.0, 4.0, 1.0), (Values{1, 2, 3, 4}));
+    EXPECT_EQ(evenly_spaced(1.0, 4.9, 1.5), (Values{1, 2.5, 4}));
+    EXPECT_EQ(evenly_spaced(2.0, 2.0, 1.0), Values{2});
+}
+
+TEST(EvenlySpaced, IsSpelledWithoutRoundingErrors) {
+    EXPECT_EQ(evenly_spaced(0.1, 0.3, 0.1), (Values{0.1, 0.2, 0.3}));
+    EXPECT_EQ(evenly_spaced(0.0, 1.0, 0.1).size(), 11U);
+}
+
+TEST(Multiplied, EndsAtOrBelowTheLimit) {
+    EXPECT_EQ(multiplied(32.0, 448.0, 2.0), (Values{32, 64, 128, 256}));
+    EXPECT_EQ(multiplied(1.0, 8.0, 2.0), (Values{1, 2, 4, 8}));
+    EXPECT_EQ(multiplied(0.0, 9.0, 3.0), (Values{0, 3, 9})) << "0 is followed by the factor";
+}
+
+TEST(CombinationsOf, RunTheLastParameterFastest) {
+    EXPECT_EQ(combinations_of({{"fps", {5, 10}}, {"bits", {32, 64, 128}}}),
+              (std::vector<Values>{{5, 32}, {5, 64}, {5, 128}, {10, 32}, {10, 64}, {10, 128}}));
+    EXPECT_EQ(combinations_of({}), std::vector<Values>{{}});
+}
+
+TEST(WithQos, ReplacesTheParametersAlone) {
+    const std::vector<std::string> parameters{"fps", "key_bits"};
+    EXPECT_EQ(spell_qos(parameters, {5.8, 32.0}), "fps=5.8 key_bits=32");
+    EXPECT_EQ(spell_qos({}, {}), "");
+    EXPECT_EQ(with_qos("run-{fps} {key_bits} {fps}", parameters, {5.8, 32.0}), "run-5.8 32 5.8");
+    EXPECT_EQ(with_qos("awk '{print $1}' {fsp}", parameters, {5.8, 32.0}), "awk '{print $1}' {fsp}");
+}
+
+}  // namespace
+}  // namespace flightwatt::compute
