@@ -9,6 +9,7 @@ namespace flightwatt {
 namespace {
 
 std::string describe(NumberRange range) {
+    if (std::isinf(range.low)) return fmt::format("at most {}", range.high);
     if (std::isinf(range.high)) {
         return range.low_excluded ? fmt::format("more than {}", range.low)
                                   : fmt::format("{} or more", range.low);

@@ -19,6 +19,7 @@ struct NumberRange {
 
 constexpr NumberRange at_least(double low) { return {low, std::numeric_limits<double>::infinity(), false}; }
 constexpr NumberRange more_than(double low) { return {low, std::numeric_limits<double>::infinity(), true}; }
+constexpr NumberRange at_most(double high) { return {-std::numeric_limits<double>::infinity(), high, false}; }
 constexpr NumberRange between(double low, double high) { return {low, high, false}; }
 constexpr NumberRange more_than_up_to(double low, double high) { return {low, high, true}; }
 

@@ -1,10 +1,10 @@
 #include "compute/profile_specification.h"
 
 #include "base/atomic_file.h"
-#include "base/toml_reader.h"
+#include "base/format_version.h"
+#include "base/toml_numbers.h"
 #include "compute/profiling/sampler_settings_toml.h"
 #include "compute/qos_range.h"
-#include "compute/toml_number.h"
 
 #include <algorithm>
 #include <cctype>
@@ -40,9 +40,9 @@ void refuse_bad_name(const std::string& name, std::string_view also, const Locat
 
 ProfileTiming timing_from(const TomlTable& table, const ProfileTiming& fallback) {
     ProfileTiming timing = fallback;
-    if (table.has("duration_s")) timing.duration_s = positive_from(table, "duration_s", 0.0);
-    timing.warm_up_s = number_from(table, "warm_up_s", fallback.warm_up_s, 0.0);
-    timing.timeout_s = positive_from(table, "timeout_s", fallback.timeout_s);
+    if (table.has("duration_s")) timing.duration_s = number_in(more_than(0.0), table, "duration_s");
+    timing.warm_up_s = number_in_or(at_least(0.0), table, "warm_up_s", fallback.warm_up_s);
+    timing.timeout_s = number_in_or(more_than(0.0), table, "timeout_s", fallback.timeout_s);
     const double least_s = timing.warm_up_s + timing.duration_s.value_or(0.0);
     if (timing.timeout_s <= least_s && table.has("timeout_s")) {
         throw InputError(table.where("timeout_s"),
@@ -210,15 +210,16 @@ void add_together(const TomlTable& root, const std::vector<WrittenComponent>& wr
 
 ProfileSpecification parse_profile_specification(std::string_view text, const std::filesystem::path& path) {
     const auto root = parse_toml(text, path.string());
-    root.refuse_keys_except({"duration_s", "warm_up_s", "timeout_s", "repeats", "seed", "idle_s",
+    root.refuse_keys_except({"format", "duration_s", "warm_up_s", "timeout_s", "repeats", "seed", "idle_s",
                              "above_idle", "sampler", "components", "together"});
+    require_known_format(root);
     ProfileSpecification specification;
     specification.file = path.string();
     specification.sampler = read_sampler_settings(root, path.parent_path());
     const auto timing = timing_from(root, {});
-    specification.repeats = count_from(root, "repeats", 1, 1);
-    specification.seed = count_from(root, "seed", 1, 0);
-    specification.idle_s = number_from(root, "idle_s", specification.idle_s, 0.0);
+    specification.repeats = count_in_or(root, "repeats", 1, 1);
+    specification.seed = count_in_or(root, "seed", 0, 1);
+    specification.idle_s = number_in_or(at_least(0.0), root, "idle_s", specification.idle_s);
     specification.above_idle = root.optional_boolean("above_idle").value_or(false);
     const auto components = root.table("components");
     std::vector<WrittenComponent> written;

@@ -37,6 +37,8 @@ TEST(TomlNumbers, SaysWhatIsExpectedWhereTheKeyStands) {
               "m.toml:4:1: three = 3, expected 0 to 1");
     EXPECT_EQ(message([] { number_in_or(more_than_up_to(0.0, 1.0), table, "zero", 1.0); }),
               "m.toml:2:1: zero = 0, expected more than 0 and at most 1");
+    EXPECT_EQ(message([] { number_in(at_most(1.0), table, "three"); }),
+              "m.toml:4:1: three = 3, expected at most 1");
     EXPECT_EQ(message([] { count_in(table, "half"); }), "m.toml:3:1: half = 0.5, expected a whole number");
     EXPECT_EQ(message([] { count_in(table, "minus"); }),
               "m.toml:1:1: minus = -1, expected a whole number, 0 or more");

@@ -76,7 +76,7 @@ TEST(ProfileSpecification, EachErrorHasItsPlace) {
     EXPECT_EQ(of("durations_s = 1\n" + end),
               "p.toml:1:1: unknown key 'durations_s'; did you mean 'duration_s'?");
     EXPECT_EQ(of("duration_s = 0\n" + end), "p.toml:1:1: duration_s = 0, expected more than 0");
-    EXPECT_EQ(of("repeats = 0\n" + end), "p.toml:1:1: repeats = 0, expected 1 or more");
+    EXPECT_EQ(of("repeats = 0\n" + end), "p.toml:1:1: repeats = 0, expected a whole number, 1 or more");
     EXPECT_EQ(of("repeats = 1.5\n" + end), "p.toml:1:1: repeats = 1.5, expected a whole number");
     EXPECT_EQ(of("duration_s = 9\ntimeout_s = 8\n" + end),
               "p.toml:2:1: timeout_s = 8 is over before warm-up and duration, 9 s");

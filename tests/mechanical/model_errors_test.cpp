@@ -74,11 +74,13 @@ TEST(ModelErrors, AFileWithImpossibleErrorsIsRefused) {
         }
         return "read without complaint";
     };
-    EXPECT_THAT(refusal([](auto& phase) { phase.errors->a0_w = -1.0; }), HasSubstr("a0_w = -1 is below 0"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.errors->a0_w = -1.0; }),
+                HasSubstr("a0_w = -1, expected 0 or more"));
     EXPECT_THAT(refusal([](auto& phase) { phase.errors->cos_w.pop_back(); }),
                 HasSubstr("cos_w has 2 numbers, expected 3"));
     EXPECT_THAT(refusal([](auto& phase) { phase.errors->sin_w[1] = -0.5; }), HasSubstr("negative"));
-    EXPECT_THAT(refusal([](auto& phase) { phase.errors->r2 = 1.5; }), HasSubstr("r2 = 1.5 is outside"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.errors->r2 = 1.5; }),
+                HasSubstr("r2 = 1.5, expected at most 1"));
     EXPECT_THAT(refusal([](auto& phase) { phase.spread->high_w.pop_back(); }), HasSubstr("as many of each"));
     EXPECT_THAT(refusal([](auto& phase) { std::swap(phase.spread->low_w, phase.spread->high_w); }),
                 HasSubstr("is below low_w's"));

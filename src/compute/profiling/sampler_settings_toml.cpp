@@ -1,6 +1,6 @@
 #include "compute/profiling/sampler_settings_toml.h"
 
-#include "compute/toml_number.h"
+#include "base/toml_numbers.h"
 
 #include <algorithm>
 
@@ -46,7 +46,7 @@ SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesyst
     settings.where = table.where();
     settings.kind = kind_of(table);
     settings.interval_is_given = table.has("interval_s");
-    settings.interval_s = positive_from(table, "interval_s", settings.interval_s);
+    settings.interval_s = number_in_or(more_than(0.0), table, "interval_s", settings.interval_s);
     if (table.has("rails")) settings.rails = table.strings("rails");
     if (const auto sysfs = table.optional_string("sysfs")) settings.sysfs = settings.folder / *sysfs;
     refuse_foreign_key(table, "command", settings.kind, "command");

@@ -1,28 +1,12 @@
 #include "mechanical/uncertainty/phase_uncertainty_toml.h"
 
+#include "base/toml_numbers.h"
 #include "base/toml_text.h"
 
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
 namespace {
-
-double number_within(const TomlTable& table, std::string_view key, double least, double most) {
-    const double value = table.number(key);
-    if (value < least || value > most) {
-        throw InputError(table.where(key),
-                         fmt::format("{} = {} is outside of {} to {}", key, value, least, most));
-    }
-    return value;
-}
-
-double number_from(const TomlTable& table, std::string_view key, double least) {
-    const double value = table.number(key);
-    if (value < least) {
-        throw InputError(table.where(key), fmt::format("{} = {} is below {}", key, value, least));
-    }
-    return value;
-}
 
 /// Numbers that are not negative, `count` of them.
 std::vector<double> sizes(const TomlTable& table, std::string_view key, std::size_t count,
@@ -45,17 +29,17 @@ std::vector<double> sizes(const TomlTable& table, std::string_view key, std::siz
 PhaseErrors read_errors(const TomlTable& table, std::size_t order) {
     constexpr std::string_view as_coefficients = "one for each coefficient of the phase";
     PhaseErrors errors;
-    errors.omega_rad_per_s = number_from(table, "omega_rad_per_s", 0.0);
+    errors.omega_rad_per_s = number_in(at_least(0.0), table, "omega_rad_per_s");
     errors.frequency_is_given = table.optional_boolean("frequency_is_given").value_or(false);
-    errors.a0_w = number_from(table, "a0_w", 0.0);
+    errors.a0_w = number_in(at_least(0.0), table, "a0_w");
     errors.cos_w = sizes(table, "cos_w", order, as_coefficients);
     errors.sin_w = sizes(table, "sin_w", order, as_coefficients);
-    errors.curve_w = number_from(table, "curve_w", 0.0);
-    errors.degrees_of_freedom = number_from(table, "degrees_of_freedom", 1.0);
-    errors.r2 = number_within(table, "r2", -1e300, 1.0);
-    errors.condition = number_from(table, "condition", 1.0);
-    errors.autocorrelation = number_within(table, "autocorrelation", 0.0, 1.0);
-    errors.effective_samples = number_from(table, "effective_samples", 0.0);
+    errors.curve_w = number_in(at_least(0.0), table, "curve_w");
+    errors.degrees_of_freedom = number_in(at_least(1.0), table, "degrees_of_freedom");
+    errors.r2 = number_in(at_most(1.0), table, "r2");
+    errors.condition = number_in(at_least(1.0), table, "condition");
+    errors.autocorrelation = number_in(between(0.0, 1.0), table, "autocorrelation");
+    errors.effective_samples = number_in(at_least(0.0), table, "effective_samples");
     table.refuse_unknown_keys();
     return errors;
 }
@@ -77,7 +61,7 @@ PhaseSpread read_spread(const TomlTable& table) {
     }
     spread.standard_deviation_w =
         sizes(table, "standard_deviation_w", spread.low_w.size(), "as many as low_w has");
-    spread.counted_flights = number_from(table, "counted_flights", 1.0);
+    spread.counted_flights = number_in(at_least(1.0), table, "counted_flights");
     table.refuse_unknown_keys();
     return spread;
 }
