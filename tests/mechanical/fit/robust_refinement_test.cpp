@@ -1,7 +1,7 @@
 #include "mechanical/fit/robust_refinement.h"
 
 #include "helpers/made_up_flights.h"
-#include "mechanical/down_weighted.h"
+#include "mechanical/fit/phase_fit.h"
 #include "mechanical/phase_curve.h"
 
 #include <cmath>
@@ -35,22 +35,6 @@ TEST(RobustRefinement, KnowsTheNoiseInSpiteOfThem) {
     const auto fit = fit_phase(flight::Phase::cruise, with_outliers(), {.loss = Loss::huber});
     EXPECT_NEAR(fit.loss_scale_w, 0.1, 0.015);
     EXPECT_GT(fit.rms_w, 0.5);  // that of all samples, the outliers among them
-}
-
-TEST(RobustRefinement, NamesTheSamplesThatItDownWeighted) {
-    const auto flights = with_outliers();
-    const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber});
-    const auto found = down_weighted_samples(flights, fit);
-    const std::size_t outliers = (flights[1].tau.size() - 5 + 24) / 25;
-    ASSERT_GE(found.size(), outliers);
-    EXPECT_LE(found.size(), outliers + 40);
-    for (std::size_t i = 0; i < outliers; ++i) {
-        EXPECT_EQ(found[i].flight, "flight2");
-        EXPECT_NEAR(found[i].residual_w, 8.0, 0.5);
-        EXPECT_LT(found[i].weight, 0.05);
-        EXPECT_GT(found[i].log_time_s, 1000.0);
-    }
-    EXPECT_TRUE(down_weighted_samples(flights, fit_phase(flight::Phase::cruise, flights)).empty());
 }
 
 TEST(RobustRefinement, StandsAtTheLeastLoss) {
