@@ -22,7 +22,7 @@ TEST(ModelSection, ShowsCurvesTableAndNotes) {
     EXPECT_EQ(without.figures[0].id, "model-curves");
     EXPECT_THAT(without.html, HasSubstr("Read from a file."));
     EXPECT_THAT(without.html, HasSubstr("It is &lt;old&gt;."));
-    EXPECT_THAT(without.html, Not(HasSubstr("Table I")));
+    EXPECT_THAT(without.html, Not(HasSubstr("<h3>Table I</h3>")));
     model.table_one = table_one(model.model);
     const auto with = model_section(model, {}, "model");
     EXPECT_THAT(with.html, HasSubstr("<h3>Table I</h3>"));
