@@ -6,8 +6,9 @@
 #include "cli/stage.h"
 #include "mission/comparison.h"
 #include "mission/disturbance_file.h"
-#include "mission/flight_draws.h"
+#include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
+#include "mission/sampled_flights.h"
 
 #include <algorithm>
 
@@ -27,16 +28,16 @@ std::string ranking_json(const std::vector<mission::MissionSummary>& ranking, bo
 }
 
 /// Runs a mission; one that is yet to be planned is planned first.
-mission::Simulation simulation_of(const cli::StageCall& call, const mission::Mission& mission,
+mission::Simulation simulation_of(const cli::StageCall& call, const mission::AnyMission& mission,
                                   const std::optional<mission::SamplingOptions>& sampling) {
+    const auto& setup = setup_of(mission);
     std::vector<mission::Disturbance> disturbances;
     if (const auto file = call.maybe<std::string>("disturb"))
-        disturbances = mission::read_disturbances(*file, mission.duration_s);
-    const auto flyable = make_flyable(mission);
-    auto simulation = fly(flyable, {}, disturbances).simulation;
-    if (sampling && has_spread(flyable.mission)) {
-        simulation.summary.samples = sample_flights(flyable, disturbances, *sampling);
-    }
+        disturbances = mission::read_disturbances(*file, setup.duration_s);
+    const auto prepared = prepare(mission);
+    auto simulation = fly(prepared, {}, disturbances).simulation;
+    if (sampling && has_spread(setup))
+        simulation.summary.samples = sample_flights(prepared, disturbances, *sampling);
     return simulation;
 }
 
@@ -68,22 +69,24 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
                                         summary.mission));
         }
         if (summary.samples && !call.json) cli::note(call, describe(*summary.samples));
-        if (!summary.undeliverable && !summary.lacks_plan) continue;
-        cli::warn(call,
-                  summary.undeliverable
-                      ? describe(summary)
-                      : fmt::format("{}: {}; shown is what drains least, and `flightwatt plan` says what is "
-                                    "missing",
-                                    summary.mission, summary.schedule));
+        const bool lacks_plan = summary.schedule == mission::ScheduleOrigin::infeasible;
+        if (!summary.undeliverable && !lacks_plan) continue;
+        cli::warn(call, summary.undeliverable
+                            ? describe(summary)
+                            : fmt::format("{}: {}; shown is what demands least energy, and `flightwatt plan` "
+                                          "says what is missing",
+                                          summary.mission, to_string(summary.schedule)));
         code = cli::no_answer;
     }
     return code;
 }
 
+bool has_spread_of(const mission::AnyMission& mission) { return has_spread(setup_of(mission)); }
+
 int compare_missions(const cli::StageCall& call) {
     const auto sampling = sampling_options(call, false);
-    std::vector<mission::Mission>
-        missions;  // all read before the first is run: a bad file leaves no half answer
+    // All are read before the first is run: a bad file leaves no half answer.
+    std::vector<mission::AnyMission> missions;
     missions.reserve(call.inputs.size());
     for (const auto& file : call.inputs)
         missions.push_back(mission::read_mission(file, {true, std::nullopt}));
@@ -93,8 +96,8 @@ int compare_missions(const cli::StageCall& call) {
         simulations.push_back(simulation_of(call, mission, sampling));
         summaries.push_back(simulations.back().summary);
     }
-    if (sampling && std::none_of(missions.begin(), missions.end(), mission::has_spread)) {
-        spreads_of(missions.front());  // says what is missing
+    if (sampling && std::none_of(missions.begin(), missions.end(), has_spread_of)) {
+        require_spread(setup_of(missions.front()));  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));
     const auto table = comparison_table(ranking);
@@ -112,12 +115,9 @@ int main(int argc, char** argv) {
     stage.name = "compare";
     stage.arguments = "MISSION.toml...";
     stage.description =
-        "Runs several missions and ranks them by final state of charge; of those that run empty, the one "
-        "that\n"
-        "lasts longer comes first. A mission without a schedule is planned first, one with an adaptive "
-        "policy "
-        "in\n"
-        "flight. --json lists the summaries in that order.";
+        R"(Runs several missions and ranks them by final state of charge; of those that run empty, the one that
+lasts longer comes first. A mission without a schedule is planned first, one with an adaptive policy in
+flight. --json lists the summaries in that order.)";
     stage.options.add_options()("markdown", "write the table as Markdown")(
         "disturb", po::value<std::string>()->value_name("FILE"),
         "let the disturbances of FILE happen to all (missions/disturbances/)");

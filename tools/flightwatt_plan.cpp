@@ -1,4 +1,4 @@
-// A mission to the schedule that is worth most and lands with the reserve; and the inverse questions.
+// A mission to the schedule of most utility that lands with the reserve; and what is feasible at most.
 
 #include "base/atomic_file.h"
 #include "base/units.h"
@@ -6,8 +6,8 @@
 #include "cli/stage.h"
 #include "mission/feasibility_limits.h"
 #include "mission/infeasibility_report.h"
+#include "mission/mission_file.h"
 #include "mission/plan.h"
-#include "mission/planned_mission_file.h"
 
 #include <filesystem>
 
@@ -22,7 +22,7 @@ struct MissionFile {
     std::filesystem::path path;
     std::string text;
 
-    mission::Mission read(std::optional<double> cruise_s = {}) const {
+    mission::AnyMission read(std::optional<double> cruise_s = {}) const {
         return mission::parse_mission(text, path, {true, cruise_s});
     }
 };
@@ -41,7 +41,7 @@ std::optional<double> probability(const cli::StageCall& call) {
     return given;
 }
 
-std::string describe(const mission::MissionPlan& plan, const mission::Mission& mission) {
+std::string describe(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
     const double utility = *plan.summary.utility;
     const double gap =
         plan.plan.bound > 0.0 ? units::percent_of(plan.plan.bound - utility, plan.plan.bound) : 0.0;
@@ -56,54 +56,70 @@ std::string describe(const mission::MissionPlan& plan, const mission::Mission& m
 }
 
 [[noreturn]] void refuse_infeasible(const cli::StageCall& call, const MissionFile& file,
-                                    const mission::Mission& mission, const mission::MissionPlan& plan) {
+                                    const mission::PlanningProblem& problem,
+                                    const mission::MissionPlan& plan) {
     if (!plan.plan.deliverable) throw NoAnswerError(describe(plan.summary));
-    const auto shortfall = shortfall_of(mission, plan, [&](double cruise_s) { return file.read(cruise_s); });
+    const auto report =
+        infeasibility_report(problem, plan, [&](double cruise_s) { return file.read(cruise_s); });
     if (call.json) {
-        auto json = cli::to_json(plan, mission);
-        json["shortfall"] = cli::to_json(shortfall);
+        auto json = cli::to_json(plan, problem);
+        json["shortfall"] = cli::to_json(report);
         cli::print(cli::json_text(json));
     }
-    throw NoAnswerError(fmt::format("{}: {}", mission.name, describe(mission, shortfall)));
+    throw NoAnswerError(fmt::format("{}: {}", problem.name, describe(problem, report)));
 }
 
 int make_plan(const cli::StageCall& call, const MissionFile& file) {
     const auto mission = file.read();
-    if (!mission.plan) {
-        throw InputError({mission.file}, "the mission has a schedule already: there is nothing to plan",
+    const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
+    if (problem == nullptr) {
+        throw InputError({setup_of(mission).file},
+                         "the mission has a schedule already: there is nothing to plan",
                          "add [plan], and what [[schedule]] says is fixed and the rest planned");
     }
-    const auto plan = plan_mission(mission, probability(call));
-    if (!plan.plan.feasible) refuse_infeasible(call, file, mission, plan);
-    const auto heading = fmt::format("# {}\n", cli::one_line(describe(plan, mission)));
-    cli::write_result(
-        call, heading + planned_mission_toml(file.text, file.path, plan.flown, folder_of_result(call)));
+    const auto plan = plan_mission(*problem, probability(call));
+    if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
+    const auto text = describe(plan, *problem);
+    cli::write_result(call, fmt::format("# {}\n", cli::one_line(text)) +
+                                planned_mission_toml(file.text, file.path, problem->compute,
+                                                     plan.flown.schedule, folder_of_result(call)));
     if (call.json) {
-        cli::print(cli::json_text(cli::to_json(plan, mission)));
+        cli::print(cli::json_text(cli::to_json(plan, *problem)));
     } else {
-        cli::note(call, describe(plan, mission));
+        cli::note(call, text);
     }
     return cli::ok;
 }
 
-int answer(const cli::StageCall& call, const mission::Mission& mission, const std::string& question,
-           const std::string& unit, const mission::MostThatLands& most) {
+/// What the battery does beyond a limit; empty if charge is what ends it.
+std::string_view beyond(mission::FeasibilityBound bound) {
+    switch (bound) {
+        case mission::FeasibilityBound::power:
+            return "; beyond, the battery cannot deliver the power";
+        case mission::FeasibilityBound::cut_off:
+            return "; beyond, the battery is cut off";
+        case mission::FeasibilityBound::charge:
+            break;
+    }
+    return "";
+}
+
+int answer(const cli::StageCall& call, const mission::MissionSetup& mission, const std::string& question,
+           const std::string& unit, const mission::FeasibilityLimit& most) {
     nlohmann::ordered_json json;
     json["mission"] = mission.name;
     json[question] = most.value;
     json["final_soc_percent"] = most.final_soc_percent;
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
     json["residual_percent"] = most.residual_percent;
-    json["limited_by"] = most.power_is_the_limit ? "power" : most.cut_off_is_the_limit ? "cut-off" : "charge";
+    json["limited_by"] = to_string(most.limited_by);
     cli::write_result(call, fmt::format("{:.6f} {}\n", most.value, unit));
     if (call.json) {
         cli::print(cli::json_text(json));
     } else {
-        cli::note(call, fmt::format("{}: then {:.6f} % are left, {:+.1e} points from the reserve{}",
-                                    mission.name, most.final_soc_percent, most.residual_percent,
-                                    most.power_is_the_limit ? "; beyond, the battery cannot deliver the power"
-                                    : most.cut_off_is_the_limit ? "; beyond, the battery is cut off"
-                                                                : ""));
+        cli::note(call,
+                  fmt::format("{}: then {:.6f} % are left, {:+.1e} points from the reserve{}", mission.name,
+                              most.final_soc_percent, most.residual_percent, beyond(most.limited_by)));
     }
     return cli::ok;
 }
@@ -119,11 +135,11 @@ int plan_file(const cli::StageCall& call) {
     }
     if (cruise) {
         const auto most = mission::longest_cruise([&](double cruise_s) { return file.read(cruise_s); });
-        return answer(call, file.read(), "longest_cruise_s", "s", most);
+        return answer(call, setup_of(file.read()), "longest_cruise_s", "s", most);
     }
     if (payload) {
         const auto mission = file.read();
-        return answer(call, mission, "largest_payload_w", "W", largest_payload(mission));
+        return answer(call, setup_of(mission), "largest_payload_w", "W", largest_payload(mission));
     }
     return make_plan(call, file);
 }
@@ -136,15 +152,11 @@ int main(int argc, char** argv) {
     stage.name = "plan";
     stage.arguments = "MISSION.toml";
     stage.description =
-        "Makes the schedule that is worth most and still lands with the reserve, and proves how much better "
-        "any\n"
-        "other could be. The result is the mission with that schedule, for simulate and compare. What "
-        "[[schedule]]\n"
-        "says beside [plan] is fixed. --longest-cruise and --largest-payload take the mission's own "
-        "schedule, or the\n"
-        "one that drains least. On a battery whose voltage falls with its charge (model = \"thevenin\"), "
-        "plans are\n"
-        "simulated and made anew until they land; the bound is then that of the highest voltage possible.";
+        R"(Makes the schedule of most utility that still lands with the reserve, and proves how much better any
+other could be. The result is the mission with that schedule, for simulate and compare. What [[schedule]]
+says beside [plan] is fixed. --longest-cruise and --largest-payload take the mission's own schedule, or the
+one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), plans are
+simulated and made anew until they land; the bound is then that of the highest voltage possible.)";
     stage.max_inputs = 1;
     stage.options.add_options()("probability", po::value<double>()->value_name("P"),
                                 "keep the reserve with this chance, as flights differ (0.95)")(

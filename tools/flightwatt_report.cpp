@@ -4,7 +4,7 @@
 #include "cli/output/fit_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
-#include "mission/mission.h"
+#include "mission/mission_file.h"
 #include "report/battery_section.h"
 #include "report/figure_files.h"
 #include "report/missions_section.h"
@@ -22,7 +22,7 @@ using namespace flightwatt;
 
 struct ReportInputs {
     std::optional<std::filesystem::path> out;
-    std::vector<mission::Mission> missions;
+    std::vector<mission::AnyMission> missions;
 };
 
 ReportInputs read_inputs(const cli::StageCall& call) {
@@ -140,7 +140,8 @@ int write_page(const cli::StageCall& call) {
     if (inputs.out) add_batch(call, *inputs.out, published, head, sections);
     if (!inputs.missions.empty()) {
         std::string names;
-        for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + mission.file;
+        for (const auto& mission : inputs.missions)
+            names += (names.empty() ? "" : ", ") + setup_of(mission).file;
         head.facts.emplace_back("missions", names);
         const auto missions = report::simulate_for_report(std::move(inputs.missions));
         for (auto& section : mission_sections(missions, published)) sections.push_back(std::move(section));

@@ -6,37 +6,41 @@
 #include "cli/output/sampling_output.h"
 #include "cli/stage.h"
 #include "mission/disturbance_file.h"
-#include "mission/planned_mission_file.h"
+#include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 
 #include <filesystem>
+
+#include <fmt/format.h>
 
 namespace {
 
 using namespace flightwatt;
 
-std::vector<mission::Disturbance> disturbances(const cli::StageCall& call, const mission::Mission& mission) {
+std::vector<mission::Disturbance> disturbances(const cli::StageCall& call,
+                                               const mission::MissionSetup& mission) {
     const auto file = call.maybe<std::string>("disturb");
     return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
 }
 
 /// The mission with the schedule that was flown, wherever it came from.
 void write_schedule(const cli::StageCall& call, const std::string& text,
-                    const mission::FlownMission& flight) {
+                    const mission::PreparedMission& prepared, const mission::FlownMission& flight) {
     const auto file = call.maybe<std::string>("schedule-out");
     if (!file) return;
-    const std::filesystem::path path = call.inputs.front();
     const auto folder = std::filesystem::absolute(*file).parent_path();
     const auto heading = fmt::format("# {}\n", cli::one_line(describe(flight.simulation.summary)));
-    write_file_atomically(*file, heading + planned_mission_toml(text, path, flight.flown, folder));
+    write_file_atomically(*file,
+                          heading + planned_mission_toml(text, call.inputs.front(), prepared.setup.compute,
+                                                         flight.schedule, folder));
 }
 
 /// Draws flights if they were asked for.
-void sample(const cli::StageCall& call, const mission::Flyable& flyable,
+void sample(const cli::StageCall& call, const mission::PreparedMission& prepared,
             const std::vector<mission::Disturbance>& disturbed_by, mission::MissionSummary& summary) {
     const auto options = sampling_options(call, call.has("samples-csv"));
     if (!options) return;
-    summary.samples = sample_flights(flyable, disturbed_by, *options);
+    summary.samples = sample_flights(prepared, disturbed_by, *options);
     if (const auto file = call.maybe<std::string>("samples-csv"))
         write_file_atomically(*file, to_csv(summary.samples->bands));
 }
@@ -44,15 +48,15 @@ void sample(const cli::StageCall& call, const mission::Flyable& flyable,
 int simulate_mission(const cli::StageCall& call) {
     const auto text = read_file(call.inputs.front());
     const auto mission = mission::parse_mission(text, call.inputs.front());
-    const auto disturbed_by = disturbances(call, mission);
-    const auto flyable = mission::make_flyable(mission);
+    const auto disturbed_by = disturbances(call, setup_of(mission));
+    const auto prepared = prepare(mission);
     mission::SimulationSteps steps;
     steps.output_s = call.get<double>("step");
-    auto flight = fly(flyable, steps, disturbed_by);
+    auto flight = fly(prepared, steps, disturbed_by);
     auto& summary = flight.simulation.summary;
     if (summary.undeliverable) throw NoAnswerError(describe(summary));
-    sample(call, flyable, disturbed_by, summary);
-    write_schedule(call, text, flight);
+    sample(call, prepared, disturbed_by, summary);
+    write_schedule(call, text, prepared, flight);
     cli::write_result(call, to_csv(flight.simulation.curve));
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(summary)));
@@ -71,17 +75,13 @@ int main(int argc, char** argv) {
     stage.name = "simulate";
     stage.arguments = "MISSION.toml";
     stage.description =
-        "Computes the power that a mission demands and the battery's state of charge over time, as CSV:\n"
-        "time_s, phase, mechanical_w, compute_w, power_w, current_a, soc_percent, terminal_voltage_v. Powers "
-        "are what\n"
-        "the mission demands; current is the battery's, 0 once it is empty or below the mission's cut-off "
-        "voltage.\n"
-        "What ended the flight and what was left is told besides; --json: final_soc_percent, energy_wh "
-        "(demanded),\n"
-        "delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_reserve, utility.\n"
-        "A mission with [policy] kind = \"adaptive\" is planned anew in flight. --samples draws flights and "
-        "reports\n"
-        "their final state of charge; the CSV stays that of the mission as it is stated.";
+        R"(Computes the power that a mission demands and the battery's state of charge over time, as CSV:
+time_s, phase, mechanical_w, compute_w, power_w, current_a, soc_percent, terminal_voltage_v. Powers are what
+the mission demands; current is the battery's, 0 once it is empty or below the mission's cut-off voltage.
+What ended the flight and what was left is told besides; --json: final_soc_percent, energy_wh (demanded),
+delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_reserve, utility.
+A mission with [policy] kind = "adaptive" is planned anew in flight. --samples draws flights and reports
+their final state of charge; the CSV stays that of the mission as it is stated.)";
     stage.max_inputs = 1;
     stage.options.add_options()("step", po::value<double>()->default_value(1.0, "1")->value_name("S"),
                                 "seconds between rows; jumps of power have rows besides")(

@@ -1,5 +1,7 @@
 #include "battery/battery.h"
 
+#include "base/piecewise_linear.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,20 +10,6 @@
 #include <fmt/format.h>
 
 namespace flightwatt::battery {
-namespace {
-
-/// Straight lines between the knots, the ends' values beyond them.
-double interpolated(const OpenCircuitVoltage& curve, double soc_percent) {
-    const auto& knots = curve.soc_percent;
-    const auto above = std::upper_bound(knots.begin(), knots.end(), soc_percent);
-    if (above == knots.begin()) return curve.voltage_v.front();
-    if (above == knots.end()) return curve.voltage_v.back();
-    const auto i = static_cast<std::size_t>(above - knots.begin());
-    const double part = (soc_percent - knots[i - 1]) / (knots[i] - knots[i - 1]);
-    return std::lerp(curve.voltage_v[i - 1], curve.voltage_v[i], part);
-}
-
-}  // namespace
 
 double full_energy_wh(const Battery& battery) {
     if (!battery.thevenin) return battery.capacity_ah * battery.voltage_v;
@@ -33,7 +21,9 @@ double full_energy_wh(const Battery& battery) {
 }
 
 double open_circuit_voltage_v(const Battery& battery, double soc_percent) {
-    return battery.thevenin ? interpolated(battery.thevenin->open_circuit, soc_percent) : battery.voltage_v;
+    if (!battery.thevenin) return battery.voltage_v;
+    const auto& curve = battery.thevenin->open_circuit;
+    return interpolate_clamped(curve.soc_percent, curve.voltage_v, soc_percent);
 }
 
 double source_voltage_v(const Battery& battery, const BatteryState& state) {

@@ -1,3 +1,5 @@
+#include "base/format_version.h"
+#include "base/toml_numbers.h"
 #include "base/toml_text.h"
 #include "battery/battery.h"
 
@@ -12,21 +14,7 @@ namespace {
 constexpr double least_time_constant_s = 0.1;
 constexpr double greatest_time_constant_s = 1e5;
 
-double positive(const TomlTable& table, std::string_view key) {
-    const double value = table.number(key);
-    constexpr double absurd = 1e6;  // squared and divided, values below stay numbers
-    if (value <= 0.0 || value > absurd) {
-        throw InputError(table.where(key), fmt::format("{} = {} is not {}", key, value,
-                                                       value <= 0.0 ? "positive" : "of this world"));
-    }
-    return value;
-}
-
-double not_negative(const TomlTable& table, std::string_view key) {
-    const double value = table.number(key);
-    if (value < 0.0) throw InputError(table.where(key), fmt::format("{} = {} is negative", key, value));
-    return value;
-}
+constexpr double greatest_number = 1e6;  // squared and divided, values below stay numbers
 
 OpenCircuitVoltage read_curve(const TomlTable& table) {
     OpenCircuitVoltage curve{table.numbers("soc_percent"), table.numbers("voltage_v")};
@@ -68,17 +56,12 @@ TheveninCircuit read_circuit(const TomlTable& table, BatteryIntervals& intervals
     intervals.open_circuit_standard_error_v =
         read_curve_errors(curve, circuit.open_circuit.soc_percent.size());
     curve.refuse_unknown_keys();
-    if (table.has("rc_resistance_ohm")) circuit.rc_resistance_ohm = not_negative(table, "rc_resistance_ohm");
+    if (table.has("rc_resistance_ohm"))
+        circuit.rc_resistance_ohm = number_in(at_least(0.0), table, "rc_resistance_ohm");
     if (circuit.rc_resistance_ohm > 0.0 || table.has("rc_time_constant_s")) {
-        circuit.rc_time_constant_s = table.number("rc_time_constant_s");
-        if (circuit.rc_time_constant_s < least_time_constant_s ||
-            circuit.rc_time_constant_s > greatest_time_constant_s) {
-            throw InputError(
-                table.where("rc_time_constant_s"),
-                fmt::format("rc_time_constant_s = {} is out of range", circuit.rc_time_constant_s),
-                fmt::format("expected {} to {}; what is faster counts as resistance_ohm",
-                            least_time_constant_s, greatest_time_constant_s));
-        }
+        circuit.rc_time_constant_s =
+            number_in(between(least_time_constant_s, greatest_time_constant_s), table, "rc_time_constant_s",
+                      "what is faster counts as resistance_ohm");
     }
     return circuit;
 }
@@ -130,19 +113,24 @@ Battery battery_from(const TomlTable& table) {
         throw InputError(table.where("model"), fmt::format("there is no battery model '{}'", model),
                          "it is \"paper\" or \"thevenin\"");
     }
-    if (model == "paper") battery.voltage_v = positive(table, "voltage_v");
-    battery.resistance_ohm = not_negative(table, "resistance_ohm");
-    battery.capacity_ah = positive(table, "capacity_ah");
+    if (model == "paper")
+        battery.voltage_v = number_in(more_than_up_to(0.0, greatest_number), table, "voltage_v");
+    battery.resistance_ohm = number_in(at_least(0.0), table, "resistance_ohm");
+    battery.capacity_ah = number_in(more_than_up_to(0.0, greatest_number), table, "capacity_ah");
     if (model == "thevenin") battery.thevenin = read_circuit(table, battery.intervals);
     if (const auto intervals = table.optional_table("intervals")) read_intervals(*intervals, battery);
     table.refuse_unknown_keys();
     return battery;
 }
 
-Battery read_battery(const std::filesystem::path& path) { return battery_from(read_toml(path)); }
+Battery read_battery(const std::filesystem::path& path) {
+    const auto root = read_toml(path);
+    require_known_format(root);
+    return battery_from(root);
+}
 
 std::string to_toml(const Battery& battery) {
-    std::string text = fmt::format("name = {}\n", toml_string(battery.name));
+    std::string text = format_line() + fmt::format("name = {}\n", toml_string(battery.name));
     text += fmt::format("model = \"{}\"\n", battery.thevenin ? "thevenin" : "paper");
     if (!battery.thevenin) text += fmt::format("voltage_v = {}\n", toml_real(battery.voltage_v));
     text += fmt::format("capacity_ah = {}\nresistance_ohm = {}\n", toml_real(battery.capacity_ah),

@@ -92,7 +92,7 @@ Discharge left(const BatteryState& state, std::optional<Undeliverable> undeliver
     return {state.soc_percent, std::nullopt, undeliverable, std::nullopt, state.rc_voltage_v};
 }
 
-/// One step, ended by the first of the three accidents.
+/// One step, ended by the first of empty, cut-off voltage and power limit.
 Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
     std::optional<Undeliverable> undeliverable;
     if (const auto excess = first_excess(step, length_s)) {
@@ -126,29 +126,29 @@ Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
 
 }  // namespace
 
-Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double from_s, double to_s,
+Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double start_s, double end_s,
                     const BatteryState& state, const DischargeOptions& options) {
-    if (!(to_s >= from_s) || !(options.max_step_s > 0.0) || !(state.soc_percent <= full_percent) ||
+    if (!(end_s >= start_s) || !(options.max_step_s > 0.0) || !(state.soc_percent <= full_percent) ||
         !(options.cutoff_voltage_v >= 0.0)) {
         throw std::invalid_argument(
-            "discharge: from_s <= to_s, a positive step, at most 100 % and no negative voltage are due");
+            "discharge: needs start_s <= end_s, a positive step, at most 100 % and no negative voltage");
     }
     auto result = left(state);
     if (state.soc_percent <= 0.0) {
         result.soc_percent = 0.0;
-        result.empty_at_s = from_s;
+        result.empty_at_s = start_s;
         return result;
     }
     double max_step_s = options.max_step_s;
     if (battery.thevenin) max_step_s = std::min(max_step_s, battery.thevenin->rc_time_constant_s / 2.0);
-    const double length_s = to_s - from_s;
+    const double length_s = end_s - start_s;
     // A quotient a rounding error above a whole number is that number.
     const auto steps =
         static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_step_s * (1.0 - 1e-12))));
-    double time_s = from_s;
+    double time_s = start_s;
     for (std::uint64_t k = 1; k <= steps; ++k) {
         const double part = static_cast<double>(k) / static_cast<double>(steps);
-        const double next_s = k == steps ? to_s : from_s + length_s * part;
+        const double next_s = k == steps ? end_s : start_s + length_s * part;
         result = guarded_step({battery, power_w, time_s, result.state()}, next_s - time_s,
                               options.cutoff_voltage_v);
         if (result.ended_at_s() || result.undeliverable) return result;
@@ -157,9 +157,9 @@ Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double
     return result;
 }
 
-Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double from_s, double to_s,
+Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double start_s, double end_s,
                     double soc_percent, double max_step_s) {
-    return discharge(battery, power_w, from_s, to_s, BatteryState{soc_percent, 0.0}, {max_step_s, 0.0});
+    return discharge(battery, power_w, start_s, end_s, BatteryState{soc_percent, 0.0}, {max_step_s, 0.0});
 }
 
 }  // namespace flightwatt::battery

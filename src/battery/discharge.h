@@ -23,8 +23,8 @@ struct DischargeOptions {
     double cutoff_voltage_v = 0.0;  ///< the load is switched off below it; 0: never
 };
 
-/// What a load leaves of the battery's charge. At most one of the three accidents holds; after it nothing was
-/// integrated.
+/// What a load leaves of the battery's charge. Integration stops at the first of: empty, cut-off voltage, power
+/// limit; at most one of these is set.
 struct Discharge {
     double soc_percent = 0.0;
     std::optional<double> empty_at_s;  ///< when the state of charge reached 0
@@ -33,21 +33,21 @@ struct Discharge {
     double rc_voltage_v = 0.0;
 
     BatteryState state() const { return {soc_percent, rc_voltage_v}; }
-    /// When the battery gave out, empty or cut off.
+    /// When the battery ended, empty or cut off.
     std::optional<double> ended_at_s() const { return empty_at_s ? empty_at_s : cut_off_at_s; }
 };
 
 /// Integrates dSoC/dt = -I_int / Q_c (Eq. 8), and in a Thévenin circuit dU_rc/dt = (R_rc I_int - U_rc) / tau,
-/// from `from_s` to `to_s` with classic Runge-Kutta, in equal steps of at most `max_step_s` (and half the
-/// time constant) that end exactly at `to_s`. So power may jump at the ends: integrate from jump to jump.
+/// from `start_s` to `end_s` with classic Runge-Kutta, in equal steps of at most `max_step_s` (and half the
+/// time constant) that end exactly at `end_s`. So power may jump at the ends: integrate from jump to jump.
 /// Stops at empty, at cut-off, and where the power goes beyond the limit; the times are found to 1e-10 s. The
 /// state of charge does not go above 100 %: what would charge a full battery is lost. Throws
 /// std::invalid_argument if the times, the state or the options make no sense.
-Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double from_s, double to_s,
+Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double start_s, double end_s,
                     const BatteryState& state, const DischargeOptions& options);
 
 /// The same from a battery at rest, without cut-off.
-Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double from_s, double to_s,
+Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double start_s, double end_s,
                     double soc_percent, double max_step_s);
 
 }  // namespace flightwatt::battery

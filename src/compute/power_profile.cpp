@@ -113,7 +113,7 @@ void require_in_range(const PowerProfile& profile, std::size_t parameter, double
 
 double power_w(const PowerProfile& profile, const std::vector<double>& qos) {
     if (qos.size() != profile.axes.size()) {
-        throw std::invalid_argument("as many QoS values as parameters are due");
+        throw std::invalid_argument("the number of QoS values is not that of the parameters");
     }
     std::vector<AxisPlace> places;
     for (std::size_t i = 0; i < qos.size(); ++i) {

@@ -8,7 +8,7 @@
 namespace flightwatt::mission {
 namespace {
 
-/// Greater is better: what lasts, by the charge left; then what gave out, by how long it lasted.
+/// Greater is better: what lasts, by the charge left; then what ended early, by how long it lasted.
 std::pair<int, double> merit(const MissionSummary& summary) {
     if (!summary.final_soc_percent) return {0, 0.0};  // undeliverable
     if (summary.depleted_at_s) return {1, *summary.depleted_at_s};
@@ -50,9 +50,9 @@ TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
     if (sampled) table.header.emplace_back("probability_below_reserve");
     for (std::size_t i = 0; i < ranked.size(); ++i) {
         const auto& summary = ranked[i];
-        const auto name = summary.schedule.empty()
+        const auto name = summary.schedule == ScheduleOrigin::given
                               ? summary.mission
-                              : fmt::format("{} ({})", summary.mission, summary.schedule);
+                              : fmt::format("{} ({})", summary.mission, to_string(summary.schedule));
         table.rows.push_back({fmt::format("{}", i + 1), name, cell(summary.final_soc_percent, 2),
                               cell(summary.energy_wh, 3), cell(summary.mechanical_energy_wh, 3),
                               cell(summary.compute_energy_wh, 3), cell(summary.duration_s, 1),

@@ -23,7 +23,7 @@ namespace flightwatt::mission {
 ///     at = 300                        # as `from`
 ///     soc_drop_percent = 3
 ///
-/// Durations are the mission's. Throws InputError for unknown keys, values out of range, stretches that are
+/// Durations are the mission's. Throws InputError for unknown keys, values out of range, segments that are
 /// empty or not within their phase, phases that are not flown, and entries that change nothing.
 std::vector<Disturbance> read_disturbances(const std::filesystem::path& path,
                                            const flight::PerPhase<double>& duration_s);

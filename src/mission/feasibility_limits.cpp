@@ -1,12 +1,13 @@
 #include "mission/feasibility_limits.h"
 
 #include "base/units.h"
-#include "mission/plan.h"
 #include "mission/planning/depletion_table.h"
+#include "mission/planning/planner.h"
 #include "mission/simulation.h"
 
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
@@ -32,14 +33,15 @@ double last_good(const SpareOf& spare_of, double good, double bad) {
     return spare_of(high) >= 0.0 ? high : spare_of(low) >= 0.0 ? low : good;
 }
 
-MostThatLands answer(double value, const Mission& at, const Mission& beyond) {
-    MostThatLands most;
+FeasibilityLimit answer(double value, const Mission& at, const Mission& beyond) {
+    FeasibilityLimit most;
     most.value = value;
     most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
     most.residual_percent = most.final_soc_percent - at.reserve_soc_percent;
     const auto further = simulate(beyond).summary;
-    most.power_is_the_limit = further.undeliverable.has_value();
-    most.cut_off_is_the_limit = further.cut_off_at_s.has_value();
+    most.limited_by = further.undeliverable  ? FeasibilityBound::power
+                      : further.cut_off_at_s ? FeasibilityBound::cut_off
+                                             : FeasibilityBound::charge;
     return most;
 }
 
@@ -47,7 +49,7 @@ MostThatLands answer(double value, const Mission& at, const Mission& beyond) {
 /// read.
 std::optional<Mission> if_it_fits(const MissionOfCruise& mission_of, double cruise_s) {
     try {
-        return with_least_schedule(mission_of(cruise_s));
+        return with_minimum_energy_schedule(mission_of(cruise_s));
     } catch (const InputError&) {
         return std::nullopt;
     }
@@ -75,9 +77,21 @@ double short_enough_s(const MissionOfCruise& mission_of, double too_long_s) {
 
 }  // namespace
 
+std::string to_string(FeasibilityBound bound) {
+    switch (bound) {
+        case FeasibilityBound::charge:
+            return "charge";
+        case FeasibilityBound::power:
+            return "power";
+        case FeasibilityBound::cut_off:
+            return "cut-off";
+    }
+    throw std::logic_error("to_string: no such bound");
+}
+
 double spare_percent(const Mission& mission) {
     if (!mission.battery.thevenin) {
-        const auto table = make_drain_table(mission, configurations_of(mission.schedule));
+        const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
         if (const auto soc = soc_after(table, tabled(mission.schedule, table)))
             return *soc - mission.reserve_soc_percent;
     }
@@ -90,8 +104,10 @@ double spare_percent(const Mission& mission) {
            units::percent_of(summary.duration_s - ended_s, summary.duration_s) - 1e-9;
 }
 
-MostThatLands longest_cruise(const MissionOfCruise& mission_of) {
-    const auto mission_at = [&](double cruise_s) { return with_least_schedule(mission_of(cruise_s)); };
+FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
+    const auto mission_at = [&](double cruise_s) {
+        return with_minimum_energy_schedule(mission_of(cruise_s));
+    };
     const auto spare_of = [&](double cruise_s) { return spare_percent(mission_at(cruise_s)); };
     // From a length that fits: schedules may need so much, never so little.
     double good_s = shortest_cruise_s;
@@ -113,17 +129,17 @@ MostThatLands longest_cruise(const MissionOfCruise& mission_of) {
 }
 
 Mission with_payload(const Mission& mission, double payload_w) {
-    auto loaded = with_least_schedule(mission);
+    auto loaded = mission;
     const auto index = loaded.compute.components.size();
     loaded.compute.components.push_back(
         {"payload", compute::make_power_profile("payload", {}, {{{}, payload_w, {}}})});
     if (!loaded.utilities.empty()) loaded.utilities.resize(index + 1);
-    for (auto& stretch : loaded.schedule) stretch.run.push_back({index, {}});
+    for (auto& segment : loaded.schedule) segment.run.push_back({index, {}});
     return loaded;
 }
 
-MostThatLands largest_payload(const Mission& mission) {
-    const auto bare = with_least_schedule(mission);
+FeasibilityLimit largest_payload(const AnyMission& mission) {
+    const auto bare = with_minimum_energy_schedule(mission);
     const auto spare_of = [&](double payload_w) { return spare_percent(with_payload(bare, payload_w)); };
     if (const double spare = spare_of(0.0); spare < 0.0) {
         if (const auto summary = simulate(bare).summary; !summary.feasible)
@@ -145,25 +161,26 @@ MostThatLands largest_payload(const Mission& mission) {
                   with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
 }
 
-std::optional<double> least_capacity_ah(const Mission& mission) {
+std::optional<double> least_capacity_ah(const AnyMission& mission) {
     constexpr double most_times = 1000.0;
-    const auto bare = with_least_schedule(mission);
+    const auto bare = with_minimum_energy_schedule(mission);
     const auto spare_of = [&](double capacity_ah) {
         auto other = bare;
         other.battery.capacity_ah = capacity_ah;
         return spare_percent(other);
     };
-    double good_ah = mission.battery.capacity_ah;
+    const double own_ah = bare.battery.capacity_ah;
+    double good_ah = own_ah;
     double bad_ah = good_ah;
     while (spare_of(good_ah) < 0.0) {
         bad_ah = good_ah;
         good_ah *= 2.0;
-        if (good_ah > most_times * mission.battery.capacity_ah) return std::nullopt;
+        if (good_ah > most_times * own_ah) return std::nullopt;
     }
     while (spare_of(bad_ah) >= 0.0) {
         good_ah = bad_ah;
         bad_ah /= 2.0;
-        if (bad_ah * most_times < mission.battery.capacity_ah) return good_ah;
+        if (bad_ah * most_times < own_ah) return good_ah;
     }
     return last_good(spare_of, good_ah, bad_ah);
 }

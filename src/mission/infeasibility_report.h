@@ -10,8 +10,8 @@ namespace flightwatt::mission {
 
 /// By how much a mission that no schedule lands with its reserve misses it, and what would mend that, each
 /// measure on its own; a measure that alone is not enough is none.
-struct Shortfall {
-    double short_percent = 0.0;                 ///< of the schedule that drains least
+struct InfeasibilityReport {
+    double short_percent = 0.0;                 ///< of the schedule that demands least energy
     double short_wh = 0.0;                      ///< the same, as a part of what a full battery holds
     std::optional<double> cut_off_at_s;         ///< short is then also what is demanded after the cut-off
     std::optional<double> cruise_s;             ///< the longest that lands
@@ -21,9 +21,10 @@ struct Shortfall {
 };
 
 /// `plan` is infeasible, of the mission that `mission_of` gives for the cruise as it is.
-Shortfall shortfall_of(const Mission& mission, const MissionPlan& plan, const MissionOfCruise& mission_of);
+InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,
+                                         const MissionOfCruise& mission_of);
 
 /// For people: "short by 2.1 points (0.23 Wh); ...".
-std::string describe(const Mission& mission, const Shortfall& shortfall);
+std::string describe(const MissionSetup& mission, const InfeasibilityReport& report);
 
 }  // namespace flightwatt::mission

@@ -4,38 +4,41 @@
 
 namespace flightwatt::mission {
 
-Flyable make_flyable(const Mission& mission) {
-    Flyable flyable{mission, std::nullopt, "", true};
-    if (mission.adaptive) {
-        flyable.adaptive = make_adaptive_planner(mission);
-        flyable.schedule = "replanned in flight";
-    } else if (mission.plan) {
-        const auto plan = plan_mission(mission);
-        flyable.mission = plan.flown;
-        flyable.schedule = labelled_summary(plan).schedule;
-        flyable.planned_feasibly = plan.plan.feasible;
+PreparedMission prepare(const AnyMission& mission) {
+    PreparedMission prepared{setup_of(mission), {}, std::nullopt, ScheduleOrigin::given};
+    if (const auto* scheduled = std::get_if<Mission>(&mission)) {
+        prepared.schedule = scheduled->schedule;
+        return prepared;
     }
-    return flyable;
+    const auto& problem = std::get<PlanningProblem>(mission);
+    if (problem.adaptive) {
+        prepared.adaptive = make_adaptive_planner(problem);
+        prepared.origin = ScheduleOrigin::replanned;
+    } else {
+        auto plan = plan_mission(problem);
+        prepared.schedule = std::move(plan.flown.schedule);
+        prepared.origin = labelled_summary(plan).schedule;
+    }
+    return prepared;
 }
 
-FlownMission fly(const Flyable& flyable, const SimulationSteps& steps,
+FlownMission fly(const PreparedMission& prepared, const SimulationSteps& steps,
                  const std::vector<Disturbance>& disturbances) {
-    FlownMission result;
-    std::optional<Decisions> decisions;
-    if (flyable.adaptive) {
-        auto flight = fly_adaptively(*flyable.adaptive, flyable.mission, disturbances);
-        result.flown = std::move(flight.flown);
+    FlownMission flown;
+    std::optional<AdaptiveDecisions> decisions;
+    if (prepared.adaptive) {
+        auto flight = fly_adaptively(*prepared.adaptive, prepared.setup, disturbances);
+        flown.schedule = std::move(flight.schedule);
         decisions = flight.decisions;
     } else {
-        result.flown = flyable.mission;
+        flown.schedule = prepared.schedule;
     }
-    result.simulation = simulate(result.flown, steps, disturbances);
-    auto& summary = result.simulation.summary;
-    summary.schedule = flyable.schedule;
-    summary.feasible = summary.feasible && flyable.planned_feasibly;
-    summary.lacks_plan = !flyable.planned_feasibly;
+    flown.simulation = simulate(prepared.setup, flown.schedule, steps, disturbances);
+    auto& summary = flown.simulation.summary;
+    summary.schedule = prepared.origin;
+    summary.feasible = summary.feasible && prepared.origin != ScheduleOrigin::infeasible;
     summary.decisions = decisions;
-    return result;
+    return flown;
 }
 
 }  // namespace flightwatt::mission

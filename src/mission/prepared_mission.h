@@ -4,30 +4,29 @@
 #include "mission/simulation.h"
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace flightwatt::mission {
 
 /// A mission with all that is decided before take-off.
-struct Flyable {
-    Mission mission;                          ///< with its schedule, unless a policy makes that in flight
+struct PreparedMission {
+    MissionSetup setup;
+    std::vector<ScheduleSegment> schedule;    ///< empty if a policy makes it in flight
     std::optional<AdaptivePlanner> adaptive;  ///< such a policy
-    std::string schedule;                     ///< how it came about, if the mission did not give it
-    bool planned_feasibly = true;
+    ScheduleOrigin origin = ScheduleOrigin::given;
 };
 
-/// Plans a mission that is yet to be planned; of an adaptive one, prepares the plans. Throws as make_planner.
-Flyable make_flyable(const Mission& mission);
+/// Plans a mission that is yet to be planned; of an adaptive one, prepares the plans. Throws as plan_mission.
+PreparedMission prepare(const AnyMission& mission);
 
-/// A flight and the schedule that it flew.
+/// The schedule that was flown, and what came of it.
 struct FlownMission {
-    Mission flown;
+    std::vector<ScheduleSegment> schedule;
     Simulation simulation;
 };
 
 /// Flies a mission, under disturbances that nobody knew of beforehand.
-FlownMission fly(const Flyable& flyable, const SimulationSteps& steps = {},
+FlownMission fly(const PreparedMission& prepared, const SimulationSteps& steps = {},
                  const std::vector<Disturbance>& disturbances = {});
 
 }  // namespace flightwatt::mission

@@ -2,8 +2,8 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mission/flight_draws.h"
-#include "mission/flown_charge.h"
+#include "mission/sampling/flight_draws.h"
+#include "mission/simulation/segment_discharge.h"
 
 #include <algorithm>
 #include <atomic>
@@ -20,45 +20,49 @@ namespace {
 
 constexpr double same_time_s = 1e-6;  ///< as in simulation.cpp: empty at the very end has lasted
 constexpr double most_samples = 1e7;
-constexpr double z_95 = 1.959963984540054;
 
 /// How one flight ended.
 struct Landing {
     double final_soc_percent = 0.0;
     bool depleted = false;
-    bool gave_out = false;
+    bool battery_failure = false;
     std::vector<double> soc_percent;  ///< at the band's times
 };
 
-/// Follows the charge through a demand and notes it at `times_s`, of which `noted` have been already.
-battery::Discharge follow(const Mission& mission, const Demand& demand, battery::Discharge charge,
+/// A flight that was drawn.
+struct DrawnFlight {
+    const MissionSetup& setup;
+    battery::Battery battery;  ///< disturbed
+    std::vector<LoadSegment> segments;
+};
+
+/// Follows the charge through a segment and notes it at `times_s`, of which some have been noted already.
+battery::Discharge follow(const DrawnFlight& flight, const LoadSegment& segment, battery::Discharge charge,
                           const std::vector<double>& times_s, std::vector<double>& noted_percent) {
-    auto part = demand;
-    while (noted_percent.size() < times_s.size() && times_s[noted_percent.size()] < demand.to_s) {
-        part.to_s = std::max(part.from_s, times_s[noted_percent.size()]);
-        charge = after_demand(mission, part, charge);
+    const double cutoff_voltage_v = flight.setup.cutoff_voltage_v;
+    auto part = segment;
+    while (noted_percent.size() < times_s.size() && times_s[noted_percent.size()] < segment.end_s) {
+        part.end_s = std::max(part.start_s, times_s[noted_percent.size()]);
+        charge = after_segment(flight.battery, cutoff_voltage_v, part, charge);
         noted_percent.push_back(charge.soc_percent);
-        part.from_s = part.to_s;
+        part.start_s = part.end_s;
         part.soc_drop_percent = 0.0;
     }
-    part.to_s = demand.to_s;
-    return after_demand(mission, part, charge);
+    part.end_s = segment.end_s;
+    return after_segment(flight.battery, cutoff_voltage_v, part, charge);
 }
 
-Landing land(const Mission& flown, const std::vector<Disturbance>& disturbances,
-             const std::vector<double>& times_s) {
-    auto mission = flown;
-    mission.battery = disturbed(flown.battery, disturbances);
+Landing land(const DrawnFlight& flight, const std::vector<double>& times_s) {
     Landing landing;
     battery::Discharge charge;
-    charge.soc_percent = mission.initial_soc_percent;
-    const auto demands = disturbed(demands_of(mission), disturbances);
-    for (const auto& demand : demands) charge = follow(mission, demand, charge, times_s, landing.soc_percent);
+    charge.soc_percent = flight.setup.initial_soc_percent;
+    for (const auto& segment : flight.segments)
+        charge = follow(flight, segment, charge, times_s, landing.soc_percent);
     landing.soc_percent.resize(times_s.size(), charge.soc_percent);
     landing.final_soc_percent = charge.soc_percent;
-    const double lasted_s = demands.back().to_s - same_time_s;
+    const double lasted_s = flight.segments.back().end_s - same_time_s;
     landing.depleted = charge.empty_at_s && *charge.empty_at_s < lasted_s;
-    landing.gave_out =
+    landing.battery_failure =
         landing.depleted || charge.undeliverable || (charge.cut_off_at_s && *charge.cut_off_at_s < lasted_s);
     return landing;
 }
@@ -66,11 +70,10 @@ Landing land(const Mission& flown, const std::vector<Disturbance>& disturbances,
 /// Draws and flies flights, and hands each to the place of its number.
 class Sampler {
   public:
-    Sampler(const Flyable& flyable, const std::vector<Disturbance>& disturbances,
+    Sampler(const PreparedMission& prepared, const std::vector<Disturbance>& disturbances,
             const FlightSpreads& spreads, const SamplingOptions& options)
-        : flyable_(flyable), disturbances_(disturbances), spreads_(spreads), options_(options) {
-        double duration_s = 0.0;
-        for (const double phase_s : flyable.mission.duration_s.values) duration_s += phase_s;
+        : prepared_(prepared), disturbances_(disturbances), spreads_(spreads), options_(options) {
+        const double duration_s = timeline_of(prepared.setup.duration_s).duration_s;
         for (std::size_t i = 0; i < options.band_times; ++i) {
             times_s_.push_back(duration_s * static_cast<double>(i) /
                                static_cast<double>(options.band_times - 1));
@@ -94,51 +97,50 @@ class Sampler {
 
   private:
     Landing fly_one(std::size_t index) const {
-        const auto& planned_s = flyable_.mission.duration_s;
-        auto flight = draw_flight(flyable_.mission, spreads_, options_.seed, index);
-        const auto disturbances = at_same_part(disturbances_, planned_s, flight.duration_s);
+        const auto& planned_s = prepared_.setup.duration_s;
+        const auto setup = draw_flight(prepared_.setup, spreads_, options_.seed, index);
+        const auto disturbances = rescale_to_flown_durations(disturbances_, planned_s, setup.duration_s);
         auto times_s = times_s_;
-        for (auto& time_s : times_s) time_s = at_same_part_s(time_s, planned_s, flight.duration_s);
-        if (flyable_.adaptive) flight = fly_adaptively(*flyable_.adaptive, flight, disturbances).flown;
-        return land(flight, disturbances, times_s);
+        for (auto& time_s : times_s)
+            time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
+        const auto schedule =
+            prepared_.adaptive ? fly_adaptively(*prepared_.adaptive, setup, disturbances).schedule
+                               : rescale_to_flown_durations(prepared_.schedule, planned_s, setup.duration_s);
+        return land({setup, disturbed(setup.battery, disturbances),
+                     disturbed(load_segments(setup, schedule), disturbances)},
+                    times_s);
     }
 
-    const Flyable& flyable_;
+    const PreparedMission& prepared_;
     const std::vector<Disturbance>& disturbances_;
     const FlightSpreads& spreads_;
     const SamplingOptions& options_;
     std::vector<double> times_s_;
 };
 
-/// Of sorted values, straight lines between them (Hyndman and Fan's type 7).
-double quantile(const std::vector<double>& sorted, double percent) {
-    const double place = units::part_of(static_cast<double>(sorted.size() - 1), percent);
-    const auto below = std::min(static_cast<std::size_t>(place), sorted.size() - 2);
-    return std::lerp(sorted[below], sorted[below + 1], place - static_cast<double>(below));
-}
-
 /// Wilson's interval of a share `p` of n.
 battery::Interval wilson_interval(double p, double n) {
-    const double z2 = z_95 * z_95;
+    const double z = normal_half_width();
+    const double z2 = z * z;
     const double middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
-    const double reach = z_95 / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
+    const double reach = z / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
     // At 0 and 1 the ends are exact; rounding may leave them beside.
     return {p == 0.0 ? 0.0 : std::max(0.0, middle - reach), p == 1.0 ? 1.0 : std::min(1.0, middle + reach)};
 }
 
 void count_landings(const std::vector<Landing>& landings, double reserve_percent, SampledFlights& flights) {
     std::size_t depleted = 0;
-    std::size_t gave_out = 0;
+    std::size_t battery_failure = 0;
     std::size_t below = 0;
     for (const auto& landing : landings) {
         depleted += landing.depleted ? 1 : 0;
-        gave_out += landing.gave_out ? 1 : 0;
-        below += landing.gave_out || landing.final_soc_percent < reserve_percent ? 1 : 0;
+        battery_failure += landing.battery_failure ? 1 : 0;
+        below += landing.battery_failure || landing.final_soc_percent < reserve_percent ? 1 : 0;
     }
     const auto n = static_cast<double>(landings.size());
     const double p = static_cast<double>(below) / n;
     flights.probability_depleted = static_cast<double>(depleted) / n;
-    flights.probability_gave_out = static_cast<double>(gave_out) / n;
+    flights.probability_battery_failure = static_cast<double>(battery_failure) / n;
     flights.probability_below_reserve = p;
     flights.probability_below_reserve_standard_error = std::sqrt(p * (1.0 - p) / n);
     flights.probability_below_reserve_95 = wilson_interval(p, n);
@@ -151,26 +153,30 @@ std::vector<SocBand> bands_of(const std::vector<Landing>& landings, const std::v
         std::transform(landings.begin(), landings.end(), soc_percent.begin(),
                        [&](const Landing& landing) { return landing.soc_percent[i]; });
         std::sort(soc_percent.begin(), soc_percent.end());
-        bands.push_back({times_s[i], quantile(soc_percent, 5.0), quantile(soc_percent, 50.0),
-                         quantile(soc_percent, 95.0)});
+        bands.push_back({times_s[i], quantile(soc_percent, 0.05), quantile(soc_percent, 0.5),
+                         quantile(soc_percent, 0.95)});
     }
     return bands;
 }
 
 }  // namespace
 
-SampledFlights sample_flights(const Flyable& flyable, const std::vector<Disturbance>& disturbances,
+bool has_spread(const MissionSetup& mission) { return !find_spreads(mission).drawn.empty(); }
+
+void require_spread(const MissionSetup& mission) { spreads_of(mission); }
+
+SampledFlights sample_flights(const PreparedMission& prepared, const std::vector<Disturbance>& disturbances,
                               const SamplingOptions& options) {
     if (options.samples < 2 || static_cast<double>(options.samples) > most_samples) {
         throw UsageError(fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples,
                                      most_samples));
     }
-    const auto spreads = spreads_of(flyable.mission);
-    const Sampler sampler(flyable, disturbances, spreads, options);
+    const auto spreads = spreads_of(prepared.setup);
+    const Sampler sampler(prepared, disturbances, spreads, options);
     const auto landings = sampler.fly_all();
     SampledFlights flights;
-    flights.mission = flyable.mission.name;
-    flights.reserve_soc_percent = flyable.mission.reserve_soc_percent;
+    flights.mission = prepared.setup.name;
+    flights.reserve_soc_percent = prepared.setup.reserve_soc_percent;
     flights.samples = options.samples;
     flights.seed = options.seed;
     flights.drawn = spreads.drawn;
@@ -182,8 +188,9 @@ SampledFlights sample_flights(const Flyable& flyable, const std::vector<Disturba
     flights.final_soc_sd_percent = sample_sd(final_percent);
     std::sort(final_percent.begin(), final_percent.end());
     for (std::size_t i = 0; i < shown_quantiles_percent.size(); ++i)
-        flights.final_soc_quantiles_percent[i] = quantile(final_percent, shown_quantiles_percent[i]);
-    count_landings(landings, flyable.mission.reserve_soc_percent, flights);
+        flights.final_soc_quantiles_percent[i] =
+            quantile(final_percent, units::part_of(1.0, shown_quantiles_percent[i]));
+    count_landings(landings, prepared.setup.reserve_soc_percent, flights);
     flights.bands = bands_of(landings, sampler.times_s());
     return flights;
 }
@@ -192,8 +199,7 @@ std::string describe(const SampledFlights& flights) {
     const auto& q = flights.final_soc_quantiles_percent;
     auto text = fmt::format(
         "{}: {} flights drawn: below the reserve of {:.6g} % with probability {:.4f} (95 % interval {:.4f} "
-        "to "
-        "{:.4f}), depleted {:.4f}; final state of charge {:.2f} % on average, sd {:.2f}, quantiles",
+        "to {:.4f}), depleted {:.4f}; final state of charge {:.2f} % on average, sd {:.2f}, quantiles",
         flights.mission, flights.samples, flights.reserve_soc_percent, flights.probability_below_reserve,
         flights.probability_below_reserve_95.low, flights.probability_below_reserve_95.high,
         flights.probability_depleted, flights.final_soc_mean_percent, flights.final_soc_sd_percent);

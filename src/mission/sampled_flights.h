@@ -15,11 +15,17 @@ struct SamplingOptions {
     std::size_t band_times = 0;  ///< at which the state of charge is kept of every flight; 0, or 2 and more
 };
 
-/// Draws flights (draw_flight) and flies them, an adaptive policy each anew, under the disturbances, which
+/// Whether something says how a mission's flights differ.
+bool has_spread(const MissionSetup& mission);
+
+/// Throws InputError, which says what is missing and how to get it, where nothing does.
+void require_spread(const MissionSetup& mission);
+
+/// Draws flights (sampling/flight_draws.h) and flies them, an adaptive policy each anew, under the disturbances, which
 /// happen at the same part of each flight. Flights depend on the seed and their own number alone, so the
-/// answer is the same for any number of threads. Throws as spreads_of does, and UsageError for fewer than 2
+/// answer is the same for any number of threads. Throws as require_spread does, and UsageError for fewer than 2
 /// samples or more than 10 million.
-SampledFlights sample_flights(const Flyable& flyable, const std::vector<Disturbance>& disturbances,
+SampledFlights sample_flights(const PreparedMission& prepared, const std::vector<Disturbance>& disturbances,
                               const SamplingOptions& options);
 
 /// For people.

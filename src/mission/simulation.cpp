@@ -1,9 +1,8 @@
 #include "mission/simulation.h"
 
 #include "base/units.h"
-#include "mission/flown_charge.h"
-#include "mission/load_segments.h"
-#include "mission/mission_utility.h"
+#include "mission/simulation/load_segments.h"
+#include "mission/simulation/segment_discharge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,27 +30,27 @@ void require_output_step(double output_s, double duration_s) {
 }
 
 /// The ends of a demand and the multiples of the output step between them.
-std::vector<double> output_times(const Demand& demand, double output_s) {
+std::vector<double> output_times(const LoadSegment& segment, double output_s) {
     const double tolerance_s = output_s * 1e-9;
-    std::vector<double> times{demand.from_s};
-    auto k = static_cast<std::uint64_t>(std::floor(demand.from_s / output_s)) + 1;
-    for (; static_cast<double>(k) * output_s < demand.to_s - tolerance_s; ++k) {
+    std::vector<double> times{segment.start_s};
+    auto k = static_cast<std::uint64_t>(std::floor(segment.start_s / output_s)) + 1;
+    for (; static_cast<double>(k) * output_s < segment.end_s - tolerance_s; ++k) {
         const double time_s = static_cast<double>(k) * output_s;
-        if (time_s > demand.from_s + tolerance_s) times.push_back(time_s);
+        if (time_s > segment.start_s + tolerance_s) times.push_back(time_s);
     }
-    times.push_back(demand.to_s);
+    times.push_back(segment.end_s);
     return times;
 }
 
-/// A row, unless the last one says the same already: not every end of a stretch is a jump.
-void add_row(SocCurve& curve, const battery::Battery& battery, const Demand& demand, double time_s,
+/// A row, unless the last one says the same already: not every end of a segment is a jump.
+void add_row(SocCurve& curve, const battery::Battery& battery, const LoadSegment& segment, double time_s,
              const battery::Discharge& state) {
     SocRow row;
     row.time_s = time_s;
-    row.phase = demand.phase;
-    row.mechanical_w = mechanical_w(demand, time_s);
-    row.compute_w = demand.compute_w;
-    row.power_w = power_w(demand, time_s);
+    row.phase = segment.phase;
+    row.mechanical_w = mechanical_w(segment, time_s);
+    row.compute_w = segment.compute_w;
+    row.power_w = power_w(segment, time_s);
     auto now = state.state();
     if (const auto ended_at_s = state.ended_at_s()) {
         // Without a load the RC pair discharges itself.
@@ -66,54 +65,67 @@ void add_row(SocCurve& curve, const battery::Battery& battery, const Demand& dem
     if (curve.rows.empty() || curve.rows.back() != row) curve.rows.push_back(row);
 }
 
+/// What feeds the mission, as it really is.
+struct Supply {
+    battery::Battery battery;
+    double cutoff_voltage_v = 0.0;
+};
+
 /// Follows the battery from `state` through one demand and adds its rows.
-battery::Discharge run_demand(const Mission& mission, const Demand& demand, const SimulationSteps& steps,
-                              battery::Discharge state, SocCurve& curve) {
-    const auto& battery = mission.battery;
-    const battery::DischargeOptions options{steps.integration_s, mission.cutoff_voltage_v};
-    const auto load = [&](double time_s) { return power_w(demand, time_s); };
-    const auto times = output_times(demand, steps.output_s);
-    if (demand.soc_drop_percent > 0.0 && !state.ended_at_s()) {
-        add_row(curve, battery, demand, times.front(), state);
-        state = after_drop(state, demand);
+battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment, const SimulationSteps& steps,
+                               battery::Discharge state, SocCurve& curve) {
+    const auto& battery = supply.battery;
+    const battery::DischargeOptions options{steps.integration_s, supply.cutoff_voltage_v};
+    const auto load = [&](double time_s) { return power_w(segment, time_s); };
+    const auto times = output_times(segment, steps.output_s);
+    if (segment.soc_drop_percent > 0.0 && !state.ended_at_s()) {
+        add_row(curve, battery, segment, times.front(), state);
+        state = after_drop(state, segment);
     }
-    add_row(curve, battery, demand, times.front(), state);
+    add_row(curve, battery, segment, times.front(), state);
     for (std::size_t i = 1; i < times.size(); ++i) {
         if (!state.ended_at_s()) {
             state = discharge(battery, load, times[i - 1], times[i], state.state(), options);
             if (state.undeliverable) {
-                add_row(curve, battery, demand, state.undeliverable->time_s, state);
+                add_row(curve, battery, segment, state.undeliverable->time_s, state);
                 return state;
             }
             if (const auto ended_at_s = state.ended_at_s()) {
                 const battery::Discharge before{state.soc_percent, std::nullopt, std::nullopt, std::nullopt,
                                                 state.rc_voltage_v};
-                add_row(curve, battery, demand, *ended_at_s, before);  // the last row with a current,
-                add_row(curve, battery, demand, *ended_at_s, state);   // and the first without
+                add_row(curve, battery, segment, *ended_at_s, before);  // the last row with a current,
+                add_row(curve, battery, segment, *ended_at_s, state);   // and the first without
             }
         }
-        add_row(curve, battery, demand, times[i], state);
+        add_row(curve, battery, segment, times[i], state);
     }
     return state;
 }
 
-void add_energies(const std::vector<Demand>& demands, double delivered_until_s, MissionSummary& summary) {
-    for (const auto& demand : demands) {
-        summary.mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(demand, demand.to_s));
-        summary.compute_energy_wh += units::wh_from_joule(compute_energy_j(demand, demand.to_s));
-        if (demand.from_s >= delivered_until_s) continue;
-        const double until_s = std::min(demand.to_s, delivered_until_s);
+void add_energies(const std::vector<LoadSegment>& segments, double delivered_until_s,
+                  MissionSummary& summary) {
+    for (const auto& segment : segments) {
+        summary.mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(segment, segment.end_s));
+        summary.compute_energy_wh += units::wh_from_joule(compute_energy_j(segment, segment.end_s));
+        if (segment.start_s >= delivered_until_s) continue;
+        const double until_s = std::min(segment.end_s, delivered_until_s);
         summary.delivered_energy_wh +=
-            units::wh_from_joule(mechanical_energy_j(demand, until_s) + compute_energy_j(demand, until_s));
+            units::wh_from_joule(mechanical_energy_j(segment, until_s) + compute_energy_j(segment, until_s));
     }
     summary.energy_wh = summary.mechanical_energy_wh + summary.compute_energy_wh;
 }
 
-MissionSummary summarize(const Mission& mission, const std::vector<Demand>& demands,
+double delivered_until_s(const MissionSummary& summary) {
+    if (summary.undeliverable) return summary.undeliverable->time_s;
+    return summary.depleted_at_s.value_or(summary.cut_off_at_s.value_or(summary.duration_s));
+}
+
+/// All but the utility, which depends on the schedule.
+MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegment>& segments,
                          const battery::Discharge& end) {
     MissionSummary summary;
     summary.mission = mission.name;
-    summary.duration_s = demands.back().to_s;
+    summary.duration_s = segments.back().end_s;
     summary.undeliverable = end.undeliverable;
     const auto ended_early_at_s = [&](const std::optional<double>& time_s) {
         return time_s && *time_s < summary.duration_s - same_time_s ? time_s : std::nullopt;
@@ -121,33 +133,52 @@ MissionSummary summarize(const Mission& mission, const std::vector<Demand>& dema
     summary.depleted_at_s = ended_early_at_s(end.empty_at_s);
     summary.cut_off_at_s = ended_early_at_s(end.cut_off_at_s);
     if (!end.undeliverable) summary.final_soc_percent = end.soc_percent;
-    const double delivered_until_s =
-        end.undeliverable ? end.undeliverable->time_s
-                          : summary.depleted_at_s.value_or(summary.cut_off_at_s.value_or(summary.duration_s));
-    add_energies(demands, delivered_until_s, summary);
+    add_energies(segments, delivered_until_s(summary), summary);
     summary.feasible = !summary.undeliverable && !summary.depleted_at_s && !summary.cut_off_at_s;
     summary.reserve_soc_percent = mission.reserve_soc_percent;
     summary.keeps_reserve = summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent;
-    summary.utility = mean_worth(mission, delivered_until_s);
     return summary;
 }
 
 }  // namespace
 
-Simulation simulate(const Mission& planned, const SimulationSteps& steps,
-                    const std::vector<Disturbance>& disturbances) {
-    auto mission = planned;
-    mission.battery = disturbed(planned.battery, disturbances);
-    const auto demands = disturbed(demands_of(mission), disturbances);
-    if (demands.empty() || mission.plan) throw std::invalid_argument("simulate: the mission has no schedule");
-    require_output_step(steps.output_s, demands.back().to_s);
+std::string to_string(ScheduleOrigin origin) {
+    switch (origin) {
+        case ScheduleOrigin::given:
+            return "";
+        case ScheduleOrigin::optimal:
+            return "optimal";
+        case ScheduleOrigin::planned:
+            return "planned";
+        case ScheduleOrigin::infeasible:
+            return "no plan keeps the reserve";
+        case ScheduleOrigin::replanned:
+            return "replanned in flight";
+    }
+    throw std::logic_error("to_string: no such origin of a schedule");
+}
+
+Simulation simulate(const MissionSetup& mission, const std::vector<ScheduleSegment>& schedule,
+                    const SimulationSteps& steps, const std::vector<Disturbance>& disturbances) {
+    const auto segments = disturbed(load_segments(mission, schedule), disturbances);
+    if (segments.empty()) throw std::invalid_argument("simulate: the mission has no schedule");
+    require_output_step(steps.output_s, segments.back().end_s);
+    const Supply supply{disturbed(mission.battery, disturbances),
+                        steps.cuts_off ? mission.cutoff_voltage_v : 0.0};
     SocCurve curve;
     battery::Discharge state{mission.initial_soc_percent, std::nullopt, std::nullopt};
-    for (const auto& demand : demands) {
-        state = run_demand(mission, demand, steps, state, curve);
+    for (const auto& segment : segments) {
+        state = run_segment(supply, segment, steps, state, curve);
         if (state.undeliverable) break;
     }
-    return {std::move(curve), summarize(mission, demands, state)};
+    auto summary = summarize(mission, segments, state);
+    summary.utility = mean_utility(mission, schedule, delivered_until_s(summary));
+    return {std::move(curve), std::move(summary)};
+}
+
+Simulation simulate(const Mission& mission, const SimulationSteps& steps,
+                    const std::vector<Disturbance>& disturbances) {
+    return simulate(mission, mission.schedule, steps, disturbances);
 }
 
 std::string describe(const MissionSummary& summary) {
@@ -167,8 +198,8 @@ std::string describe(const MissionSummary& summary) {
     }
     if (summary.decisions && summary.decisions->without_plan > 0) {
         end += fmt::format(
-            " (at {} of {} decisions no plan kept the reserve with its margin, and what drains "
-            "least was run)",
+            " (at {} of {} decisions no plan kept the reserve with its margin, and what "
+            "demands least energy was run)",
             summary.decisions->without_plan, summary.decisions->made);
     }
     return fmt::format("{}: {}; {:.3f} Wh, {:.3f} mechanical and {:.3f} computing", summary.mission, end,

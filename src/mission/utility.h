@@ -8,7 +8,7 @@
 
 namespace flightwatt::mission {
 
-/// How worth grows with the quality of service q. All are monotone.
+/// How the utility grows with the quality of service q. All are monotone.
 enum class UtilityShape {
     linear,       ///< q
     square_root,  ///< sqrt(q)
@@ -16,21 +16,21 @@ enum class UtilityShape {
     points        ///< straight lines between given points
 };
 
-/// What a component's quality of service is worth a second while it runs: weight * shape(q). A component that
-/// is off is worth nothing.
+/// The utility of a component's quality of service a second while it runs: weight * shape(q). A component that
+/// is off has none.
 struct Utility {
     std::optional<std::size_t> parameter;  ///< of the profile; none: the weight itself, whenever it runs
     double weight = 1.0;
     UtilityShape shape = UtilityShape::linear;
     std::vector<double> points_qos;    ///< rising, around the profile's whole range; only of `points`
-    std::vector<double> points_worth;  ///< not falling, as many
+    std::vector<double> points_value;  ///< not falling, as many
 };
 
-double worth(const Utility& utility, const std::vector<double>& qos);
+double utility_per_s(const Utility& utility, const std::vector<double>& qos);
 
-/// What a configuration is worth a second: the sum over the components that run and have a utility.
+/// The utility of a configuration a second: the sum over the components that run and have a utility.
 /// `utilities` has one entry a component of the model (or none at all).
-double worth(const std::vector<std::optional<Utility>>& utilities,
-             const compute::Configuration& configuration);
+double utility_per_s(const std::vector<std::optional<Utility>>& utilities,
+                     const compute::Configuration& configuration);
 
 }  // namespace flightwatt::mission

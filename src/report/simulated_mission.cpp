@@ -1,14 +1,11 @@
 #include "report/simulated_mission.h"
 
-#include "mission/flight_draws.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
 #include "report/figure.h"
 
-#include <algorithm>
 #include <map>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -18,42 +15,41 @@ namespace {
 /// Flights drawn a mission: the chance of landing below the reserve is then known to 1.6 percent points.
 constexpr std::size_t flights_drawn = 1000;
 
-/// Draws flights where something says how they differ; the answer is the same at every run.
-void sample_for_report(const mission::Flyable& flyable, mission::MissionSummary& summary) {
-    if (has_spread(flyable.mission)) summary.samples = sample_flights(flyable, {}, {flights_drawn, 1, 0});
-}
-
-/// Flies a mission, planned first where it is yet to be, or in flight where a policy does.
-SimulatedMission fly_for_report(const mission::Mission& mission, const mission::SimulationSteps& steps) {
-    SimulatedMission flown;
-    if (!mission.plan || mission.adaptive) {
-        const auto flyable = make_flyable(mission);
-        auto flight = fly(flyable, steps);
-        flown.simulation = std::move(flight.simulation);
-        sample_for_report(flyable, flown.simulation.summary);
-        flown.mission = std::move(flight.flown);
-        return flown;
+/// Flies a mission, planned first where it is yet to be, or in flight where a policy does; flights are drawn
+/// where something says how they differ. The answer is the same at every run.
+SimulatedMission fly_for_report(const mission::AnyMission& mission, const mission::SimulationSteps& steps) {
+    SimulatedMission simulated;
+    mission::PreparedMission prepared;
+    std::optional<mission::MissionSummary> summary;  // of a plan, as finely simulated as it was made
+    const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
+    if (problem != nullptr && !problem->adaptive) {
+        const auto plan = plan_mission(*problem);
+        simulated.planned = PlannedSchedule{plan.plan.feasible, plan.plan.bound, plan.margin_percent};
+        prepared = {*problem, plan.flown.schedule, std::nullopt, mission::ScheduleOrigin::planned};
+        summary = labelled_summary(plan);
+    } else {
+        prepared = prepare(mission);
     }
-    auto plan = plan_mission(mission);
-    flown.simulation = simulate(plan.flown, steps);
-    flown.simulation.summary = labelled_summary(plan);
-    sample_for_report({plan.flown, std::nullopt, "", true}, flown.simulation.summary);
-    flown.planned = PlannedSchedule{plan.plan.feasible, plan.plan.bound, plan.margin_percent};
-    flown.mission = std::move(plan.flown);
-    return flown;
+    auto flown = fly(prepared, steps);
+    simulated.simulation = std::move(flown.simulation);
+    if (summary) simulated.simulation.summary = std::move(*summary);
+    if (has_spread(prepared.setup))
+        simulated.simulation.summary.samples = sample_flights(prepared, {}, {flights_drawn, 1, 0});
+    simulated.mission = {std::move(prepared.setup), std::move(flown.schedule)};
+    return simulated;
 }
 
 }  // namespace
 
-std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::Mission>& missions) {
+std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::AnyMission>& missions) {
     constexpr double rows = 300.0;
     std::vector<SimulatedMission> simulated;
     std::map<std::string, int> seen;
     for (const auto& mission : missions) {
-        const auto& durations_s = mission.duration_s.values;
+        const auto& setup = setup_of(mission);
         mission::SimulationSteps steps;
-        steps.output_s = std::accumulate(durations_s.begin(), durations_s.end(), 0.0) / rows;
-        auto title = valid_utf8(mission.name);
+        steps.output_s = mission::timeline_of(setup.duration_s).duration_s / rows;
+        auto title = valid_utf8(setup.name);
         if (const int times = ++seen[title]; times > 1) title += fmt::format(" ({})", times);
         simulated.push_back(fly_for_report(mission, steps));
         simulated.back().title = std::move(title);

@@ -11,7 +11,7 @@ namespace flightwatt::report {
 /// How a schedule that was planned stands to all others.
 struct PlannedSchedule {
     bool feasible = false;        ///< it keeps the reserve
-    double bound = 0.0;           ///< no schedule that keeps it is worth more; 0 if infeasible
+    double bound = 0.0;           ///< no schedule that keeps it has more utility; 0 if infeasible
     double margin_percent = 0.0;  ///< state of charge kept above the reserve
 };
 
@@ -26,7 +26,7 @@ struct SimulatedMission {
 /// Runs the missions, planned first where they are yet to be, with as many rows a curve as a screen shows.
 /// The curve of a mission whose power the battery cannot deliver ends there. The report flies missions
 /// nowhere else.
-std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::Mission>& missions);
+std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::AnyMission>& missions);
 
 /// What a configuration runs: "detection fps 10, encryption key_bits 240", or "nothing".
 std::string describe(const compute::ComputeModel& compute, const compute::Configuration& run);

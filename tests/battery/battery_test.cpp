@@ -1,6 +1,6 @@
 #include "battery/battery.h"
 
-#include "helpers/rejected.h"
+#include "base/error.h"
 
 #include <cmath>
 
@@ -8,8 +8,6 @@
 
 namespace flightwatt::battery {
 namespace {
-
-using test::rejected;
 
 TEST(Battery, CurrentIsTheSmallerRoot) {
     const Battery battery{"", 11.1, 0.05, 3.2};
@@ -48,32 +46,6 @@ TEST(Battery, CannotDeliverBeyondItsLimit) {
     } catch (const NoAnswerError& error) {
         EXPECT_STREQ(error.what(), "the battery cannot deliver 250.5 W: its limit U^2 / (4 R) is 250 W");
     }
-}
-
-TEST(Battery, ReadsThePaperBattery) {
-    const auto battery = read_battery(test::source_dir() / "fits" / "battery" / "paper.toml");
-    EXPECT_EQ(battery.name, "paper");
-    EXPECT_EQ(battery.capacity_ah, 3.2);
-    // 100 % is 39.356 kJ in the figures.
-    EXPECT_NEAR(battery.voltage_v * battery.capacity_ah * 3600.0, 39356.0, 10.0);
-}
-
-TEST(Battery, RefusesWhatIsNoBattery) {
-    const auto of = [](const std::string& text) {
-        return rejected([&] { battery_from(parse_toml(text, "b.toml")); });
-    };
-    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\n"), "");
-    EXPECT_EQ(of("voltage_v = 0\nresistance_ohm = 0\ncapacity_ah = 1\n"),
-              "b.toml:1:1: voltage_v = 0 is not positive");
-    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = -0.1\ncapacity_ah = 1\n"),
-              "b.toml:2:1: resistance_ohm = -0.1 is negative");
-    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = -1\n"),
-              "b.toml:3:1: capacity_ah = -1 is not positive");
-    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_mah = 1\n"),
-              "b.toml:3:1: has no key 'capacity_ah'; 'capacity_mah' is here; was that meant?");
-    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 3\n"),
-              "b.toml:4:1: unknown key 'cells'; known keys: capacity_ah, intervals, model, "
-              "name, resistance_ohm, voltage_v");
 }
 
 }  // namespace

@@ -145,8 +145,8 @@ TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
     // 12.5 V falling by 1.4 V over 3.2 Ah behind 0.06 ohm, and no RC pair.
     std::vector<DischargeRecord> records;
     for (const auto* name : {"01", "02", "03", "04", "05", "06"}) {
-        records.push_back(discharge_record(
-            flight::read_flight(test::source_dir() / "logs" / (std::string("opterra_synthetic_") + name + ".data"))));
+        records.push_back(discharge_record(flight::read_flight(
+            test::source_dir() / "logs" / (std::string("opterra_synthetic_") + name + ".data"))));
     }
     const auto found = identify_battery(records, {3.2, {}, ""});
     EXPECT_LE(found.errors.resistance_ohm.low, 0.06);
@@ -165,8 +165,8 @@ TEST(Identification, ForetellsRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     std::vector<DischargeRecord> records;
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
-        records.push_back(
-            discharge_record(flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
+        records.push_back(discharge_record(
+            flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
         EXPECT_GT(records.back().resting_voltage_v, 12.3);  // a pack of 11.1 V that starts full
     }
     for (const auto& check : leave_each_out(records, {})) {

@@ -1,8 +1,7 @@
 #include "mission/feasibility_limits.h"
 
-#include "helpers/test_paths.h"
-#include "mission/infeasibility_report.h"
-#include "mission/plan.h"
+#include "helpers/paper_missions.h"
+#include "mission/planning/planner.h"
 #include "mission/simulation.h"
 
 #include <gtest/gtest.h>
@@ -12,11 +11,15 @@ namespace {
 
 /// A mission of the paper's, with another battery and reserve, for any cruise.
 MissionOfCruise paper(const std::string& name, double resistance_ohm, double reserve_soc_percent) {
-    const auto path = test::source_dir() / "missions" / "paper" / (name + ".toml");
+    const auto path = test::paper_mission_path(name);
     return [=](double cruise_s) {
         auto mission = read_mission(path, {true, cruise_s});
-        if (resistance_ohm > 0.0) mission.battery = {"", 3.6, resistance_ohm, 3.4};
-        mission.reserve_soc_percent = reserve_soc_percent;
+        std::visit(
+            [&](MissionSetup& setup) {
+                if (resistance_ohm > 0.0) setup.battery = {"", 3.6, resistance_ohm, 3.4};
+                setup.reserve_soc_percent = reserve_soc_percent;
+            },
+            mission);
         return mission;
     };
 }
@@ -29,10 +32,10 @@ TEST(LongestCruise, EndsOnTheReserve) {
             for (const double reserve : {0.5, 6.0, 30.0}) {
                 const auto mission_of = paper(name, resistance_ohm, reserve);
                 const auto most = longest_cruise(mission_of);
-                EXPECT_NEAR(final_soc(with_least_schedule(mission_of(most.value))), reserve, 1e-6);
+                EXPECT_NEAR(final_soc(with_minimum_energy_schedule(mission_of(most.value))), reserve, 1e-6);
                 EXPECT_NEAR(most.residual_percent, 0.0, 1e-6) << name;
-                EXPECT_FALSE(most.power_is_the_limit);
-                EXPECT_LT(final_soc(with_least_schedule(mission_of(most.value + 0.1))), reserve);
+                EXPECT_EQ(most.limited_by, FeasibilityBound::charge);
+                EXPECT_LT(final_soc(with_minimum_energy_schedule(mission_of(most.value + 0.1))), reserve);
             }
         }
     }
@@ -50,17 +53,18 @@ TEST(LargestPayload, EndsOnTheReserve) {
             const auto most = largest_payload(mission);
             EXPECT_GT(most.value, 0.1);
             EXPECT_NEAR(most.residual_percent, 0.0, 1e-6);
-            EXPECT_NEAR(final_soc(with_payload(mission, most.value)), 0.5, 1e-6);
-            EXPECT_LT(final_soc(with_payload(mission, most.value + 0.01)), 0.5);
+            const auto bare = with_minimum_energy_schedule(mission);
+            EXPECT_NEAR(final_soc(with_payload(bare, most.value)), 0.5, 1e-6);
+            EXPECT_LT(final_soc(with_payload(bare, most.value + 0.01)), 0.5);
         }
     }
 }
 
 TEST(LargestPayload, EndsWhereTheBatteryCannotDeliver) {
-    auto mission = paper("mechanical-only", 0.0, 0.0)(600.0);
+    auto mission = std::get<Mission>(paper("mechanical-only", 0.0, 0.0)(600.0));
     mission.battery = {"", 11.1, 0.5, 100.0};  // charge enough, but 61.605 W at most
     const auto most = largest_payload(mission);
-    EXPECT_TRUE(most.power_is_the_limit);
+    EXPECT_EQ(most.limited_by, FeasibilityBound::power);
     EXPECT_GT(most.residual_percent, 10.0);
     EXPECT_FALSE(simulate(with_payload(mission, most.value - 1e-3)).summary.undeliverable);
     EXPECT_TRUE(simulate(with_payload(mission, most.value + 1e-3)).summary.undeliverable);
@@ -68,41 +72,6 @@ TEST(LargestPayload, EndsWhereTheBatteryCannotDeliver) {
 
 TEST(LargestPayload, HasNoAnswerWhereTheMissionDoesNotLandAsItIs) {
     EXPECT_THROW(largest_payload(paper("phased", 0.0, 5.0)(600.0)), NoAnswerError);
-}
-
-TEST(Shortfall, NamesWhatWouldDo) {
-    const auto mission_of = paper("plan", 0.0, 9.0);
-    const auto mission = mission_of(600.0);
-    const auto plan = plan_mission(mission);
-    ASSERT_FALSE(plan.plan.feasible);
-    const auto shortfall = shortfall_of(mission, plan, mission_of);
-    EXPECT_NEAR(shortfall.short_percent, 9.0 - 7.4306, 1e-4);
-    EXPECT_NEAR(shortfall.short_wh, shortfall.short_percent / 100.0 * 3.416 * 3.2, 1e-9);
-
-    ASSERT_TRUE(shortfall.cruise_s && shortfall.fixed_spare_percent && shortfall.reserve_soc_percent &&
-                shortfall.capacity_ah);
-    EXPECT_TRUE(plan_mission(mission_of(*shortfall.cruise_s)).plan.feasible);
-    EXPECT_FALSE(plan_mission(mission_of(*shortfall.cruise_s + 0.1)).plan.feasible);
-    auto other = mission;
-    other.schedule.clear();
-    EXPECT_NEAR(final_soc(with_least_schedule(other)), 9.0 + *shortfall.fixed_spare_percent, 1e-6);
-    for (const double step : {-1e-6, 1e-6}) {
-        other = mission;
-        other.reserve_soc_percent = *shortfall.reserve_soc_percent + step;
-        EXPECT_EQ(plan_mission(other).plan.feasible, step < 0.0);
-        other = mission;
-        other.battery.capacity_ah = *shortfall.capacity_ah - step;
-        EXPECT_EQ(plan_mission(other).plan.feasible, step < 0.0);
-    }
-}
-
-TEST(Shortfall, LeavesOutWhatIsNotEnough) {
-    const auto mission_of = paper("plan", 0.0, 90.0);
-    const auto mission = mission_of(600.0);
-    const auto shortfall = shortfall_of(mission, plan_mission(mission), mission_of);
-    EXPECT_FALSE(shortfall.cruise_s);
-    EXPECT_FALSE(shortfall.fixed_spare_percent);
-    EXPECT_TRUE(shortfall.reserve_soc_percent);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // missions in missions/paper/.
 
 #include "base/csv.h"
-#include "helpers/test_paths.h"
+#include "helpers/paper_missions.h"
 #include "mission/comparison.h"
 
 #include <algorithm>
@@ -13,11 +13,9 @@
 namespace flightwatt::mission {
 namespace {
 
-Mission paper(const std::string& name) {
-    return read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"));
-}
+using test::paper_mission;
 
-double final_soc(const std::string& name) { return *simulate(paper(name)).summary.final_soc_percent; }
+double final_soc(const std::string& name) { return *simulate(paper_mission(name)).summary.final_soc_percent; }
 
 double soc_at(const SocCurve& curve, double time_s) {
     const auto& rows = curve.rows;
@@ -33,7 +31,7 @@ double soc_at(const SocCurve& curve, double time_s) {
 /// RMS difference to a curve digitised from Fig. 3, down to where that reaches zero.
 double rms_to_figure(const std::string& mission, const std::string& figure) {
     const auto table = read_csv(test::shared_dir() / "paper" / ("fig3_" + figure + ".csv"));
-    const auto curve = simulate(paper(mission)).curve;
+    const auto curve = simulate(paper_mission(mission)).curve;
     double squares = 0.0;
     int count = 0;
     for (const auto& row : table.rows) {
@@ -48,7 +46,7 @@ double rms_to_figure(const std::string& mission, const std::string& figure) {
 }
 
 TEST(Paper, MechanicalEnergyEndsAtThePublishedCharge) {
-    const auto summary = simulate(paper("mechanical-only")).summary;
+    const auto summary = simulate(paper_mission("mechanical-only")).summary;
     EXPECT_NEAR(*summary.final_soc_percent, 52.2, 0.25);
     EXPECT_NEAR(summary.energy_wh * 3600.0, 18876.0, 1.0);
     EXPECT_EQ(summary.compute_energy_wh, 0.0);
@@ -58,19 +56,19 @@ TEST(Paper, MechanicalEnergyEndsAtThePublishedCharge) {
 TEST(Paper, SchedulesEndNearThePublishedCharge) {
     EXPECT_NEAR(final_soc("phased"), 2.05, 1.0);
     EXPECT_NEAR(final_soc("adaptive"), 7.86, 1.0);
-    EXPECT_TRUE(simulate(paper("phased")).summary.feasible);
-    EXPECT_TRUE(simulate(paper("adaptive")).summary.feasible);
+    EXPECT_TRUE(simulate(paper_mission("phased")).summary.feasible);
+    EXPECT_TRUE(simulate(paper_mission("adaptive")).summary.feasible);
 }
 
 TEST(Paper, TheHighestQualityDoesNotLastTheMission) {
-    const auto summary = simulate(paper("invariant-32fps-448bit")).summary;
+    const auto summary = simulate(paper_mission("invariant-32fps-448bit")).summary;
     EXPECT_FALSE(summary.feasible);
     ASSERT_TRUE(summary.depleted_at_s);
     EXPECT_NEAR(*summary.depleted_at_s, 581.0, 3.0);  // where the curve of Fig. 3(a) meets the axis
 }
 
 TEST(Paper, ComputingAloneLeavesTheLowestCornerOfFigure4) {
-    const auto summary = simulate(paper("computing-only")).summary;
+    const auto summary = simulate(paper_mission("computing-only")).summary;
     EXPECT_NEAR(*summary.final_soc_percent, 100.0 - 39.16, 0.02);
     EXPECT_EQ(summary.mechanical_energy_wh, 0.0);
 }
@@ -79,7 +77,7 @@ TEST(Paper, RanksTheSchedules) {
     std::vector<MissionSummary> summaries;
     for (const auto* name : {"phased", "invariant-32fps-448bit", "invariant-10fps-240bit", "adaptive",
                              "invariant-5.8fps-32bit", "mechanical-only"}) {
-        summaries.push_back(simulate(paper(name)).summary);
+        summaries.push_back(simulate(paper_mission(name)).summary);
     }
     std::vector<std::string> names;
     for (const auto& summary : ranked(summaries)) names.push_back(summary.mission);
@@ -103,9 +101,9 @@ TEST(Paper, MeetsEveryCellOfFigure4) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto table = read_csv(test::shared_dir() / "paper" / "fig4_soc_cells.csv");
     ASSERT_EQ(table.rows.size(), 108U);
-    auto mission = paper("computing-only");
+    auto mission = paper_mission("computing-only");
     const auto corner = [&](double fps, double key_bits) {
-        for (auto& stretch : mission.schedule) stretch.run = {{0, {fps}}, {1, {key_bits}}};
+        for (auto& segment : mission.schedule) segment.run = {{0, {fps}}, {1, {key_bits}}};
         return *simulate(mission, {1000.0, 0.1}).summary.final_soc_percent;
     };
     double worst = 0.0;

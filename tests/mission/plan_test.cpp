@@ -2,8 +2,9 @@
 
 #include "base/atomic_file.h"
 #include "base/units.h"
-#include "helpers/test_paths.h"
-#include "mission/planned_mission_file.h"
+#include "helpers/paper_missions.h"
+#include "mission/mission_file.h"
+#include "mission/planning/plan_rest.h"
 #include "mission/sampling/level_deviation.h"
 
 #include <chrono>
@@ -15,31 +16,28 @@
 namespace flightwatt::mission {
 namespace {
 
-Mission paper(const std::string& name) {
-    return read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"), {true, std::nullopt});
-}
+using test::paper_mission;
+using test::paper_problem;
 
-Mission paper_with_reserve(double reserve_soc_percent) {
-    auto mission = paper("plan");
+PlanningProblem paper_with_reserve(double reserve_soc_percent) {
+    auto mission = paper_problem("plan");
     mission.reserve_soc_percent = reserve_soc_percent;
     return mission;
 }
 
 /// Every schedule of a mission of few slots, simulated.
-double best_simulated(const Mission& mission) {
+double best_simulated(const PlanningProblem& mission) {
     const auto planner = make_planner(mission);
     const auto slots = slots_of(mission);
     std::vector<std::size_t> choices(slots.size(), 0);
     double best = -1.0;
     for (;;) {
-        auto flown = mission;
-        flown.plan.reset();
-        flown.schedule.clear();
+        std::vector<ScheduleSegment> schedule;
         for (std::size_t i = 0; i < slots.size(); ++i) {
-            flown.schedule.push_back({slots[i].phase, slots[i].from_s, slots[i].to_s,
-                                      slots[i].fixed.value_or(planner.drains.configurations[choices[i]])});
+            schedule.push_back(
+                {slots[i], slots[i].fixed.value_or(planner.depletions.configurations[choices[i]])});
         }
-        const auto summary = simulate(flown, {1e3, 1.0}).summary;
+        const auto summary = simulate(mission, schedule, {1e3, 1.0}).summary;
         if (summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent) {
             best = std::max(best, *summary.utility);
         }
@@ -51,8 +49,8 @@ double best_simulated(const Mission& mission) {
 }
 
 TEST(Plan, ReachesThePapersAdaptiveScheduleWithItsReserve) {
-    const auto adaptive = simulate(paper("adaptive")).summary;
-    const auto mission = paper("plan");
+    const auto adaptive = simulate(paper_mission("adaptive")).summary;
+    const auto mission = paper_problem("plan");
     EXPECT_NEAR(mission.reserve_soc_percent, *adaptive.final_soc_percent, 1e-9);
     EXPECT_LE(mission.reserve_soc_percent, *adaptive.final_soc_percent);
     const auto plan = plan_mission(mission);
@@ -68,20 +66,20 @@ TEST(Plan, SpendsWhatTheReserveLeaves) {
         const auto plan = plan_mission(paper_with_reserve(reserve));
         ASSERT_TRUE(plan.plan.feasible) << reserve;
         EXPECT_GE(*plan.summary.final_soc_percent, reserve);
-        EXPECT_LE(*plan.summary.final_soc_percent, reserve + 0.05) << "a slot's worth is left unused";
+        EXPECT_LE(*plan.summary.final_soc_percent, reserve + 0.05) << "what a slot could use is left";
         EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.001) << reserve;
         EXPECT_NEAR(plan.plan.utility, *plan.summary.utility, 1e-9);
         EXPECT_GT(*plan.summary.utility, last);
         last = *plan.summary.utility;
-        for (const auto& stretch : plan.flown.schedule) {
-            const bool middle = stretch.phase == flight::Phase::cruise && stretch.from_s == 240.0;
-            EXPECT_EQ(stretch.run == (compute::Configuration{{0, {32.0}}, {1, {448.0}}}), middle);
+        for (const auto& segment : plan.flown.schedule) {
+            const bool middle = segment.phase == flight::Phase::cruise && segment.start_s == 240.0;
+            EXPECT_EQ(segment.run == (compute::Configuration{{0, {32.0}}, {1, {448.0}}}), middle);
         }
     }
 }
 
 TEST(Plan, BeatsThePhasedScheduleWithWhatThatSpends) {
-    const auto phased = simulate(paper("phased")).summary;
+    const auto phased = simulate(paper_mission("phased")).summary;
     const auto plan = plan_mission(paper_with_reserve(*phased.final_soc_percent));
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_GT(*plan.summary.utility, *phased.utility * 1.3);  // it does not pay for long keys
@@ -92,12 +90,13 @@ TEST(Plan, IsTheBestOfAllSimulatedSchedules) {
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     int feasible = 0;
     for (int i = 0; i < 12; ++i) {
-        auto mission = paper("plan");
-        mission.plan->slot_s = 100.0;
-        mission.plan->choices[0].levels = {{5.8, 12.0 + 20.0 * uniform(random)}};
-        mission.plan->choices[1].levels = {{32.0}};
+        auto mission = paper_problem("plan");
+        mission.plan.slot_s = 100.0;
+        mission.plan.choices[0].levels = {{5.8, 12.0 + 20.0 * uniform(random)}};
+        mission.plan.choices[1].levels = {{32.0}};
         mission.battery = {"", 3.6, i % 2 == 0 ? 0.0 : 0.01, 3.4};
-        const double least = simulate(with_least_schedule(mission)).summary.final_soc_percent.value();
+        const double least =
+            simulate(with_minimum_energy_schedule(mission)).summary.final_soc_percent.value();
         mission.reserve_soc_percent = uniform(random) * least;
         const auto plan = plan_mission(mission);
         const double best = best_simulated(mission);
@@ -113,7 +112,7 @@ TEST(Plan, IsTheBestOfAllSimulatedSchedules) {
 TEST(Plan, KeepsTheDwellTime) {
     auto mission = paper_with_reserve(2.0);
     const double without = *plan_mission(mission).summary.utility;
-    mission.plan->dwell_s = 70.0;
+    mission.plan.dwell_s = 70.0;
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_LE(*plan.summary.utility, without + 1e-9);
@@ -123,7 +122,7 @@ TEST(Plan, KeepsTheDwellTime) {
         double lasts_s = 0.0;
         const auto& run = schedule[i].run;
         for (; i < schedule.size() && schedule[i].run == run; ++i)
-            lasts_s += schedule[i].to_s - schedule[i].from_s;
+            lasts_s += schedule[i].end_s - schedule[i].start_s;
         EXPECT_GE(lasts_s, 70.0 - 1e-9);
     }
 }
@@ -144,17 +143,16 @@ TEST(Plan, MayBeMadeAnewInFlight) {
     RecordProperty("milliseconds", std::to_string(took.count()));
     ASSERT_TRUE(rest.feasible);
     EXPECT_GE(rest.final_soc_percent, 2.0 - 1e-9);
-    EXPECT_EQ(rest.schedule.front().from_s, 300.0 - 28.0);
+    EXPECT_EQ(rest.schedule.front().start_s, 300.0 - 28.0);
     EXPECT_EQ(rest.schedule.front().run, (compute::Configuration{{0, {32.0}}, {1, {448.0}}}));  // still fixed
-    double worth_before = 0.0;
+    double utility_before = 0.0;
+    const auto timeline = timeline_of(mission.duration_s);
     for (const auto& s : whole.schedule) {
-        const double begins_s = s.phase == flight::Phase::takeoff  ? 0.0
-                                : s.phase == flight::Phase::cruise ? 28.0
-                                                                   : 628.0;
-        const double before_s = std::min(begins_s + s.to_s, 300.0) - (begins_s + s.from_s);
-        if (before_s > 0.0) worth_before += before_s * s.run.front().qos.front();
+        const double starts_s = timeline.start_s[s.phase];
+        const double before_s = std::min(starts_s + s.end_s, 300.0) - (starts_s + s.start_s);
+        if (before_s > 0.0) utility_before += before_s * s.run.front().qos.front();
     }
-    EXPECT_NEAR(worth_before + rest.utility * 388.0, whole.utility * 688.0, 1e-4 * whole.utility * 688.0);
+    EXPECT_NEAR(utility_before + rest.utility * 388.0, whole.utility * 688.0, 1e-4 * whole.utility * 688.0);
     // With less, it does less; with too little, it does the least.
     EXPECT_LT(plan_rest(mission, planner, {300.0, at->soc_percent - 1.0, {}, 0.0}, 2.0).utility,
               rest.utility);
@@ -165,13 +163,13 @@ TEST(Plan, MayBeMadeAnewInFlight) {
 
 TEST(Plan, ReplansWithWhatRuns) {
     auto mission = paper_with_reserve(2.0);
-    mission.plan->dwell_s = 60.0;
+    mission.plan.dwell_s = 60.0;
     const auto planner = make_planner(mission);
     const compute::Configuration strong{{0, {32.0}}, {1, {32.0}}};
     const auto rest = plan_rest(mission, planner, {28.0, 95.0, strong, 20.0}, 2.0);
     ASSERT_FALSE(rest.schedule.empty());
     EXPECT_EQ(rest.schedule.front().run, strong);
-    EXPECT_GE(rest.schedule.front().to_s, 40.0);
+    EXPECT_GE(rest.schedule.front().end_s, 40.0);
 }
 
 TEST(Plan, AnswersWhereTheBatteryIsCharged) {
@@ -212,40 +210,41 @@ TEST(Plan, KeepsAMarginForFlightsThatDiffer) {
     EXPECT_GE(*plan.summary.final_soc_percent, 2.0 + plan.margin_percent);
     EXPECT_NEAR(plan_mission(mission, 0.5).margin_percent, 0.0, 1e-12);
     mission.battery.resistance_ohm = 0.002;
-    EXPECT_GT(drain_sd_percent(mission, configurations_of(plan.flown.schedule)),
+    EXPECT_GT(soc_depletion_sd_percent(mission, configurations_of(plan.flown.schedule)),
               plan.margin_percent / 1.6448536);
 }
 
 TEST(Plan, IsWrittenAsAMission) {
     const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
     auto mission = paper_with_reserve(2.0);
-    mission.plan->choices[1].may_be_off = true;
+    mission.plan.choices[1].may_be_off = true;
     const auto plan = plan_mission(mission);
     const auto folder = test::scratch_dir();
-    const auto text = planned_mission_toml(read_file(path), path, plan.flown, folder);
-    const auto again = parse_mission(text, folder / "planned.toml");
+    const auto text =
+        planned_mission_toml(read_file(path), path, plan.flown.compute, plan.flown.schedule, folder);
+    const auto again = std::get<Mission>(parse_mission(text, folder / "planned.toml"));
     EXPECT_EQ(again.name, "plan");
-    EXPECT_EQ(again.reserve_soc_percent, paper("plan").reserve_soc_percent);
+    EXPECT_EQ(again.reserve_soc_percent, paper_problem("plan").reserve_soc_percent);
     const auto summary = simulate(again).summary;
     EXPECT_EQ(summary.final_soc_percent, plan.summary.final_soc_percent);
     EXPECT_EQ(summary.utility, plan.summary.utility);
 }
 
-TEST(Planner, LeavesOutWhatIsDominated) {
-    auto mission = paper("plan");
-    EXPECT_EQ(make_planner(mission).free_choices, 4U);  // longer keys are worth nothing here
+TEST(Planner, DropsWhatIsDominated) {
+    auto mission = paper_problem("plan");
+    EXPECT_EQ(make_planner(mission).free_choices, 4U);  // longer keys have no utility here
     mission.utilities[1]->weight = 0.01;
     EXPECT_GT(make_planner(mission).free_choices, 4U);
     mission.utilities.assign(2, std::nullopt);
     EXPECT_THROW(make_planner(mission), InputError);
 }
 
-TEST(Planner, CutsSlotsAtFixedStretchesAndPhases) {
-    auto mission = paper("plan");
-    mission.plan->slot_s = 50.0;
+TEST(Planner, CutsSlotsAtFixedSegmentsAndPhases) {
+    auto mission = paper_problem("plan");
+    mission.plan.slot_s = 50.0;
     const auto slots = slots_of(mission);
     std::vector<std::pair<double, double>> times;
-    for (const auto& slot : slots) times.emplace_back(slot.from_s, slot.to_s);
+    for (const auto& slot : slots) times.emplace_back(slot.start_s, slot.end_s);
     EXPECT_EQ(times, (std::vector<std::pair<double, double>>{{0, 28},
                                                              {0, 50},
                                                              {50, 100},
@@ -261,7 +260,7 @@ TEST(Planner, CutsSlotsAtFixedStretchesAndPhases) {
                                                              {0, 50},
                                                              {50, 60}}));
     EXPECT_TRUE(slots[6].fixed);
-    EXPECT_EQ(slots_of(mission, 28.0 + 250.0).front().from_s, 250.0);
+    EXPECT_EQ(slots_of(mission, 28.0 + 250.0).front().start_s, 250.0);
     EXPECT_TRUE(slots_of(mission, 688.0).empty());
 }
 

@@ -1,8 +1,8 @@
 #include "mission/sampled_flights.h"
 
+#include "helpers/paper_missions.h"
 #include "helpers/rejected.h"
-#include "mission/flight_draws.h"
-#include "mission/flown_charge.h"
+#include "mission/sampling/flight_draws.h"
 
 #include <cmath>
 
@@ -12,12 +12,10 @@
 namespace flightwatt::mission {
 namespace {
 
-Mission paper(const std::string& name) {
-    return read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"), {true, std::nullopt});
-}
+using test::paper_mission;
 
-/// 20 W +- 5 % over 1000 s from 36 kJ, so that 55.6 +- 2.78 points are drained.
-Mission gaussian_drain(double reserve_soc_percent) {
+/// 20 W +- 5 % over 1000 s from 36 kJ, so that 55.6 +- 2.78 points are lost.
+Mission gaussian_depletion(double reserve_soc_percent) {
     Mission mission;
     mission.name = "steady";
     mission.duration_s[flight::Phase::cruise] = 1000.0;
@@ -31,17 +29,17 @@ Mission gaussian_drain(double reserve_soc_percent) {
     return mission;
 }
 
-SampledFlights sampled(const Mission& mission, std::size_t samples, std::uint64_t seed,
+SampledFlights sampled(const AnyMission& mission, std::size_t samples, std::uint64_t seed,
                        const std::vector<Disturbance>& disturbances = {}, std::size_t band_times = 0) {
-    return sample_flights(make_flyable(mission), disturbances, {samples, seed, band_times});
+    return sample_flights(prepare(mission), disturbances, {samples, seed, band_times});
 }
 
-TEST(SampledFlights, AgreeWithTheClosedFormOfAGaussianDrain) {
+TEST(SampledFlights, AgreeWithTheClosedFormOfAGaussianDepletion) {
     const boost::math::normal_distribution<double> final_soc(100.0 - 20.0 / 0.36, 1.0 / 0.36);
     for (const double reserve : {38.0, 41.0, 44.0, 47.0}) {
         for (const std::uint64_t seed : {1, 2, 3}) {
             const double exact = boost::math::cdf(final_soc, reserve);
-            const auto flights = sampled(gaussian_drain(reserve), 20000, seed);
+            const auto flights = sampled(gaussian_depletion(reserve), 20000, seed);
             const double standard_error = std::sqrt(exact * (1.0 - exact) / 20000.0);
             EXPECT_NEAR(flights.probability_below_reserve, exact, 4.0 * standard_error) << reserve;
             EXPECT_NEAR(flights.final_soc_mean_percent, final_soc.mean(), 4.0 * 2.78 / std::sqrt(20000.0));
@@ -54,7 +52,7 @@ TEST(SampledFlights, AgreeWithTheClosedFormOfAGaussianDrain) {
 }
 
 TEST(SampledFlights, CountEmptyBatteriesAsBelowAnyReserve) {
-    auto mission = gaussian_drain(0.0);
+    auto mission = gaussian_depletion(0.0);
     mission.initial_soc_percent = 20.0 / 0.36;  // empty in half of the flights
     const auto flights = sampled(mission, 10000, 1);
     EXPECT_NEAR(flights.probability_below_reserve, 0.5, 4.0 * 0.005);
@@ -63,7 +61,7 @@ TEST(SampledFlights, CountEmptyBatteriesAsBelowAnyReserve) {
 }
 
 TEST(SampledFlights, AreTheSameForASeed) {
-    auto mission = paper("phased");
+    auto mission = paper_mission("phased");
     mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 3.0;
     mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 10.0;
     const auto first = sampled(mission, 500, 7);
@@ -79,8 +77,8 @@ TEST(SampledFlights, AreTheSameForASeed) {
               draw_flight(mission, spreads, 7, 4).duration_s.values);
 }
 
-TEST(SampledFlights, LetDurationsDrainInProportion) {
-    auto mission = gaussian_drain(10.0);
+TEST(SampledFlights, DepleteInProportionToDurations) {
+    auto mission = gaussian_depletion(10.0);
     mission.uncertainty.level_sd_percent[flight::Phase::cruise].reset();
     mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 50.0;
     const auto flights = sampled(mission, 20000, 1);
@@ -88,7 +86,7 @@ TEST(SampledFlights, LetDurationsDrainInProportion) {
 }
 
 TEST(SampledFlights, GiveBandsOverTime) {
-    const auto bands = sampled(gaussian_drain(10.0), 5000, 1, {}, 11).bands;
+    const auto bands = sampled(gaussian_depletion(10.0), 5000, 1, {}, 11).bands;
     ASSERT_EQ(bands.size(), 11U);
     EXPECT_EQ(bands.front().p05_percent, 100.0);
     EXPECT_EQ(bands[5].time_s, 500.0);
@@ -98,7 +96,7 @@ TEST(SampledFlights, GiveBandsOverTime) {
 }
 
 TEST(SampledFlights, LetAnAdaptivePolicyAnswerEachFlight) {
-    auto adaptive = paper("adaptive-replanned");
+    auto adaptive = test::paper_problem("adaptive-replanned");
     adaptive.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     auto beforehand = adaptive;
     beforehand.adaptive.reset();
@@ -107,58 +105,17 @@ TEST(SampledFlights, LetAnAdaptivePolicyAnswerEachFlight) {
 }
 
 TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
-    auto mission = paper("phased");
+    auto mission = paper_mission("phased");
     mission.uncertainty.level_sd_percent = {};
-    EXPECT_NE(test::rejected([&] { spreads_of(mission); }).find("there is nothing to draw flights from"),
+    EXPECT_NE(test::rejected([&] { require_spread(mission); }).find("there is nothing to draw flights from"),
               std::string::npos);
+    EXPECT_FALSE(has_spread(mission));
     mission.uncertainty.compute_sd_percent[0] = 2.0;
+    EXPECT_TRUE(has_spread(mission));
     mission.uncertainty.capacity_sd_percent = 0.0;
     const auto spreads = spreads_of(mission);
     EXPECT_EQ(spreads.drawn, std::vector<std::string>{"power of detection (sd 2 %, stated)"});
     EXPECT_EQ(spreads.not_drawn.size(), 10U);
-}
-
-TEST(FlightDraws, TakeWhatTheModelsKnow) {
-    auto mission = paper("phased");
-    mission.uncertainty.level_sd_percent = {};
-    auto& cruise = mission.mechanical->phases[flight::Phase::cruise];
-    cruise.level_spread = mechanical::LevelSpread{3, 1.0, 0.0, 1.0};
-    cruise.flights = 3;
-    for (const double duration_s : {570.0, 600.0, 630.0}) {
-        mechanical::FlightContribution flight;
-        flight.phases[flight::Phase::cruise] = mechanical::PhaseContribution{1.0 / 3.0, duration_s, 1.0, 100};
-        mission.mechanical->flights.push_back(flight);
-    }
-    auto& detection = mission.compute.components[0].profile;
-    detection.standard_error_w.assign(detection.power_w.size(), 0.5);
-    mission.battery.intervals.capacity_ah = battery::Interval{3.0, 3.3};
-    const auto spreads = spreads_of(mission);
-    const double new_flight = std::sqrt(1.0 + 1.0 / 3.0);
-    EXPECT_NEAR(spreads.level_sd_w[flight::Phase::cruise], new_flight, 1e-12);
-    EXPECT_NEAR(spreads.duration_sd_s[flight::Phase::cruise], 30.0 * new_flight, 1e-9);
-    double capacity_below = 0.0;
-    double power_square_sum = 0.0;
-    constexpr int flights = 4000;
-    for (int i = 0; i < flights; ++i) {
-        const auto flight = draw_flight(mission, spreads, 1, static_cast<std::uint64_t>(i));
-        capacity_below += flight.battery.capacity_ah < 3.0 ? 1.0 : 0.0;
-        const double off_w = flight.compute.components[0].profile.power_w[0] - detection.power_w[0];
-        power_square_sum += off_w * off_w;
-    }
-    EXPECT_NEAR(capacity_below / flights, 0.025, 0.01) << "each side of the interval has 2.5 %";
-    EXPECT_NEAR(std::sqrt(power_square_sum / flights), 0.5, 0.025);
-}
-
-TEST(FlownCharge, AgreesWithTheSimulation) {
-    for (const double resistance_ohm : {0.0, 0.01}) {
-        auto mission = paper("phased");
-        mission.battery.resistance_ohm = resistance_ohm;
-        mission.battery.capacity_ah = 4.0;
-        battery::Discharge charge;
-        charge.soc_percent = 100.0;
-        for (const auto& demand : demands_of(mission)) charge = after_demand(mission, demand, charge);
-        EXPECT_NEAR(charge.soc_percent, *simulate(mission).summary.final_soc_percent, 1e-6);
-    }
 }
 
 }  // namespace

@@ -1,181 +1,32 @@
 #include "mission/schedule.h"
 
-#include "helpers/rejected.h"
-
-#include <algorithm>
-#include <random>
-
 #include <gtest/gtest.h>
 
 namespace flightwatt::mission {
 namespace {
 
-using test::rejected;
+const compute::Configuration slow{{0, {5.0}}};
+const compute::Configuration fast{{0, {30.0}}};
 
-const flight::PerPhase<double> durations{{28.0, 600.0, 60.0}};
-
-compute::Configuration running(double qos) { return {{0, {qos}}}; }
-
-Location line(std::size_t number) { return {"m.toml", number, 1}; }
-
-ScheduleEntry part(flight::Phase phase, double from_s, double to_s, double qos, std::size_t at = 1) {
-    return {phase, false, false, from_s, to_s, running(qos), line(at)};
+TEST(Schedule, JoinsNeighboursThatRunTheSame) {
+    std::vector<ScheduleSegment> schedule;
+    append_merged(schedule, {flight::Phase::takeoff, 0.0, 28.0, slow});
+    append_merged(schedule, {flight::Phase::cruise, 0.0, 10.0, slow});
+    append_merged(schedule, {flight::Phase::cruise, 10.0, 20.0, slow});
+    append_merged(schedule, {flight::Phase::cruise, 20.0, 30.0, fast});
+    EXPECT_EQ(schedule, (std::vector<ScheduleSegment>{{flight::Phase::takeoff, 0.0, 28.0, slow},
+                                                      {flight::Phase::cruise, 0.0, 20.0, slow},
+                                                      {flight::Phase::cruise, 20.0, 30.0, fast}}));
+    EXPECT_EQ(configurations_of(schedule), (std::vector<compute::Configuration>{slow, fast}));
 }
 
-ScheduleEntry rest(std::optional<flight::Phase> phase, double qos, std::size_t at = 1) {
-    return {phase, true, false, 0.0, 0.0, running(qos), line(at)};
-}
-
-std::string spell(const std::vector<Stretch>& stretches) {
-    std::string text;
-    for (const auto& s : stretches) {
-        text += std::string(to_string(s.phase)) + " " + std::to_string(static_cast<int>(s.from_s)) + ".." +
-                std::to_string(static_cast<int>(s.to_s)) + "=" +
-                std::to_string(static_cast<int>(s.run[0].qos[0])) + "; ";
-    }
-    return text;
-}
-
-TEST(Schedule, OtherwiseFillsWhatIsLeft) {
-    const auto laid =
-        lay_out({part(flight::Phase::cruise, 240.0, 360.0, 3), rest(std::nullopt, 1)}, durations);
-    EXPECT_EQ(spell(laid),
-              "takeoff 0..28=1; cruise 0..240=1; cruise 240..360=3; cruise 360..600=1; landing 0..60=1; ");
-}
-
-TEST(Schedule, AnOtherwiseOfThePhaseComesBeforeThatOfTheMission) {
-    const auto laid = lay_out(
-        {rest(std::nullopt, 1), part(flight::Phase::cruise, 0.0, 100.0, 3), rest(flight::Phase::cruise, 2)},
-        durations);
-    EXPECT_EQ(spell(laid), "takeoff 0..28=1; cruise 0..100=3; cruise 100..600=2; landing 0..60=1; ");
-}
-
-TEST(Schedule, NeedsNoOtherwiseWhereEntriesMeet) {
-    const auto laid =
-        lay_out({part(flight::Phase::landing, 0.0, 60.0, 4), part(flight::Phase::cruise, 300.0, 600.0, 3),
-                 part(flight::Phase::cruise, 0.0, 300.0 + 1e-12, 2),
-                 part(flight::Phase::takeoff, -1e-13, 28.0 - 1e-13, 1)},
-                durations);
-    EXPECT_EQ(spell(laid), "takeoff 0..28=1; cruise 0..300=2; cruise 300..600=3; landing 0..60=4; ");
-    EXPECT_EQ(laid[0].from_s, 0.0);
-    EXPECT_EQ(laid[0].to_s, 28.0);
-    EXPECT_EQ(laid[1].to_s, laid[2].from_s);
-}
-
-TEST(Schedule, LeavesOutPhasesThatAreNotFlown) {
-    EXPECT_EQ(spell(lay_out({rest(std::nullopt, 1)}, {{0.0, 600.0, 0.0}})), "cruise 0..600=1; ");
-}
-
-TEST(Schedule, CoversEachInstantExactlyOnce) {
-    std::mt19937 random(7);
-    for (int round = 0; round < 200; ++round) {
-        // Disjoint stretches between random cuts, every second one left to an `otherwise`, in random order.
-        std::vector<ScheduleEntry> entries{rest(std::nullopt, 0)};
-        if (round % 2 == 0) entries.push_back(rest(flight::Phase::cruise, 1));
-        for (const auto phase : flight::all_phases) {
-            std::vector<double> cuts(6);
-            for (auto& cut : cuts) cut = std::uniform_real_distribution(0.0, durations[phase])(random);
-            std::sort(cuts.begin(), cuts.end());
-            for (std::size_t i = 0; i + 1 < cuts.size(); i += 2) {
-                entries.push_back(part(phase, cuts[i], cuts[i + 1], 2));
-            }
-        }
-        std::shuffle(entries.begin(), entries.end(), random);
-        const auto laid = lay_out(entries, durations);
-        auto previous = laid.front();
-        EXPECT_EQ(previous.phase, flight::Phase::takeoff);
-        EXPECT_EQ(previous.from_s, 0.0);
-        for (std::size_t i = 1; i < laid.size(); ++i) {
-            const auto& stretch = laid[i];
-            EXPECT_LT(stretch.from_s, stretch.to_s);
-            if (stretch.phase == previous.phase) {
-                EXPECT_EQ(stretch.from_s, previous.to_s);
-            } else {
-                EXPECT_EQ(previous.to_s, durations[previous.phase]);
-                EXPECT_EQ(stretch.from_s, 0.0);
-            }
-            previous = stretch;
-        }
-        EXPECT_EQ(previous.phase, flight::Phase::landing);
-        EXPECT_EQ(previous.to_s, durations[flight::Phase::landing]);
-    }
-}
-
-TEST(Schedule, RefusesOverlaps) {
-    EXPECT_EQ(rejected([] {
-                  lay_out({part(flight::Phase::cruise, 200.0, 400.0, 1, 9),
-                           part(flight::Phase::cruise, 100.0, 250.0, 1, 4), rest({}, 1)},
-                          durations);
-              }),
-              "m.toml:9:1: cruise from 200 s to 250 s is scheduled twice, here and in line 4; let one end "
-              "where the other "
-              "begins");
-    auto whole = part(flight::Phase::cruise, 0.0, 600.0, 1, 12);
-    whole.whole_phase = true;
-    EXPECT_EQ(rejected([&] {
-                  lay_out({part(flight::Phase::cruise, 240.0, 360.0, 1, 8), whole, rest({}, 1)}, durations);
-              }),
-              "m.toml:12:1: cruise from 240 s to 360 s is scheduled twice, here and in line 8; give the "
-              "entry of the whole "
-              "phase `otherwise = true`, and it takes what the others leave");
-}
-
-TEST(Schedule, RefusesAStretchWithinAnother) {
-    EXPECT_EQ(rejected([] {
-                  lay_out({part(flight::Phase::cruise, 0.0, 500.0, 1, 2),
-                           part(flight::Phase::cruise, 100.0, 200.0, 1, 3)},
-                          durations);
-              }),
-              "m.toml:3:1: cruise from 100 s to 200 s is scheduled twice, here and in line 2; let one end "
-              "where the other "
-              "begins");
-}
-
-TEST(Schedule, RefusesGaps) {
-    EXPECT_EQ(
-        rejected([] {
-            lay_out(
-                {part(flight::Phase::takeoff, 0.0, 28.0, 1, 3), part(flight::Phase::cruise, 0.0, 240.0, 1, 6),
-                 part(flight::Phase::cruise, 360.0, 600.0, 1, 9), rest(flight::Phase::landing, 1, 12)},
-                durations);
-        }),
-        "m.toml:9:1: nothing is scheduled for cruise from 240 s to 360 s; add an entry with `otherwise "
-        "= true`; "
-        "`run = {}` runs nothing");
-    EXPECT_EQ(rejected([] { lay_out({part(flight::Phase::takeoff, 0.0, 20.0, 1, 3)}, durations); }),
-              "m.toml:3:1: nothing is scheduled for takeoff from 20 s to 28 s; add an entry with `otherwise "
-              "= true`; "
-              "`run = {}` runs nothing");
-    EXPECT_EQ(rejected([] { lay_out({part(flight::Phase::takeoff, 0.0, 28.0, 1, 3)}, durations); }),
-              "m.toml:3:1: nothing is scheduled for cruise from 0 s to 600 s; add an entry with `otherwise = "
-              "true`; "
-              "`run = {}` runs nothing");
-}
-
-TEST(Schedule, RefusesAnOtherwiseTooMany) {
-    const std::string nothing =
-        "this `otherwise` covers nothing: the other entries leave no time; take it out";
-    EXPECT_EQ(rejected([] {
-                  lay_out({part(flight::Phase::cruise, 0.0, 600.0, 1), rest(flight::Phase::cruise, 1, 5)},
-                          {{0.0, 600.0, 0.0}});
-              }),
-              "m.toml:5:1: " + nothing);
-    EXPECT_EQ(rejected([] {
-                  lay_out({rest(flight::Phase::cruise, 1, 3), rest({}, 1, 6)}, {{0.0, 600.0, 0.0}});
-              }),
-              "m.toml:6:1: " + nothing);
-    EXPECT_EQ(
-        rejected([] {
-            lay_out({rest({}, 1, 3), rest({}, 1, 6)}, durations);
-        }),
-        "m.toml:6:1: a second `otherwise` for the whole mission, the first is in line 3; keep one of them");
-    EXPECT_EQ(rejected([] {
-                  lay_out(
-                      {rest(flight::Phase::cruise, 1, 3), rest({}, 1, 5), rest(flight::Phase::cruise, 1, 6)},
-                      durations);
-              }),
-              "m.toml:6:1: a second `otherwise` for cruise, the first is in line 3; keep one of them");
-    EXPECT_THROW(lay_out({}, durations), std::invalid_argument);
+TEST(Schedule, KeepsItsPartsOfAPhaseFlownLonger) {
+    const auto longer = rescale_to_flown_durations(
+        {{flight::Phase::cruise, 0.0, 150.0, slow}, {flight::Phase::cruise, 150.0, 600.0, fast}},
+        {{28.0, 600.0, 60.0}}, {{28.0, 900.1, 60.0}});
+    EXPECT_DOUBLE_EQ(longer[0].end_s, 225.025);
+    EXPECT_EQ(longer[1].start_s, longer[0].end_s);
+    EXPECT_EQ(longer[1].end_s, 900.1) << "exactly the end of the phase";
 }
 
 }  // namespace

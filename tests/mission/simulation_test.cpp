@@ -1,6 +1,6 @@
 #include "mission/simulation.h"
 
-#include "helpers/test_paths.h"
+#include "helpers/paper_missions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,7 @@
 namespace flightwatt::mission {
 namespace {
 
-Mission paper(const std::string& name) {
-    return read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"));
-}
+using test::paper_mission;
 
 /// Computing at `power` alone for an hour, with a battery of `battery_wh` that has no resistance.
 Mission constant(double power, double battery_wh) {
@@ -20,7 +18,8 @@ Mission constant(double power, double battery_wh) {
     mission.name = "constant";
     mission.duration_s[flight::Phase::cruise] = 3600.0;
     mission.battery = {"", 10.0, 0.0, battery_wh / 10.0};
-    mission.compute.components.push_back({"load", compute::make_power_profile("load.csv", {}, {{{}, power, {}}})});
+    mission.compute.components.push_back(
+        {"load", compute::make_power_profile("load.csv", {}, {{{}, power, {}}})});
     mission.schedule = {{flight::Phase::cruise, 0.0, 3600.0, {{0, {}}}}};
     return mission;
 }
@@ -56,7 +55,7 @@ TEST(Simulation, MeetsTheClosedFormWithResistance) {
 }
 
 TEST(Simulation, HasARowAtEveryStepAndTwoAtEveryJump) {
-    const auto rows = simulate(paper("phased"), {60.0, 0.1}).curve.rows;
+    const auto rows = simulate(paper_mission("phased"), {60.0, 0.1}).curve.rows;
     std::vector<double> times;
     times.reserve(rows.size());
     for (const auto& row : rows) times.push_back(row.time_s);
@@ -68,7 +67,7 @@ TEST(Simulation, HasARowAtEveryStepAndTwoAtEveryJump) {
     EXPECT_NE(rows[7].compute_w, rows[8].compute_w);
     for (const auto& row : rows) {
         EXPECT_EQ(row.power_w, row.mechanical_w + row.compute_w);
-        EXPECT_EQ(row.current_a, internal_current_a(paper("phased").battery, row.power_w));
+        EXPECT_EQ(row.current_a, internal_current_a(paper_mission("phased").battery, row.power_w));
     }
 }
 
@@ -82,7 +81,7 @@ TEST(Simulation, HasOneRowWhereNothingJumps) {
 }
 
 TEST(Simulation, RowsIntegrateToTheSummary) {
-    const auto [curve, summary] = simulate(paper("phased"), {0.01, 0.01});
+    const auto [curve, summary] = simulate(paper_mission("phased"), {0.01, 0.01});
     double energy_j = 0.0;
     double charge_as = 0.0;
     for (std::size_t i = 1; i < curve.rows.size(); ++i) {
@@ -99,7 +98,7 @@ TEST(Simulation, RowsIntegrateToTheSummary) {
 }
 
 TEST(Simulation, DoesNotDependOnTheSteps) {
-    auto mission = paper("phased");
+    auto mission = paper_mission("phased");
     mission.battery.resistance_ohm = 0.005;
     mission.battery.voltage_v = 3.6;
     const auto reference = simulate(mission, {1.0, 0.01}).summary;
@@ -108,7 +107,7 @@ TEST(Simulation, DoesNotDependOnTheSteps) {
         EXPECT_NEAR(*summary.final_soc_percent, *reference.final_soc_percent, 1e-6) << steps.output_s;
         EXPECT_EQ(summary.energy_wh, reference.energy_wh);
     }
-    mission = paper("invariant-32fps-448bit");
+    mission = paper_mission("invariant-32fps-448bit");
     const double empty_s = *simulate(mission, {1.0, 0.01}).summary.depleted_at_s;
     for (const auto& steps : {SimulationSteps{1.0, 0.1}, {7.77, 0.1}, {1e6, 0.5}}) {
         EXPECT_NEAR(*simulate(mission, steps).summary.depleted_at_s, empty_s, 1e-6);
@@ -179,7 +178,7 @@ TEST(Simulation, ChargesOnNegativePowerAndStaysBelowFull) {
 }
 
 TEST(Simulation, ReportsPowerThatTheBatteryCannotDeliver) {
-    auto mission = paper("phased");
+    auto mission = paper_mission("phased");
     mission.battery = {"", 11.1, 0.5, 3.2};  // at most 61.6 W; the middle of the cruise needs 68
     const auto [curve, summary] = simulate(mission);
     ASSERT_TRUE(summary.undeliverable);
@@ -217,7 +216,8 @@ TEST(Simulation, ShowsTheTerminalVoltage) {
 }
 
 TEST(Simulation, FliesTheExampleOnTheSyntheticPack) {
-    auto mission = read_mission(test::source_dir() / "missions" / "synthetic" / "thevenin-pack.toml");
+    auto mission =
+        std::get<Mission>(read_mission(test::source_dir() / "missions" / "synthetic" / "thevenin-pack.toml"));
     ASSERT_TRUE(mission.battery.thevenin);
     EXPECT_NEAR(mission.battery.resistance_ohm, 0.06, 0.001);  // what the logs were made with
     const auto summary = simulate(mission, {60.0, 0.1}).summary;

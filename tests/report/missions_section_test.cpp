@@ -1,7 +1,7 @@
 #include "report/missions_section.h"
 
 #include "base/error.h"
-#include "helpers/test_paths.h"
+#include "helpers/paper_missions.h"
 #include "report/figures/qos_map.h"
 
 #include <algorithm>
@@ -12,20 +12,18 @@
 namespace flightwatt::report {
 namespace {
 
+using test::paper_mission;
+
 using testing::HasSubstr;
 
-mission::Mission paper(const std::string& name) {
-    return mission::read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"));
-}
-
 std::vector<SimulatedMission> simulated(const std::vector<std::string>& names) {
-    std::vector<mission::Mission> missions;
-    for (const auto& name : names) missions.push_back(paper(name));
+    std::vector<mission::AnyMission> missions;
+    for (const auto& name : names) missions.push_back(paper_mission(name));
     return simulate_for_report(std::move(missions));
 }
 
 TEST(QosMap, IsThePapersGridAndEndsWhereTheMissionsEnd) {
-    const auto map = qos_map(paper("invariant-10fps-240bit"));
+    const auto map = qos_map(paper_mission("invariant-10fps-240bit"));
     ASSERT_TRUE(map);
     EXPECT_EQ(map->x.nodes.size(), 10U);
     EXPECT_EQ(map->y.nodes.size(), 13U);
@@ -35,7 +33,7 @@ TEST(QosMap, IsThePapersGridAndEndsWhereTheMissionsEnd) {
         return map->at(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
     };
     for (const auto* name : {"invariant-10fps-240bit", "invariant-5.8fps-32bit", "invariant-32fps-448bit"}) {
-        const auto mission = paper(name);
+        const auto mission = paper_mission(name);
         const auto& run = mission.schedule.front().run;
         EXPECT_NEAR(at(run[0].qos[0], run[1].qos[0]), *simulate(mission).summary.final_soc_percent, 1e-4)
             << name;
@@ -43,9 +41,9 @@ TEST(QosMap, IsThePapersGridAndEndsWhereTheMissionsEnd) {
 }
 
 TEST(QosMap, NeedsTwoParameters) {
-    EXPECT_FALSE(qos_map(paper("mechanical-only")));
-    EXPECT_TRUE(have_same_map(paper("phased"), paper("adaptive")));
-    EXPECT_FALSE(have_same_map(paper("phased"), paper("computing-only")));
+    EXPECT_FALSE(qos_map(paper_mission("mechanical-only")));
+    EXPECT_TRUE(have_same_map(paper_mission("phased"), paper_mission("adaptive")));
+    EXPECT_FALSE(have_same_map(paper_mission("phased"), paper_mission("computing-only")));
 }
 
 TEST(MissionSections, HaveEachModelAndSoftwareOnce) {
@@ -59,7 +57,7 @@ TEST(MissionSections, HaveEachModelAndSoftwareOnce) {
 }
 
 TEST(MissionSections, ShowWhereTheBatteryCannotDeliver) {
-    auto weak = paper("phased");
+    auto weak = paper_mission("phased");
     weak.battery.resistance_ohm = 1.0;
     const auto sections = mission_sections(simulate_for_report({weak}), {});
     bool said = false;

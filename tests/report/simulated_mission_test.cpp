@@ -2,16 +2,14 @@
 
 #include "report/simulated_mission.h"
 
-#include "helpers/test_paths.h"
+#include "helpers/paper_missions.h"
 
 #include <gtest/gtest.h>
 
 namespace flightwatt::report {
 namespace {
 
-mission::Mission paper_mission(const std::string& name) {
-    return mission::read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"));
-}
+using test::paper_mission;
 
 TEST(SimulateForReport, TellsMissionsOfOneNameApart) {
     const auto missions = simulate_for_report({paper_mission("phased"), paper_mission("phased")});

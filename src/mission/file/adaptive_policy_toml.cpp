@@ -1,22 +1,10 @@
 #include "mission/file/adaptive_policy_toml.h"
 
+#include "base/toml_numbers.h"
+
 #include <fmt/format.h>
 
 namespace flightwatt::mission {
-namespace {
-
-/// A number from `low` to `high`; `otherwise` if the key is not there.
-double number_between(const TomlTable& policy, std::string_view key, double low, double high,
-                      double otherwise) {
-    const auto given = policy.optional_number(key);
-    if (given && (*given < low || *given > high)) {
-        throw InputError(policy.where(key), fmt::format("{} = {} is out of range", key, *given),
-                         fmt::format("expected {} to {}", low, high));
-    }
-    return given.value_or(otherwise);
-}
-
-}  // namespace
 
 std::optional<AdaptivePolicy> read_adaptive_policy(const TomlTable& mission) {
     const auto policy = mission.optional_table("policy");
@@ -38,11 +26,11 @@ std::optional<AdaptivePolicy> read_adaptive_policy(const TomlTable& mission) {
                          "it is \"adaptive\" or \"static\"");
     }
     AdaptivePolicy read;
-    read.decide_every_s = number_between(*policy, "decide_every_s", 0.1, 1e6, 0.0);
+    read.decide_every_s = number_in_or(between(0.1, 1e6), *policy, "decide_every_s", 0.0);
     read.mechanical_sd_percent =
-        number_between(*policy, "mechanical_sd_percent", 0.0, 100.0, read.mechanical_sd_percent);
-    read.learning_time_s = number_between(*policy, "learning_time_s", 0.0, 1e6, read.learning_time_s);
-    read.probability = number_between(*policy, "probability", 0.5, 0.999999, read.probability);
+        number_in_or(between(0.0, 100.0), *policy, "mechanical_sd_percent", read.mechanical_sd_percent);
+    read.learning_time_s = number_in_or(between(0.0, 1e6), *policy, "learning_time_s", read.learning_time_s);
+    read.probability = number_in_or(between(0.5, 0.999999), *policy, "probability", read.probability);
     return read;
 }
 

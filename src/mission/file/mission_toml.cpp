@@ -1,4 +1,6 @@
 #include "base/atomic_file.h"
+#include "base/format_version.h"
+#include "base/toml_numbers.h"
 #include "compute/profile_reader.h"
 #include "mission/file/adaptive_policy_toml.h"
 #include "mission/file/conditions_toml.h"
@@ -6,7 +8,7 @@
 #include "mission/file/schedule_toml.h"
 #include "mission/file/uncertainty_toml.h"
 #include "mission/file/utility_toml.h"
-#include "mission/mission.h"
+#include "mission/mission_file.h"
 
 #include <fmt/format.h>
 
@@ -46,12 +48,8 @@ mechanical::PhaseClock read_clock(const TomlTable& root, bool has_mechanical) {
 
 double read_duration(const TomlTable& durations, std::string_view phase) {
     const double value = durations.number(phase);
-    if (value != 0.0 && (value < shortest_phase_s || value > longest_phase_s)) {
-        throw InputError(
-            durations.where(phase), fmt::format("{} = {} s is no phase's duration", phase, value),
-            fmt::format("expected 0 (not flown) or {} .. {} s", shortest_phase_s, longest_phase_s));
-    }
-    return value;
+    if (value == 0.0) return value;
+    return number_in(between(shortest_phase_s, longest_phase_s), durations, phase, "or 0: not flown");
 }
 
 flight::PerPhase<double> read_durations(const TomlTable& root,
@@ -75,21 +73,10 @@ flight::PerPhase<double> read_durations(const TomlTable& root,
     return durations;
 }
 
-/// An optional number that is to be above `low` (or at it, if that makes sense) and at most `high`.
-std::optional<double> optional_between(const TomlTable& root, std::string_view key, double low, double high,
-                                       bool low_too) {
-    const auto value = root.optional_number(key);
-    if (value && (*value > high || *value < low || (*value == low && !low_too))) {
-        throw InputError(root.where(key), fmt::format("{} = {} is out of range", key, *value),
-                         fmt::format("expected {} {} to {}", low_too ? "from" : "above", low, high));
-    }
-    return value;
-}
-
 battery::Battery read_mission_battery(const TomlTable& root) {
     auto battery = root.is_table("battery") ? battery::battery_from(root.table("battery"))
                                             : battery::read_battery(file_of(root, "battery"));
-    if (const auto capacity_ah = optional_between(root, "capacity_ah", 0.0, 1e6, false)) {
+    if (const auto capacity_ah = optional_number_in(more_than_up_to(0.0, 1e6), root, "capacity_ah")) {
         battery.capacity_ah = *capacity_ah;
         battery.intervals.capacity_ah.reset();  // that was of the other capacity
     }
@@ -111,7 +98,7 @@ compute::Component read_component(const TomlTable& table, const std::string& nam
     return {name, read_power_profile(file_of(table, "profile"), naming)};
 }
 
-void read_components(const TomlTable& root, Mission& mission) {
+void read_components(const TomlTable& root, MissionSetup& mission) {
     const auto components = root.optional_table("components");
     if (!components) return;
     for (const auto& name : components->keys()) {
@@ -125,26 +112,31 @@ void read_components(const TomlTable& root, Mission& mission) {
     }
 }
 
-/// The stretches that are fixed, the rest to be planned; or, as it should be, the whole schedule.
-void read_mission_schedule(const TomlTable& root, const MissionReading& reading, Mission& mission) {
-    auto entries = read_schedule(root, mission.compute, mission.duration_s);
-    const bool lacks_schedule = entries.empty() && !mission.compute.components.empty();
-    const bool may_lack_schedule = reading.may_lack_schedule || mission.adaptive;
-    if (lacks_schedule && !root.has("plan") && !may_lack_schedule) {
+/// Throws where a mission that is yet to be planned is not accepted.
+void require_schedule(const TomlTable& root, bool lacks_schedule) {
+    if (lacks_schedule && !root.has("plan")) {
         throw InputError(root.where("components"), "there are components and no [[schedule]] that runs them",
                          "add [[schedule]] with otherwise = true and run = { ... }, or let `flightwatt plan` "
                          "make a schedule");
     }
-    if (root.has("plan") && !may_lack_schedule) {
-        throw InputError(root.where("plan"), "this mission has no complete schedule: it is yet to be planned",
-                         "`flightwatt plan` makes one; without [plan], [[schedule]] is taken as complete");
-    }
-    if (lacks_schedule || root.has("plan") || mission.adaptive) {
-        mission.plan = read_plan_settings(root, mission.compute);
-        mission.schedule = lay_out_fixed(entries, mission.duration_s);
-        if (mission.adaptive && mission.adaptive->decide_every_s == 0.0)
-            mission.adaptive->decide_every_s = mission.plan->slot_s;
-        return;
+    if (!root.has("plan")) return;
+    throw InputError(root.where("plan"), "this mission has no complete schedule: it is yet to be planned",
+                     "`flightwatt plan` makes one; without [plan], [[schedule]] is taken as complete");
+}
+
+/// The mission with its schedule; or with what is fixed of it, the rest to be planned.
+AnyMission with_read_schedule(const TomlTable& root, const MissionReading& reading, MissionSetup setup) {
+    auto adaptive = read_adaptive_policy(root);
+    auto entries = read_schedule(root, setup.compute, setup.duration_s);
+    const bool lacks_schedule = entries.empty() && !setup.compute.components.empty();
+    if (!reading.may_lack_schedule && !adaptive) require_schedule(root, lacks_schedule);
+    if (lacks_schedule || root.has("plan") || adaptive) {
+        PlanningProblem problem{std::move(setup), {}, {}, std::move(adaptive)};
+        problem.plan = read_plan_settings(root, problem.compute);
+        problem.fixed = resolve_fixed_segments(entries, problem.duration_s);
+        if (problem.adaptive && problem.adaptive->decide_every_s == 0.0)
+            problem.adaptive->decide_every_s = problem.plan.slot_s;
+        return problem;
     }
     if (entries.empty()) {
         ScheduleEntry nothing;  // mechanical only: nothing runs, all the time
@@ -152,50 +144,41 @@ void read_mission_schedule(const TomlTable& root, const MissionReading& reading,
         nothing.where = root.where();
         entries.push_back(nothing);
     }
-    mission.schedule = lay_out(entries, mission.duration_s);
-}
-
-double read_initial_soc(const TomlTable& root) {
-    const double soc = root.optional_number("initial_soc_percent").value_or(100.0);
-    if (soc <= 0.0 || soc > 100.0) {
-        throw InputError(root.where("initial_soc_percent"),
-                         fmt::format("initial_soc_percent = {} is out of range", soc),
-                         "expected above 0, to 100");
-    }
-    return soc;
+    auto schedule = resolve_schedule(entries, setup.duration_s);
+    return Mission{std::move(setup), std::move(schedule)};
 }
 
 }  // namespace
 
-Mission parse_mission(std::string_view text, const std::filesystem::path& path,
-                      const MissionReading& reading) {
+AnyMission parse_mission(std::string_view text, const std::filesystem::path& path,
+                         const MissionReading& reading) {
     const auto root = parse_toml(text, path.string());
-    root.refuse_keys_except({"name", "mechanical", "duration_s", "phase_clock", "conditions", "battery",
-                             "initial_soc_percent", "capacity_ah", "cutoff_voltage_v", "reserve_soc_percent",
-                             "components", "schedule", "plan", "policy", "uncertainty"});
-    Mission mission;
+    root.refuse_keys_except({"format", "name", "mechanical", "duration_s", "phase_clock", "conditions",
+                             "battery", "initial_soc_percent", "capacity_ah", "cutoff_voltage_v",
+                             "reserve_soc_percent", "components", "schedule", "plan", "policy",
+                             "uncertainty"});
+    require_known_format(root);
+    MissionSetup mission;
     mission.file = path.string();
     mission.name = root.optional_string("name").value_or(path.stem().string());
     mission.mechanical = read_mechanical(root);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
     if (const auto conditions = root.optional_table("conditions")) {
-        mission.cruise_level = mission::apply_conditions(*conditions, mission.mechanical);
+        mission.cruise_level = apply_conditions(*conditions, mission.mechanical);
     }
     mission.duration_s = read_durations(root, mission.mechanical);
     if (reading.cruise_s) mission.duration_s[flight::Phase::cruise] = *reading.cruise_s;
     mission.battery = read_mission_battery(root);
     read_components(root, mission);
-    mission.initial_soc_percent = read_initial_soc(root);
-    mission.cutoff_voltage_v = optional_between(root, "cutoff_voltage_v", 0.0, 1e6, true).value_or(0.0);
-    mission.reserve_soc_percent =
-        optional_between(root, "reserve_soc_percent", 0.0, 100.0, true).value_or(0.0);
-    mission.adaptive = read_adaptive_policy(root);
-    read_mission_schedule(root, reading, mission);
+    mission.initial_soc_percent =
+        number_in_or(more_than_up_to(0.0, 100.0), root, "initial_soc_percent", 100.0);
+    mission.cutoff_voltage_v = number_in_or(between(0.0, 1e6), root, "cutoff_voltage_v", 0.0);
+    mission.reserve_soc_percent = number_in_or(between(0.0, 100.0), root, "reserve_soc_percent", 0.0);
     mission.uncertainty = read_uncertainty(root, mission.compute, mission.mechanical.has_value());
-    return mission;
+    return with_read_schedule(root, reading, std::move(mission));
 }
 
-Mission read_mission(const std::filesystem::path& path, const MissionReading& reading) {
+AnyMission read_mission(const std::filesystem::path& path, const MissionReading& reading) {
     return parse_mission(read_file(path), path, reading);
 }
 

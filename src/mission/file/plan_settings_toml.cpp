@@ -1,5 +1,7 @@
 #include "mission/file/plan_settings_toml.h"
 
+#include "base/toml_numbers.h"
+
 #include <algorithm>
 #include <string>
 
@@ -18,16 +20,6 @@ std::size_t component_index(const compute::ComputeModel& compute, const std::str
     }
     throw InputError(where, fmt::format("there is no component '{}'", name),
                      fmt::format("the components are {}", fmt::join(known, ", ")));
-}
-
-double read_seconds(const TomlTable& plan, std::string_view key, double otherwise_s) {
-    const double value_s = plan.optional_number(key).value_or(otherwise_s);
-    const bool may_be_zero = otherwise_s == 0.0;
-    if (value_s < 0.0 || (value_s == 0.0 && !may_be_zero)) {
-        throw InputError(plan.where(key), fmt::format("{} = {} s makes no sense", key, value_s),
-                         may_be_zero ? "expected 0 or more" : "expected more than 0");
-    }
-    return value_s;
 }
 
 void read_levels(const TomlTable& levels, const compute::PowerProfile& profile, ComponentChoices& choices) {
@@ -55,8 +47,8 @@ PlanSettings read_plan_settings(const TomlTable& mission, const compute::Compute
     const auto plan = mission.optional_table("plan");
     if (!plan) return settings;
     plan->refuse_keys_except({"slot_s", "dwell_s", "may_be_off", "levels"});
-    settings.slot_s = read_seconds(*plan, "slot_s", settings.slot_s);
-    settings.dwell_s = read_seconds(*plan, "dwell_s", settings.dwell_s);
+    settings.slot_s = number_in_or(more_than(0.0), *plan, "slot_s", settings.slot_s);
+    settings.dwell_s = number_in_or(at_least(0.0), *plan, "dwell_s", settings.dwell_s);
     if (plan->has("may_be_off")) {
         for (const auto& name : plan->strings("may_be_off")) {
             settings.choices[component_index(compute, name, plan->where("may_be_off"))].may_be_off = true;

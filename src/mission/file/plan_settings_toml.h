@@ -2,7 +2,7 @@
 
 #include "base/toml_reader.h"
 #include "compute/compute_model.h"
-#include "mission/plan_settings.h"
+#include "mission/mission.h"
 
 namespace flightwatt::mission {
 

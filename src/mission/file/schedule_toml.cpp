@@ -28,32 +28,32 @@ double percent_in(const TomlTable& entry, std::string_view key) {
     return *value;
 }
 
-void read_stretch(const TomlTable& table, double duration_s, ScheduleEntry& entry) {
+void read_segment(const TomlTable& table, double duration_s, ScheduleEntry& entry) {
     const bool has_from = table.has("from");
     const bool has_to = table.has("to");
     const bool has_middle = table.has("middle");
     entry.whole_phase = !has_from && !has_to && !has_middle;
-    entry.from_s = has_from ? read_time_s(table, "from", duration_s) : 0.0;
-    entry.to_s = has_to ? read_time_s(table, "to", duration_s) : duration_s;
+    entry.start_s = has_from ? read_time_s(table, "from", duration_s) : 0.0;
+    entry.end_s = has_to ? read_time_s(table, "to", duration_s) : duration_s;
     if (has_middle) {
         if (has_from || has_to) {
             throw InputError(table.where("middle"), "`middle` stands with `from` or `to`",
                              "use one way of saying when");
         }
         const double length_s = read_time_s(table, "middle", duration_s);
-        entry.from_s = (duration_s - length_s) / 2.0;
-        entry.to_s = (duration_s + length_s) / 2.0;
+        entry.start_s = (duration_s - length_s) / 2.0;
+        entry.end_s = (duration_s + length_s) / 2.0;
     }
     const std::string_view key = has_middle ? "middle" : has_from ? "from" : has_to ? "to" : "phase";
     const double tolerance_s = same_time_tolerance_s(duration_s);
-    const auto stretch =
-        fmt::format("{} from {} s to {} s", to_string(*entry.phase), entry.from_s, entry.to_s);
-    if (entry.to_s - entry.from_s <= tolerance_s) {
-        throw InputError(table.where(key), fmt::format("the stretch {} is empty", stretch),
-                         "it must begin before it ends");
+    const auto segment =
+        fmt::format("{} from {} s to {} s", to_string(*entry.phase), entry.start_s, entry.end_s);
+    if (entry.end_s - entry.start_s <= tolerance_s) {
+        throw InputError(table.where(key), fmt::format("the segment {} is empty", segment),
+                         "it must start before it ends");
     }
-    if (entry.from_s < -tolerance_s || entry.to_s > duration_s + tolerance_s) {
-        throw InputError(table.where(key), fmt::format("the stretch {} is not within the phase", stretch),
+    if (entry.start_s < -tolerance_s || entry.end_s > duration_s + tolerance_s) {
+        throw InputError(table.where(key), fmt::format("the segment {} is not within the phase", segment),
                          fmt::format("it takes {} s in this mission", duration_s));
     }
 }
@@ -132,7 +132,7 @@ ScheduleEntry read_entry(const TomlTable& table, const compute::ComputeModel& co
         throw InputError(table.where("phase"),
                          fmt::format("{} takes no time in this mission", to_string(*entry.phase)));
     }
-    if (entry.phase && !entry.otherwise) read_stretch(table, duration_s[*entry.phase], entry);
+    if (entry.phase && !entry.otherwise) read_segment(table, duration_s[*entry.phase], entry);
     for (const std::string_view key : {"from", "to", "middle"}) {
         if (entry.otherwise && table.has(key)) {
             throw InputError(table.where(key), fmt::format("`{}` stands with `otherwise`", key),

@@ -1,17 +1,12 @@
 #include "mission/file/uncertainty_toml.h"
 
-#include <fmt/format.h>
+#include "base/toml_numbers.h"
 
 namespace flightwatt::mission {
 namespace {
 
 std::optional<double> optional_sd(const TomlTable& table, std::string_view key) {
-    const auto value = table.optional_number(key);
-    if (value && *value < 0.0) {
-        throw InputError(table.where(key), fmt::format("{} = {} is negative", key, *value),
-                         "a standard deviation is 0 or more");
-    }
-    return value;
+    return optional_number_in(at_least(0.0), table, key);
 }
 
 flight::PerPhase<std::optional<double>> read_phases(const TomlTable& uncertainty, std::string_view key) {

@@ -21,16 +21,16 @@ constexpr std::size_t most_cells = 65536;
 /// The load of one configuration in one phase.
 struct PhaseLoad {
     battery::Battery battery;     ///< the paper's
-    const SourceVoltage* source;  ///< none: the battery's own
+    const VoltageCourse* course;  ///< none: the battery's own
     double cutoff_voltage_v;
-    double phase_begins_s;
+    double phase_start_s;
     const std::optional<mechanical::FourierModel>& mechanical;
     double compute_w;
 
     /// Its RC voltage takes the battery's constant source to where the course is.
     battery::BatteryState state(double time_s) const {
-        if (!source) return {};
-        return {100.0, battery.voltage_v - voltage_v(*source, phase_begins_s + time_s)};
+        if (!course) return {};
+        return {100.0, battery.voltage_v - voltage_v(*course, phase_start_s + time_s)};
     }
     bool is_deliverable(double time_s) const {
         const auto now = state(time_s);
@@ -53,106 +53,106 @@ struct PhaseLoad {
             internal_current_a(battery, std::min(power_w(time_s), power_limit_w(battery, now)), now);
         return units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
     }
-    /// The drain from one time to another.
-    double percent(double from_s, double to_s) const {
-        if (battery.resistance_ohm == 0.0 && !source) {
-            const double charge_as = (energy_j(to_s) - energy_j(from_s)) / battery.voltage_v;
+    /// The depletion from one time to another.
+    double percent(double start_s, double end_s) const {
+        if (battery.resistance_ohm == 0.0 && !course) {
+            const double charge_as = (energy_j(end_s) - energy_j(start_s)) / battery.voltage_v;
             return units::percent_of(charge_as, units::coulomb_from_ah(battery.capacity_ah));
         }
         const auto rate = [&](double time_s) { return percent_per_s(time_s); };
-        return boost::math::quadrature::gauss<double, 7>::integrate(rate, from_s, to_s);
+        return boost::math::quadrature::gauss<double, 7>::integrate(rate, start_s, end_s);
     }
 };
 
-double at_cell(const PhaseDrain& drain, std::size_t cell, double part) {
-    const auto& a = drain.nodes[cell];
-    const auto& b = drain.nodes[cell + 1];
-    // The cubic of Hermite, from the cell's begin: only differences of the cumulative values matter.
-    const double rise = b.drained_percent - a.drained_percent;
-    const double slope_a = a.percent_per_s / drain.cells_per_s;
-    const double slope_b = b.percent_per_s / drain.cells_per_s;
-    return a.drained_percent + part * (slope_a + part * (3.0 * rise - 2.0 * slope_a - slope_b +
-                                                         part * (slope_a + slope_b - 2.0 * rise)));
+double at_cell(const PhaseDepletion& depletion, std::size_t cell, double part) {
+    const auto& a = depletion.nodes[cell];
+    const auto& b = depletion.nodes[cell + 1];
+    // The cubic of Hermite, from the cell's start: only differences of the cumulative values matter.
+    const double rise = b.depleted_percent - a.depleted_percent;
+    const double slope_a = a.percent_per_s / depletion.cells_per_s;
+    const double slope_b = b.percent_per_s / depletion.cells_per_s;
+    return a.depleted_percent + part * (slope_a + part * (3.0 * rise - 2.0 * slope_a - slope_b +
+                                                          part * (slope_a + slope_b - 2.0 * rise)));
 }
 
-/// How many points the battery has drained since the phase began.
-double drained_percent(const PhaseDrain& drain, double time_s) {
-    const double position = std::clamp(time_s, 0.0, drain.duration_s) * drain.cells_per_s;
-    const auto cell = std::min(static_cast<std::size_t>(position), drain.nodes.size() - 2);
+/// How many points the battery has lost since the phase began.
+double depleted_percent(const PhaseDepletion& depletion, double time_s) {
+    const double position = std::clamp(time_s, 0.0, depletion.duration_s) * depletion.cells_per_s;
+    const auto cell = std::min(static_cast<std::size_t>(position), depletion.nodes.size() - 2);
     const double part = position - static_cast<double>(cell);
-    return part == 0.0 ? drain.nodes[cell].drained_percent : at_cell(drain, cell, part);
+    return part == 0.0 ? depletion.nodes[cell].depleted_percent : at_cell(depletion, cell, part);
 }
 
 /// The table of one load with so many cells. `error_percent` becomes what the values halfway tell.
-PhaseDrain tabulate(const PhaseLoad& load, double duration_s, std::size_t cells, double& error_percent) {
-    PhaseDrain drain;
-    drain.duration_s = duration_s;
-    drain.cells_per_s = static_cast<double>(cells) / duration_s;
-    drain.nodes.resize(cells + 1);
-    drain.undeliverable_cells.assign(cells + 1, 0);
-    const auto time_s = [&](double k) { return k / drain.cells_per_s; };
-    drain.nodes[0].percent_per_s = load.percent_per_s(0.0);
+PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, std::size_t cells, double& error_percent) {
+    PhaseDepletion depletion;
+    depletion.duration_s = duration_s;
+    depletion.cells_per_s = static_cast<double>(cells) / duration_s;
+    depletion.nodes.resize(cells + 1);
+    depletion.undeliverable_cells.assign(cells + 1, 0);
+    const auto time_s = [&](double k) { return k / depletion.cells_per_s; };
+    depletion.nodes[0].percent_per_s = load.percent_per_s(0.0);
     error_percent = 0.0;
     double quadrature_error_percent = 0.0;
     for (std::size_t k = 0; k < cells; ++k) {
-        const double begin_s = time_s(static_cast<double>(k));
+        const double start_s = time_s(static_cast<double>(k));
         const double middle_s = time_s(static_cast<double>(k) + 0.5);
         const double end_s = time_s(static_cast<double>(k) + 1.0);
-        const double first = load.percent(begin_s, middle_s);
+        const double first = load.percent(start_s, middle_s);
         const double both = first + load.percent(middle_s, end_s);
-        drain.nodes[k + 1] = {drain.nodes[k].drained_percent + both, load.percent_per_s(end_s)};
-        quadrature_error_percent += std::abs(both - load.percent(begin_s, end_s));
-        const double interpolated = at_cell(drain, k, 0.5) - drain.nodes[k].drained_percent;
+        depletion.nodes[k + 1] = {depletion.nodes[k].depleted_percent + both, load.percent_per_s(end_s)};
+        quadrature_error_percent += std::abs(both - load.percent(start_s, end_s));
+        const double interpolated = at_cell(depletion, k, 0.5) - depletion.nodes[k].depleted_percent;
         error_percent = std::max(error_percent, std::abs(interpolated - first));
         const bool beyond =
-            !load.is_deliverable(begin_s) || !load.is_deliverable(middle_s) || !load.is_deliverable(end_s);
-        drain.undeliverable_cells[k + 1] = drain.undeliverable_cells[k] + (beyond ? 1 : 0);
+            !load.is_deliverable(start_s) || !load.is_deliverable(middle_s) || !load.is_deliverable(end_s);
+        depletion.undeliverable_cells[k + 1] = depletion.undeliverable_cells[k] + (beyond ? 1 : 0);
     }
     error_percent += quadrature_error_percent;
-    drain.deliverable = drain.undeliverable_cells.back() == 0;
-    return drain;
+    depletion.deliverable = depletion.undeliverable_cells.back() == 0;
+    return depletion;
 }
 
-PhaseDrain tabulate(const PhaseLoad& load, double duration_s, double& error_percent) {
+PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, double& error_percent) {
     auto cells =
         std::clamp(static_cast<std::size_t>(std::ceil(duration_s)), fewest_cells, first_cells_at_most);
-    auto drain = tabulate(load, duration_s, cells, error_percent);
-    const double wanted_percent = load.source ? wanted_error_along_source_percent : wanted_error_percent;
-    while (error_percent > wanted_percent && cells < most_cells && drain.deliverable) {
+    auto depletion = tabulate(load, duration_s, cells, error_percent);
+    const double wanted_percent = load.course ? wanted_error_along_source_percent : wanted_error_percent;
+    while (error_percent > wanted_percent && cells < most_cells && depletion.deliverable) {
         cells *= 2;
-        drain = tabulate(load, duration_s, cells, error_percent);
+        depletion = tabulate(load, duration_s, cells, error_percent);
     }
-    return drain;
+    return depletion;
 }
 
-bool is_undeliverable(const PhaseDrain& drain, double from_s, double to_s) {
-    if (drain.deliverable) return false;
-    const auto cells = drain.nodes.size() - 1;
-    // A stretch that ends on a node does not touch the cell behind it.
-    const double inside = same_time_tolerance_s(drain.duration_s);
-    const auto first = static_cast<std::size_t>(std::max(0.0, (from_s + inside) * drain.cells_per_s));
-    const auto last = static_cast<std::size_t>(std::max(0.0, (to_s - inside) * drain.cells_per_s));
-    return drain.undeliverable_cells[std::min(last, cells - 1) + 1] !=
-           drain.undeliverable_cells[std::min(first, cells - 1)];
+bool is_undeliverable(const PhaseDepletion& depletion, double start_s, double end_s) {
+    if (depletion.deliverable) return false;
+    const auto cells = depletion.nodes.size() - 1;
+    // A segment that ends on a node does not touch the cell behind it.
+    const double inside = same_time_tolerance_s(depletion.duration_s);
+    const auto first = static_cast<std::size_t>(std::max(0.0, (start_s + inside) * depletion.cells_per_s));
+    const auto last = static_cast<std::size_t>(std::max(0.0, (end_s - inside) * depletion.cells_per_s));
+    return depletion.undeliverable_cells[std::min(last, cells - 1) + 1] !=
+           depletion.undeliverable_cells[std::min(first, cells - 1)];
 }
 
-/// The paper's battery with the source that the mission's has at the beginning.
-battery::Battery with_constant_source(const Mission& mission) {
+/// The paper's battery with the source that the mission's has at the start.
+battery::Battery with_constant_source(const MissionSetup& mission) {
     auto battery = mission.battery;
     battery.voltage_v = open_circuit_voltage_v(battery, mission.initial_soc_percent);
     battery.thevenin.reset();
     return battery;
 }
 
-DrainTable tabulate_all(const Mission& mission, std::vector<compute::Configuration> configurations,
-                        const SourceVoltage* source) {
-    DrainTable table;
+DepletionTable tabulate_all(const MissionSetup& mission, std::vector<compute::Configuration> configurations,
+                            const VoltageCourse* course) {
+    DepletionTable table;
     table.initial_soc_percent = mission.initial_soc_percent;
     table.depends_on_state = mission.battery.thevenin.has_value();
     table.configurations = std::move(configurations);
-    table.drains.resize(table.configurations.size());
+    table.depletions.resize(table.configurations.size());
     const auto battery = with_constant_source(mission);
-    double phase_begins_s = 0.0;
+    const auto timeline = timeline_of(mission.duration_s);
     for (const auto phase : flight::all_phases) {
         const double duration_s = mission.duration_s[phase];
         if (duration_s == 0.0) continue;
@@ -161,93 +161,89 @@ DrainTable tabulate_all(const Mission& mission, std::vector<compute::Configurati
             mechanical = flown_model(mission.mechanical->phases[phase], duration_s, mission.phase_clock);
         }
         for (std::size_t c = 0; c < table.configurations.size(); ++c) {
-            const PhaseLoad load{
-                battery,        source,     mission.cutoff_voltage_v,
-                phase_begins_s, mechanical, power_w(mission.compute, table.configurations[c])};
+            const PhaseLoad load{battery,
+                                 course,
+                                 mission.cutoff_voltage_v,
+                                 timeline.start_s[phase],
+                                 mechanical,
+                                 power_w(mission.compute, table.configurations[c])};
             double error_percent = 0.0;
-            auto& drain = table.drains[c][phase];
-            drain = tabulate(load, duration_s, error_percent);
+            auto& depletion = table.depletions[c][phase];
+            depletion = tabulate(load, duration_s, error_percent);
             table.error_percent = std::max(table.error_percent, error_percent);
             table.charges =
-                table.charges || std::any_of(drain.nodes.begin(), drain.nodes.end(),
+                table.charges || std::any_of(depletion.nodes.begin(), depletion.nodes.end(),
                                              [](const auto& node) { return node.percent_per_s < 0.0; });
         }
-        phase_begins_s += duration_s;
     }
     return table;
 }
 
 }  // namespace
 
-DrainTable make_drain_table(const Mission& mission, std::vector<compute::Configuration> configurations) {
+DepletionTable make_depletion_table(const MissionSetup& mission,
+                                    std::vector<compute::Configuration> configurations) {
     return tabulate_all(mission, std::move(configurations), nullptr);
 }
 
-DrainTable make_drain_table(const Mission& mission, std::vector<compute::Configuration> configurations,
-                            const SourceVoltage& source) {
-    return tabulate_all(mission, std::move(configurations), &source);
+DepletionTable make_depletion_table(const MissionSetup& mission,
+                                    std::vector<compute::Configuration> configurations,
+                                    const VoltageCourse& course) {
+    return tabulate_all(mission, std::move(configurations), &course);
 }
 
-std::vector<compute::Configuration> configurations_of(const std::vector<Stretch>& schedule) {
-    std::vector<compute::Configuration> found;
-    for (const auto& stretch : schedule) {
-        if (std::find(found.begin(), found.end(), stretch.run) == found.end()) found.push_back(stretch.run);
-    }
-    return found;
-}
-
-std::vector<TabledStretch> tabled(const std::vector<Stretch>& schedule, const DrainTable& table) {
-    std::vector<TabledStretch> result;
+std::vector<TabledSegment> tabled(const std::vector<ScheduleSegment>& schedule, const DepletionTable& table) {
+    std::vector<TabledSegment> result;
     result.reserve(schedule.size());
-    for (const auto& stretch : schedule) {
+    for (const auto& segment : schedule) {
         const auto& known = table.configurations;
-        const auto found = std::find(known.begin(), known.end(), stretch.run);
+        const auto found = std::find(known.begin(), known.end(), segment.run);
         if (found == known.end())
             throw std::invalid_argument("tabled: a configuration that is not in the table");
-        result.push_back(
-            {static_cast<std::size_t>(found - known.begin()), stretch.phase, stretch.from_s, stretch.to_s});
+        result.push_back({segment, static_cast<std::size_t>(found - known.begin())});
     }
     return result;
 }
 
-double drain_percent(const DrainTable& table, const TabledStretch& stretch) {
-    const auto& drain = table.drains[stretch.configuration][stretch.phase];
-    if (is_undeliverable(drain, stretch.from_s, stretch.to_s)) return std::numeric_limits<double>::infinity();
-    return drained_percent(drain, stretch.to_s) - drained_percent(drain, stretch.from_s);
+double soc_depletion_percent(const DepletionTable& table, const TabledSegment& segment) {
+    const auto& depletion = table.depletions[segment.configuration][segment.phase];
+    if (is_undeliverable(depletion, segment.start_s, segment.end_s))
+        return std::numeric_limits<double>::infinity();
+    return depleted_percent(depletion, segment.end_s) - depleted_percent(depletion, segment.start_s);
 }
 
-std::optional<double> soc_after(const DrainTable& table, std::span<const TabledStretch> schedule) {
+std::optional<double> soc_after(const DepletionTable& table, std::span<const TabledSegment> schedule) {
     if (table.charges || table.depends_on_state) return std::nullopt;
     double soc_percent = table.initial_soc_percent;
-    for (const auto& stretch : schedule) soc_percent -= drain_percent(table, stretch);
+    for (const auto& segment : schedule) soc_percent -= soc_depletion_percent(table, segment);
     if (!std::isfinite(soc_percent)) return std::nullopt;
     return soc_percent;
 }
 
-SlotDrains make_slot_drains(const DrainTable& table, std::span<const TabledStretch> slots) {
-    SlotDrains drains;
-    drains.slots = slots.size();
-    drains.choices = table.configurations.size();
-    drains.initial_soc_percent = table.initial_soc_percent;
-    drains.percent.reserve(drains.slots * drains.choices);
+SlotDepletions make_slot_depletions(const DepletionTable& table, std::span<const TabledSegment> slots) {
+    SlotDepletions depletions;
+    depletions.slots = slots.size();
+    depletions.choices = table.configurations.size();
+    depletions.initial_soc_percent = table.initial_soc_percent;
+    depletions.percent.reserve(depletions.slots * depletions.choices);
     for (auto slot : slots) {
-        for (slot.configuration = 0; slot.configuration < drains.choices; ++slot.configuration) {
-            drains.percent.push_back(drain_percent(table, slot));
+        for (slot.configuration = 0; slot.configuration < depletions.choices; ++slot.configuration) {
+            depletions.percent.push_back(soc_depletion_percent(table, slot));
         }
     }
-    return drains;
+    return depletions;
 }
 
-double soc_after(const SlotDrains& drains, std::span<const std::uint16_t> choices) {
-    if (choices.size() != drains.slots)
-        throw std::invalid_argument("soc_after: as many choices as slots are due");
-    double drained_percent = 0.0;
-    const double* of_slot = drains.percent.data();
+double soc_after(const SlotDepletions& depletions, std::span<const std::uint16_t> choices) {
+    if (choices.size() != depletions.slots)
+        throw std::invalid_argument("soc_after: the number of choices is not that of the slots");
+    double depleted_percent = 0.0;
+    const double* of_slot = depletions.percent.data();
     for (const auto choice : choices) {
-        drained_percent += of_slot[choice];
-        of_slot += drains.choices;
+        depleted_percent += of_slot[choice];
+        of_slot += depletions.choices;
     }
-    return drains.initial_soc_percent - drained_percent;
+    return depletions.initial_soc_percent - depleted_percent;
 }
 
 }  // namespace flightwatt::mission

@@ -11,11 +11,11 @@
 
 namespace flightwatt::mission {
 
-/// State of charge [points] that one phase has drained since it began, at evenly spread times, while one
+/// State of charge [points] that the battery has lost since a phase began, at evenly spread times, while one
 /// configuration runs; with its rate, so that cubics between the nodes are smooth.
-struct PhaseDrain {
+struct PhaseDepletion {
     struct Node {
-        double drained_percent = 0.0;
+        double depleted_percent = 0.0;
         double percent_per_s = 0.0;
     };
     double duration_s = 0.0;
@@ -26,12 +26,12 @@ struct PhaseDrain {
         undeliverable_cells;  ///< how many cells up to each node are beyond the power limit
 };
 
-/// Cumulative drain of every configuration over every phase of a mission. Where the internal current depends
-/// on the power alone (Eq. 10), what any schedule drains is a sum of differences of its entries; with a
+/// Cumulative depletion by every configuration over every phase of a mission. Where the internal current
+/// depends on the power alone (Eq. 10), the depletion by any schedule is a sum of differences of its entries; with a
 /// battery whose source follows its charge, that holds along one course of the source's voltage only.
-struct DrainTable {
+struct DepletionTable {
     std::vector<compute::Configuration> configurations;
-    std::vector<flight::PerPhase<PhaseDrain>> drains;  ///< one a configuration
+    std::vector<flight::PerPhase<PhaseDepletion>> depletions;  ///< one a configuration
     double initial_soc_percent = 100.0;
     /// Some configuration charges the battery at some time: what a full battery then refuses depends on the
     /// state of charge, and differences do not add up.
@@ -43,54 +43,50 @@ struct DrainTable {
 };
 
 /// A part of a phase in which one of the table's configurations runs.
-struct TabledStretch {
+struct TabledSegment : PhaseSegment {
     std::size_t configuration = 0;
-    flight::Phase phase = flight::Phase::takeoff;
-    double from_s = 0.0;  ///< since the phase began
-    double to_s = 0.0;
 };
 
-/// Tabulates the mission's phases for the configurations; its schedule is not looked at. Without resistance
+/// Tabulates the mission's phases for the configurations. Without resistance
 /// entries are the closed integral of Eq. 1; with it, Gauss quadrature. Cells are halved until the error is
 /// under 1e-8 points (or there are 2^16 of them). What the cut-off voltage forbids counts as undeliverable.
-/// For a battery whose source follows its charge, along its voltage at the beginning, which drains no more
+/// For a battery whose source follows its charge, along its voltage at the start, which depletes it no more
 /// than the truth if nothing charges.
-DrainTable make_drain_table(const Mission& mission, std::vector<compute::Configuration> configurations);
+DepletionTable make_depletion_table(const MissionSetup& mission,
+                                    std::vector<compute::Configuration> configurations);
 
 /// The same along a given course of the source's voltage, with an error under 1e-6 points.
-DrainTable make_drain_table(const Mission& mission, std::vector<compute::Configuration> configurations,
-                            const SourceVoltage& source);
+DepletionTable make_depletion_table(const MissionSetup& mission,
+                                    std::vector<compute::Configuration> configurations,
+                                    const VoltageCourse& course);
 
-/// The mission's schedule in terms of a table that holds its configurations. Throws std::invalid_argument for
+/// A schedule in terms of a table that holds its configurations. Throws std::invalid_argument for
 /// one that the table does not hold.
-std::vector<TabledStretch> tabled(const std::vector<Stretch>& schedule, const DrainTable& table);
+std::vector<TabledSegment> tabled(const std::vector<ScheduleSegment>& schedule, const DepletionTable& table);
 
-/// Every different configuration of a schedule, in order of appearance.
-std::vector<compute::Configuration> configurations_of(const std::vector<Stretch>& schedule);
-
-/// What a stretch drains [points]; infinite if the battery cannot deliver its power.
-double drain_percent(const DrainTable& table, const TabledStretch& stretch);
+/// The depletion by a segment [points]; infinite if the battery cannot deliver its power.
+double soc_depletion_percent(const DepletionTable& table, const TabledSegment& segment);
 
 /// State of charge after a whole schedule from the table's initial one, as if the battery went on below
 /// empty: negative where it is short. None where the table does not hold: it charges, depends on the state,
 /// or cannot be delivered.
-std::optional<double> soc_after(const DrainTable& table, std::span<const TabledStretch> schedule);
+std::optional<double> soc_after(const DepletionTable& table, std::span<const TabledSegment> schedule);
 
-/// The differences themselves, where many schedules share their slots: what every configuration drains in
-/// each.
-struct SlotDrains {
+/// The differences themselves, where many schedules share their slots: the depletion by every
+/// configuration in each.
+struct SlotDepletions {
     std::size_t slots = 0;
     std::size_t choices = 0;      ///< the configurations of the table
     std::vector<double> percent;  ///< slots x choices
     double initial_soc_percent = 100.0;
 };
 
-/// The configurations that the slots name do not matter.
-SlotDrains make_slot_drains(const DrainTable& table, std::span<const TabledStretch> slots);
+/// Ignores slots[i].configuration.
+SlotDepletions make_slot_depletions(const DepletionTable& table, std::span<const TabledSegment> slots);
 
-/// As of a schedule, which runs in each slot one of the configurations; minus infinity where that cannot be
+/// Final state of charge of the schedule that runs choices[i] in slot i; minus infinity where that cannot be
 /// delivered. Not for a table that charges or depends on the state. Throws std::invalid_argument for another
 /// number of choices than slots.
-double soc_after(const SlotDrains& drains, std::span<const std::uint16_t> choices);
+double soc_after(const SlotDepletions& depletions, std::span<const std::uint16_t> choices);
 
 }  // namespace flightwatt::mission

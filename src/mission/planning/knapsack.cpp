@@ -12,7 +12,7 @@ namespace {
 /// A path through the first slots, by its sums and its last run; `before` is where the run before stands in
 /// the trail.
 struct Label {
-    DrainAndWorth sum;
+    CostAndUtility sum;
     std::size_t before = 0;
     std::size_t choice = 0;
     std::size_t to = 0;
@@ -26,26 +26,26 @@ struct TrailStep {
 
 /// The best found and what is known of the rest.
 struct Search {
-    const SlotGraph& graph;
+    const KnapsackGraph& graph;
     double budget = 0.0;
-    double slope = 0.0;  ///< worth a unit of drain, of the relaxation
-    Prospects by_slope;
-    Prospects by_drain;  ///< minus the least drain to the end
-    SlotPath best;
+    double slope = 0.0;  ///< utility a unit of cost, of the relaxation
+    CostToGo by_slope;
+    CostToGo by_cost;  ///< minus the least cost to the end
+    KnapsackPath best;
     double bound = 0.0;  ///< of the relaxation, or better
 };
 
-/// Rounding in sums of drains.
+/// Rounding in sums of costs.
 double slack(double budget) { return 1e-12 * std::max(1.0, std::abs(budget)); }
 
 /// One pass from the first slot to the last with at most so many labels at a time.
 class LabelPass {
   public:
-    LabelPass(const Search& search, std::size_t most_labels, double worth_gap)
-        : search_(search), most_labels_(most_labels), worth_gap_(worth_gap) {
+    LabelPass(const Search& search, std::size_t most_labels, double utility_gap)
+        : search_(search), most_labels_(most_labels), utility_gap_(utility_gap) {
         // Half of the gap for what is dropped as good as dominated, in two prunings a slot; half for bounds.
-        as_good_ = worth_gap / 2.0 / static_cast<double>(2 * search.graph.slots + 2);
-        dropped_bound_ = search.best.sum.worth;
+        as_good_ = utility_gap / 2.0 / static_cast<double>(2 * search.graph.slots + 2);
+        dropped_bound_ = search.best.sum.utility;
     }
 
     /// Carries labels through all slots. The search's best and bound are better afterwards, or as good.
@@ -63,11 +63,12 @@ class LabelPass {
         const auto finished = merged(graph.slots, at[graph.slots]);
         const auto best =
             std::max_element(finished.begin(), finished.end(),
-                             [](const auto& a, const auto& b) { return a.sum.worth < b.sum.worth; });
-        if (best != finished.end() && best->sum.worth > result.best.sum.worth) result.best = path_of(*best);
+                             [](const auto& a, const auto& b) { return a.sum.utility < b.sum.utility; });
+        if (best != finished.end() && best->sum.utility > result.best.sum.utility)
+            result.best = path_of(*best);
         const double lost = as_good_ * static_cast<double>(2 * graph.slots + 2);
-        result.bound = std::min(result.bound, std::max(result.best.sum.worth, dropped_bound_) + lost);
-        result.bound = std::max(result.bound, result.best.sum.worth);
+        result.bound = std::min(result.bound, std::max(result.best.sum.utility, dropped_bound_) + lost);
+        result.bound = std::max(result.bound, result.best.sum.utility);
     }
 
   private:
@@ -76,7 +77,7 @@ class LabelPass {
     std::vector<Label> merged(std::size_t i, const Layer& layer) {
         std::vector<Label> all;
         for (const auto& labels : layer) all.insert(all.end(), labels.begin(), labels.end());
-        prune(all, search_.by_slope.any[i], search_.by_drain.any[i]);
+        prune(all, search_.by_slope.any[i], search_.by_cost.any[i]);
         return all;
     }
 
@@ -95,61 +96,61 @@ class LabelPass {
         for (const auto& run : graph.runs[i]) carry(free, run, at[run.to][run.choice]);
         for (const auto& run : graph.one_more[i]) {
             auto& own = at[i][run.choice];
-            prune(own, search_.by_slope.with[i][run.choice], search_.by_drain.with[i][run.choice]);
+            prune(own, search_.by_slope.with[i][run.choice], search_.by_cost.with[i][run.choice]);
             leave_trail(own);
             carry(own, run, at[run.to][run.choice]);
         }
     }
 
-    void carry(const std::vector<Label>& labels, const SlotRun& run, std::vector<Label>& to) {
+    void carry(const std::vector<Label>& labels, const ChoiceRun& run, std::vector<Label>& to) {
         for (const auto& label : labels) {
-            to.push_back({{label.sum.drain + run.sum.drain, label.sum.worth + run.sum.worth},
+            to.push_back({{label.sum.cost + run.sum.cost, label.sum.utility + run.sum.utility},
                           label.before,
                           run.choice,
                           run.to});
         }
     }
 
-    /// No way on from `label` is worth more.
-    double bound_of(const Label& label, double prospect) const {
-        return label.sum.worth + prospect + search_.slope * (search_.budget - label.sum.drain);
+    /// No way on from `label` has more utility.
+    double bound_of(const Label& label, double utility_to_go) const {
+        return label.sum.utility + utility_to_go + search_.slope * (search_.budget - label.sum.cost);
     }
 
-    /// Leaves labels that can still win, none as good as dominated by another. `prospect` and `minus_drain`
-    /// are what the rest can bring by slope and what it drains at least.
-    void prune(std::vector<Label>& labels, double prospect, double minus_drain) {
-        const double most_drain = search_.budget + minus_drain + slack(search_.budget);
+    /// Leaves labels that can still win, none as good as dominated by another. `utility_to_go` and `minus_cost`
+    /// are what the rest can bring by slope and what it costs at least.
+    void prune(std::vector<Label>& labels, double utility_to_go, double minus_cost) {
+        const double most_cost = search_.budget + minus_cost + slack(search_.budget);
         std::erase_if(labels, [&](const Label& label) {
-            if (!(label.sum.drain <= most_drain)) return true;
-            return drop_if(label, prospect, search_.best.sum.worth + worth_gap_ / 2.0);
+            if (!(label.sum.cost <= most_cost)) return true;
+            return drop_if(label, utility_to_go, search_.best.sum.utility + utility_gap_ / 2.0);
         });
         std::sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) {
-            return a.sum.drain != b.sum.drain ? a.sum.drain < b.sum.drain : a.sum.worth > b.sum.worth;
+            return a.sum.cost != b.sum.cost ? a.sum.cost < b.sum.cost : a.sum.utility > b.sum.utility;
         });
-        double most_worth = -std::numeric_limits<double>::infinity();
+        double most_utility = -std::numeric_limits<double>::infinity();
         std::erase_if(labels, [&](const Label& label) {
-            if (label.sum.worth <= most_worth + as_good_) return true;
-            most_worth = label.sum.worth;
+            if (label.sum.utility <= most_utility + as_good_) return true;
+            most_utility = label.sum.utility;
             return false;
         });
         if (labels.size() <= most_labels_) return;
         const auto last = labels.begin() + static_cast<std::ptrdiff_t>(most_labels_);
         std::nth_element(labels.begin(), last, labels.end(), [&](const Label& a, const Label& b) {
-            return bound_of(a, prospect) > bound_of(b, prospect);
+            return bound_of(a, utility_to_go) > bound_of(b, utility_to_go);
         });
-        dropped_bound_ = std::max(dropped_bound_, bound_of(*last, prospect));
+        dropped_bound_ = std::max(dropped_bound_, bound_of(*last, utility_to_go));
         labels.erase(last, labels.end());
     }
 
-    bool drop_if(const Label& label, double prospect, double no_more_than) {
-        const double bound = bound_of(label, prospect);
+    bool drop_if(const Label& label, double utility_to_go, double no_more_than) {
+        const double bound = bound_of(label, utility_to_go);
         if (bound > no_more_than) return false;
         dropped_bound_ = std::max(dropped_bound_, bound);
         return true;
     }
 
-    SlotPath path_of(const Label& label) const {
-        SlotPath path{std::vector<std::size_t>(search_.graph.slots), label.sum};
+    KnapsackPath path_of(const Label& label) const {
+        KnapsackPath path{std::vector<std::size_t>(search_.graph.slots), label.sum};
         TrailStep step{label.before, label.choice, label.to};
         for (;;) {
             const auto& before = trail_[step.before];
@@ -164,34 +165,34 @@ class LabelPass {
 
     const Search& search_;
     std::size_t most_labels_;
-    double worth_gap_;
+    double utility_gap_;
     double as_good_ = 0.0;
     double dropped_bound_ = 0.0;
     std::vector<TrailStep> trail_;
 };
 
-SlotPath path_by(const SlotGraph& graph, double worth_weight, double drain_weight) {
-    return best_path(graph, prospects_of(graph, worth_weight, drain_weight), worth_weight, drain_weight);
+KnapsackPath path_by(const KnapsackGraph& graph, double utility_weight, double cost_weight) {
+    return best_path(graph, cost_to_go(graph, utility_weight, cost_weight), utility_weight, cost_weight);
 }
 
-/// Brings the relaxation's slope to where its bound is least: between a path that drains too much and one
+/// Brings the relaxation's slope to where its bound is least: between a path that costs too much and one
 /// that does not, the slope of the line through both, until no path lies above that line.
-void relax(const SlotPath& greedy, Search& search) {
-    SlotPath beyond = greedy;
+void relax(const KnapsackPath& greedy, Search& search) {
+    KnapsackPath beyond = greedy;
     for (int round = 0; round < 100; ++round) {
         search.slope = std::max(
-            0.0, (beyond.sum.worth - search.best.sum.worth) / (beyond.sum.drain - search.best.sum.drain));
-        search.by_slope = prospects_of(search.graph, 1.0, search.slope);
+            0.0, (beyond.sum.utility - search.best.sum.utility) / (beyond.sum.cost - search.best.sum.cost));
+        search.by_slope = cost_to_go(search.graph, 1.0, search.slope);
         const auto path = best_path(search.graph, search.by_slope, 1.0, search.slope);
-        const auto above = [&](const SlotPath& p) { return p.sum.worth - search.slope * p.sum.drain; };
+        const auto above = [&](const KnapsackPath& p) { return p.sum.utility - search.slope * p.sum.cost; };
         search.bound = std::min(search.bound, above(path) + search.slope * search.budget);
         if (above(path) <= above(beyond) + 1e-12 * (1.0 + std::abs(above(beyond)))) return;
-        (path.sum.drain <= search.budget ? search.best : beyond) = path;
+        (path.sum.cost <= search.budget ? search.best : beyond) = path;
     }
 }
 
 /// As many labels as the effort allows, and as time and memory do for many slots, choices or long runs.
-std::size_t affordable_labels(const SlotGraph& graph, const SlotChoiceEffort& effort) {
+std::size_t affordable_labels(const KnapsackGraph& graph, const KnapsackEffort& effort) {
     constexpr std::size_t most_in_all = 4000000;
     constexpr std::size_t fewest = 50;
     std::size_t work = 1;  // labels made of each, over all slots
@@ -202,35 +203,34 @@ std::size_t affordable_labels(const SlotGraph& graph, const SlotChoiceEffort& ef
 
 }  // namespace
 
-SlotChoice choose_slots(const SlotChoiceProblem& problem, const SlotChoiceEffort& effort) {
-    const auto graph = make_slot_graph(problem);
-    SlotChoice result;
-    Search search{graph, problem.budget, 0.0, {}, prospects_of(graph, 0.0, 1.0), {}, 0.0};
-    const double least = search.by_drain.any.empty() ? 0.0
-                         : graph.begin_choice == SlotGraph::no_choice
-                             ? search.by_drain.any[graph.begin]
-                             : search.by_drain.with[graph.begin][graph.begin_choice];
+KnapsackSolution solve_knapsack(const MultipleChoiceKnapsack& problem, const KnapsackEffort& effort) {
+    const auto graph = make_knapsack_graph(problem);
+    KnapsackSolution result;
+    Search search{graph, problem.budget, 0.0, {}, cost_to_go(graph, 0.0, 1.0), {}, 0.0};
+    const double least = search.by_cost.any.empty() ? 0.0
+                         : graph.begin_choice == KnapsackGraph::no_choice
+                             ? search.by_cost.any[graph.begin]
+                             : search.by_cost.with[graph.begin][graph.begin_choice];
     result.possible = graph.possible && std::isfinite(least);
     if (!result.possible) return result;
-    const auto finish = [&](const SlotPath& path, bool feasible, double bound) {
+    const auto finish = [&](const KnapsackPath& path, bool feasible, double bound) {
         result.feasible = feasible;
         result.choices = path.choices;
-        result.worth = path.sum.worth;
-        result.drain = path.sum.drain;
+        result.utility = path.sum.utility;
+        result.cost = path.sum.cost;
         result.bound = bound;
         return result;
     };
-    search.best = best_path(graph, search.by_drain, 0.0, 1.0);
-    if (search.best.sum.drain > problem.budget + slack(problem.budget))
-        return finish(search.best, false, 0.0);
+    search.best = best_path(graph, search.by_cost, 0.0, 1.0);
+    if (search.best.sum.cost > problem.budget + slack(problem.budget)) return finish(search.best, false, 0.0);
     const auto greedy = path_by(graph, 1.0, 0.0);
-    if (greedy.sum.drain <= problem.budget) return finish(greedy, true, greedy.sum.worth);
-    search.bound = greedy.sum.worth;
+    if (greedy.sum.cost <= problem.budget) return finish(greedy, true, greedy.sum.utility);
+    search.bound = greedy.sum.utility;
     relax(greedy, search);
     const auto most_labels = affordable_labels(graph, effort);
     for (std::size_t labels = 200;; labels *= 10) {
-        const double gap = effort.relative_gap * std::max(std::abs(search.best.sum.worth), 1e-9);
-        if (search.bound - search.best.sum.worth <= gap) break;
+        const double gap = effort.relative_gap * std::max(std::abs(search.best.sum.utility), 1e-9);
+        if (search.bound - search.best.sum.utility <= gap) break;
         LabelPass(search, std::min(labels, most_labels), gap).run(search);
         if (labels >= most_labels) break;
     }

@@ -1,14 +1,15 @@
 #include "mission/planning/plan_by_simulation.h"
 
-#include "mission/flown_schedule.h"
+#include "base/statistics.h"
+#include "mission/planning/plan_rest.h"
+#include "mission/planning/reserve_deficit.h"
+#include "mission/planning/voltage_course.h"
 #include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
-
-#include <boost/math/distributions/normal.hpp>
 
 namespace flightwatt::mission {
 namespace {
@@ -18,17 +19,17 @@ constexpr double gap_that_is_none = 1e-5;
 
 /// A schedule, simulated.
 struct Trial {
-    Mission flown;
+    std::vector<ScheduleSegment> schedule;
     MissionSummary summary;
-    double missing_percent = 0.0;
+    double deficit_percent = 0.0;
 
-    bool lands() const { return summary.feasible && missing_percent <= 0.0; }
+    bool lands() const { return summary.feasible && deficit_percent <= 0.0; }
 };
 
-Trial fly(Mission flown) {
-    Trial trial{std::move(flown), {}, 0.0};
-    trial.summary = simulate(trial.flown).summary;
-    trial.missing_percent = missing_percent(trial.flown, trial.summary, trial.flown.reserve_soc_percent);
+Trial fly(const PlanningProblem& problem, std::vector<ScheduleSegment> schedule) {
+    Trial trial{std::move(schedule), {}, 0.0};
+    trial.summary = simulate(problem, trial.schedule).summary;
+    trial.deficit_percent = reserve_deficit_percent(problem, trial.summary, problem.reserve_soc_percent);
     return trial;
 }
 
@@ -55,7 +56,7 @@ class PlannedReserve {
             too_low_percent_ = std::max(percent_, too_low_percent_);
             percent_ = std::midpoint(too_low_percent_, std::max(most_percent_, too_low_percent_));
         } else {
-            percent_ += trial.missing_percent;
+            percent_ += trial.deficit_percent;
         }
         percent_ = std::max(percent_, too_low_percent_);
     }
@@ -71,97 +72,103 @@ class PlannedReserve {
     double too_low_percent_ = 0.0;  ///< with it a plan was cut off
 };
 
-PlanStart begin_of(const Mission& mission) { return {0.0, mission.initial_soc_percent, std::nullopt, 0.0}; }
+PlanStart start_of(const PlanningProblem& problem) { return {0.0, problem.initial_soc_percent}; }
 
-/// No schedule that lands is worth more. Errors of the table are given away twice a slot.
-double proven_bound(const Mission& mission, const Planner& highest) {
+/// No schedule that lands has more utility. Errors of the table are given away twice a slot.
+double proven_bound(const PlanningProblem& problem, const Planner& highest) {
     const double slack_percent =
-        2.0 * static_cast<double>(slots_of(mission).size()) * highest.drains.error_percent;
-    return plan_rest(mission, highest, begin_of(mission), mission.reserve_soc_percent - slack_percent).bound;
+        2.0 * static_cast<double>(slots_of(problem).size()) * highest.depletions.error_percent;
+    return plan_rest(problem, highest, start_of(problem), problem.reserve_soc_percent - slack_percent).bound;
 }
 
-/// The best trial of some rounds; `planner` is along its voltage afterwards.
-Trial best_trial(const Mission& mission, const Trial& least, double bound, Planner& planner) {
+/// The best trial of some rounds.
+Trial best_trial(const PlanningProblem& problem, const Trial& least, double bound, const Planner& highest) {
     Trial best = least;
-    const auto highest = planner;
-    PlannedReserve reserve(mission.reserve_soc_percent, *least.summary.final_soc_percent);
-    std::vector<Stretch> last;
+    auto planner = highest;
+    PlannedReserve reserve(problem.reserve_soc_percent, *least.summary.final_soc_percent);
+    std::vector<ScheduleSegment> last;
     for (int round = 0; round < most_rounds; ++round) {
-        const auto plan = plan_rest(mission, planner, begin_of(mission), reserve.percent());
+        const auto plan = plan_rest(problem, planner, start_of(problem), reserve.percent());
         if (!plan.feasible) {
             if (!plan.deliverable) planner = highest;
             reserve.ask_for_less();
             continue;
         }
-        const auto trial = fly(with_schedule(mission, plan.schedule));
+        const auto trial = fly(problem, plan.schedule);
         if (is_better(trial, best)) best = trial;
         if (best.summary.utility.value_or(0.0) >= bound * (1.0 - gap_that_is_none)) break;
-        if (trial.lands() && trial.flown.schedule == last) break;
-        last = trial.flown.schedule;
+        if (trial.lands() && trial.schedule == last) break;
+        last = trial.schedule;
         reserve.learn(trial, plan.final_soc_percent);
-        if (const auto source = source_voltage_of(trial.flown)) planner = along(mission, planner, *source);
+        if (const auto course = voltage_course_of(problem, trial.schedule))
+            planner = with_voltage_course(problem, planner, *course);
     }
-    if (const auto source = source_voltage_of(best.flown)) planner = along(mission, planner, *source);
     return best;
 }
 
+/// A plan, its bound and how it ends.
+struct TrialPlan {
+    Plan plan;
+    MissionSummary summary;
+};
+
 /// The plan of a mission whose flights do not differ.
-MissionPlan plan_certain(const Mission& mission) {
-    MissionPlan result;
-    result.planner = make_planner(mission);
+TrialPlan plan_certain(const PlanningProblem& problem) {
+    const auto planner = make_planner(problem);
+    TrialPlan result;
     auto& plan = result.plan;
-    plan.bound_is_proven = !(mission.battery.thevenin && result.planner.drains.charges);
-    auto found = fly(with_least_schedule(mission));
+    plan.bound_is_proven = !(problem.battery.thevenin && planner.depletions.charges);
+    auto found = fly(problem, minimum_energy_schedule(problem));
     plan.deliverable = !found.summary.undeliverable;
     plan.feasible = found.lands();
     if (plan.feasible) {
-        plan.bound = proven_bound(mission, result.planner);
-        found = best_trial(mission, found, plan.bound, result.planner);
+        plan.bound = proven_bound(problem, planner);
+        found = best_trial(problem, found, plan.bound, planner);
         plan.utility = found.summary.utility.value_or(0.0);
         plan.bound = std::max(plan.bound, plan.utility);
     }
-    plan.schedule = found.flown.schedule;
-    plan.final_soc_percent = mission.reserve_soc_percent - found.missing_percent;
-    result.flown = std::move(found.flown);
+    plan.schedule = std::move(found.schedule);
+    plan.final_soc_percent = problem.reserve_soc_percent - found.deficit_percent;
     result.summary = std::move(found.summary);
     return result;
 }
 
 }  // namespace
 
-Mission unlucky_mission(const Mission& mission, double probability) {
+PlanningProblem mission_at_quantile(const PlanningProblem& problem, double probability) {
     if (!(probability >= 0.5 && probability < 1.0)) {
-        throw std::invalid_argument("unlucky_mission: the probability is not from 0.5 to below 1");
+        throw std::invalid_argument("mission_at_quantile: the probability is not from 0.5 to below 1");
     }
-    const double quantile = boost::math::quantile(boost::math::normal_distribution<double>(), probability);
     flight::PerPhase<double> sd_w;
     double energy_variance_j2 = 0.0;
     for (const auto phase : flight::all_phases) {
-        if (mission.duration_s[phase] == 0.0) continue;
-        sd_w[phase] = level_sd_w(mission, phase);
-        energy_variance_j2 += std::pow(sd_w[phase] * mission.duration_s[phase], 2);
+        if (problem.duration_s[phase] == 0.0) continue;
+        sd_w[phase] = level_sd_w(problem, phase);
+        energy_variance_j2 += std::pow(sd_w[phase] * problem.duration_s[phase], 2);
     }
-    auto unlucky = mission;
-    if (energy_variance_j2 == 0.0) return unlucky;
+    auto stronger = problem;
+    if (energy_variance_j2 == 0.0) return stronger;
     for (const auto phase : flight::all_phases) {
-        const double part = sd_w[phase] * mission.duration_s[phase] / std::sqrt(energy_variance_j2);
-        if (part > 0.0) unlucky.mechanical->phases[phase].fourier.a0_w += quantile * part * sd_w[phase];
+        const double part = sd_w[phase] * problem.duration_s[phase] / std::sqrt(energy_variance_j2);
+        if (part > 0.0) {
+            stronger.mechanical->phases[phase].fourier.a0_w +=
+                normal_quantile(probability) * part * sd_w[phase];
+        }
     }
-    return unlucky;
+    return stronger;
 }
 
-MissionPlan plan_by_simulation(const Mission& mission, const std::optional<double>& probability) {
-    if (!probability) return plan_certain(mission);
-    auto result = plan_certain(unlucky_mission(mission, *probability));
-    const auto unlucky = std::move(result.summary);
-    result.flown = with_schedule(mission, std::move(result.flown.schedule));
+MissionPlan plan_by_simulation(const PlanningProblem& problem, const std::optional<double>& probability) {
+    auto [plan, summary] = plan_certain(probability ? mission_at_quantile(problem, *probability) : problem);
+    MissionPlan result{std::move(plan), {problem, {}}, std::move(summary), 0.0};
+    result.flown.schedule = result.plan.schedule;
+    if (!probability) return result;
+    const auto at_quantile = std::move(result.summary);
     result.summary = simulate(result.flown).summary;
-    if (unlucky.final_soc_percent && result.summary.final_soc_percent) {
-        result.margin_percent = *result.summary.final_soc_percent - *unlucky.final_soc_percent;
+    if (at_quantile.final_soc_percent && result.summary.final_soc_percent) {
+        result.margin_percent = *result.summary.final_soc_percent - *at_quantile.final_soc_percent;
         result.plan.final_soc_percent += result.margin_percent;
     }
-    if (const auto source = source_voltage_of(result.flown))
-        result.planner = along(mission, std::move(result.planner), *source);
     return result;
 }
 

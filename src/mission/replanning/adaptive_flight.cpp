@@ -1,30 +1,29 @@
 #include "mission/replanning/adaptive_flight.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
-#include "mission/flown_charge.h"
-#include "mission/plan.h"
+#include "mission/planning/plan_rest.h"
+#include "mission/simulation/segment_discharge.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include <boost/math/distributions/normal.hpp>
-
 namespace flightwatt::mission {
 namespace {
 
 /// The relaxation's plan leaves at most what one slot could spend, and the next decision spends it; only near
-/// the end is it worth a search.
-SlotChoiceEffort effort_for(double slots_left) {
+/// the end does a search pay.
+KnapsackEffort effort_for(double slots_left) {
     constexpr double searched_slots = 8.0;
     return {slots_left <= searched_slots ? 1e-4 : 1.0, 200};
 }
 
-constexpr double jump_factor = 2.0;  ///< of the drain foreseen: beyond, charge was lost otherwise
+constexpr double jump_factor = 2.0;  ///< of the depletion predicted: beyond, charge was lost otherwise
 
-/// Charge as what it is worth in energy at the planner's constant voltage [points]: the integral of the known
+/// Charge as its energy at the planner's constant voltage [points]: the integral of the known
 /// open-circuit voltage over it. The state of charge itself where that is constant.
-double worth_of_charge(const AdaptivePlanner& planner, double soc_percent) {
+double energy_equivalent_soc_percent(const AdaptivePlanner& planner, double soc_percent) {
     if (!planner.open_circuit) return soc_percent;
     const auto& [knots, voltage_v] = *planner.open_circuit;
     double sum = 0.0;
@@ -37,195 +36,179 @@ double worth_of_charge(const AdaptivePlanner& planner, double soc_percent) {
     return sum / planner.known.battery.voltage_v;
 }
 
-/// From one decision to the next, in the planned phase's own time.
-struct Interval {
-    flight::Phase phase = flight::Phase::takeoff;
-    double phase_begins_s = 0.0;  ///< planned mission time
-    double from_s = 0.0;
-    double to_s = 0.0;
-    double begin_s() const { return phase_begins_s + from_s; }
-};
-
-std::vector<Interval> intervals_of(const Mission& known) {
-    std::vector<Interval> intervals;
-    double begins_s = 0.0;
+/// The times from one decision to the next, as planned.
+std::vector<PhaseSegment> intervals_of(const PlanningProblem& known) {
+    std::vector<PhaseSegment> intervals;
     for (const auto phase : flight::all_phases) {
         const double duration_s = known.duration_s[phase];
         const double every_s = known.adaptive->decide_every_s;
         const auto count =
             static_cast<std::size_t>(std::ceil((duration_s - same_time_tolerance_s(duration_s)) / every_s));
         for (std::size_t k = 0; k < count; ++k) {
-            const double from_s = static_cast<double>(k) * every_s;
-            const double to_s = k + 1 == count ? duration_s : from_s + every_s;
-            intervals.push_back({phase, begins_s, from_s, to_s});
+            const double start_s = static_cast<double>(k) * every_s;
+            intervals.push_back({phase, start_s, k + 1 == count ? duration_s : start_s + every_s});
         }
-        begins_s += duration_s;
     }
     return intervals;
 }
 
-/// Seconds flown and points drained so far, where they tell of mechanical power.
+/// Seconds flown and points lost so far, where they tell of mechanical power.
 struct Learned {
     double time_s = 0.0;
     double observed_percent = 0.0;
-    double foreseen_percent = 0.0;
+    double predicted_percent = 0.0;
     double mechanical_percent = 0.0;
 
     double factor(const AdaptivePolicy& policy) const {
         if (mechanical_percent <= 0.0) return 1.0;
         const double gain = time_s / (time_s + policy.learning_time_s);
-        return std::max(0.0, 1.0 + gain * (observed_percent - foreseen_percent) / mechanical_percent);
+        return std::max(0.0, 1.0 + gain * (observed_percent - predicted_percent) / mechanical_percent);
     }
 };
 
 /// One flight in the air.
 class Flight {
   public:
-    Flight(const AdaptivePlanner& planner, const Mission& actual,
+    Flight(const AdaptivePlanner& planner, const MissionSetup& actual,
            const std::vector<Disturbance>& disturbances)
-        : adaptive_(planner), known_(planner.known), planner_(planner.planner), disturbances_(disturbances) {
-        flight_.flown = actual;
-        flight_.flown.battery = disturbed(actual.battery, disturbances);
-        flight_.flown.schedule.clear();
+        : adaptive_(planner),
+          known_(planner.known),
+          planner_(planner.planner),
+          actual_(actual),
+          disturbances_(disturbances),
+          battery_(disturbed(actual.battery, disturbances)),
+          planned_(timeline_of(known_.duration_s)),
+          flown_(timeline_of(actual.duration_s)) {
         charge_.soc_percent = actual.initial_soc_percent;
-        reserve_percent_ = worth_of_charge(planner, known_.reserve_soc_percent);
-        for (const auto phase : flight::all_phases) {
-            end_s_ += known_.duration_s[phase];
-            if (!actual.mechanical || actual.duration_s[phase] == 0.0) continue;
-            curves_[phase] =
-                flown_model(actual.mechanical->phases[phase], actual.duration_s[phase], actual.phase_clock);
-        }
+        reserve_percent_ = energy_equivalent_soc_percent(planner, known_.reserve_soc_percent);
         const auto& policy = *known_.adaptive;
-        reach_ = policy.mechanical_sd_percent / units::percent_per_whole *
-                 boost::math::quantile(boost::math::normal_distribution<double>(), policy.probability);
+        reach_ =
+            policy.mechanical_sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
         for (const auto phase : flight::all_phases) {
+            if (actual.mechanical && actual.duration_s[phase] != 0.0) {
+                curves_[phase] = flown_model(actual.mechanical->phases[phase], actual.duration_s[phase],
+                                             actual.phase_clock);
+            }
             if (known_.duration_s[phase] > 0.0)
-                rest_mechanical_percent_ += mechanical_percent(phase, 0.0, known_.duration_s[phase]);
+                rest_mechanical_percent_ += mechanical_percent({phase, 0.0, known_.duration_s[phase]});
         }
     }
 
-    void fly(const Interval& interval) {
-        const double before_percent = worth_left();
-        double foreseen_percent = 0.0;
-        for (const auto& stretch : decide(interval)) {
-            if (stretch.phase != interval.phase || stretch.from_s >= interval.to_s) break;
-            const auto to_s = std::min(stretch.to_s, interval.to_s);
-            const auto& known = planner_.drains.configurations;
-            const auto choice =
-                static_cast<std::size_t>(std::find(known.begin(), known.end(), stretch.run) - known.begin());
-            foreseen_percent += drain_percent(planner_.drains, {choice, stretch.phase, stretch.from_s, to_s});
-            run({stretch.phase, stretch.from_s, to_s, stretch.run});
+    void fly(const PhaseSegment& interval) {
+        const double before_percent = soc_left_percent();
+        double predicted_percent = 0.0;
+        for (const auto& planned : decide(interval)) {
+            if (planned.phase != interval.phase || planned.start_s >= interval.end_s) break;
+            auto segment = planned;
+            segment.end_s = std::min(planned.end_s, interval.end_s);
+            predicted_percent +=
+                soc_depletion_percent(planner_.depletions, tabled({segment}, planner_.depletions).front());
+            run(segment);
         }
-        learn(interval, before_percent - worth_left(), foreseen_percent);
+        learn(interval, before_percent - soc_left_percent(), predicted_percent);
     }
 
-    AdaptiveFlight landed(const battery::Battery& battery) {
-        flight_.flown.battery = battery;
-        flight_.flown.schedule =
-            at_same_part(std::move(flight_.flown.schedule), known_.duration_s, flight_.flown.duration_s);
-        flight_.flown.plan.reset();
-        flight_.flown.adaptive.reset();
+    AdaptiveFlight landed() {
+        flight_.schedule =
+            rescale_to_flown_durations(std::move(flight_.schedule), known_.duration_s, actual_.duration_s);
         flight_.decisions.mechanical_factor = learned_.factor(*known_.adaptive);
         return std::move(flight_);
     }
 
   private:
-    double mechanical_percent(flight::Phase phase, double from_s, double to_s) const {
-        return drain_percent(planner_.mechanical_drains, {0, phase, from_s, to_s});
+    double mechanical_percent(const PhaseSegment& time) const {
+        return soc_depletion_percent(planner_.mechanical_depletion, {time, 0});
     }
 
-    std::vector<Stretch> decide(const Interval& interval) {
+    std::vector<ScheduleSegment> decide(const PhaseSegment& interval) {
         const auto& policy = *known_.adaptive;
-        PlanStart start{interval.begin_s(), worth_left(), running_, running_for_s_};
+        PlanStart start{planned_.start_s[interval.phase] + interval.start_s, soc_left_percent(), running_,
+                        running_for_s_};
         start.mechanical_factor = learned_.factor(policy);
         const double seen = policy.learning_time_s > 0.0
                                 ? policy.learning_time_s / (learned_.time_s + policy.learning_time_s)
                                 : 0.0;
-        const double to_come = policy.learning_time_s / (end_s_ - start.time_s);
+        const double to_come = policy.learning_time_s / (planned_.duration_s - start.time_s);
         const double margin_percent = reach_ * rest_mechanical_percent_ * std::sqrt(seen + to_come);
         const auto plan = plan_rest(known_, planner_, start, reserve_percent_ + margin_percent,
-                                    effort_for((end_s_ - start.time_s) / known_.plan->slot_s));
+                                    effort_for((planned_.duration_s - start.time_s) / known_.plan.slot_s));
         ++flight_.decisions.made;
         if (!plan.feasible) ++flight_.decisions.without_plan;
         if (plan.schedule.empty()) {
-            // Nothing that the battery can deliver is known: fly on with what drains least.
-            auto rest = with_least_schedule(known_).schedule;
-            std::erase_if(rest, [&](const Stretch& s) {
-                return s.phase < interval.phase || (s.phase == interval.phase && s.to_s <= interval.from_s);
+            // Nothing that the battery can deliver is known: fly on with what demands least energy.
+            auto rest = minimum_energy_schedule(known_);
+            std::erase_if(rest, [&](const ScheduleSegment& s) {
+                return s.phase < interval.phase || (s.phase == interval.phase && s.end_s <= interval.start_s);
             });
-            if (!rest.empty()) rest.front().from_s = std::max(rest.front().from_s, interval.from_s);
+            if (!rest.empty()) rest.front().start_s = std::max(rest.front().start_s, interval.start_s);
             return rest;
         }
         return plan.schedule;
     }
 
-    /// Runs a stretch of the plan in the flight as it is.
-    void run(const Stretch& planned) {
-        auto& schedule = flight_.flown.schedule;
-        const bool goes_on = running_ && *running_ == planned.run;
-        if (!goes_on) running_for_s_ = 0.0;
-        running_for_s_ += planned.to_s - planned.from_s;
+    /// Runs a segment of the plan in the flight as it is.
+    void run(const ScheduleSegment& planned) {
+        if (!running_ || *running_ != planned.run) running_for_s_ = 0.0;
+        running_for_s_ += planned.duration_s();
         running_ = planned.run;
-        if (goes_on && !schedule.empty() && schedule.back().phase == planned.phase) {
-            schedule.back().to_s = planned.to_s;
-        } else {
-            schedule.push_back(planned);
-        }
-        for (const auto& demand : disturbed({demand_of(planned)}, disturbances_))
-            charge_ = mission::after_demand(flight_.flown, demand, charge_);
+        append_merged(flight_.schedule, planned);
+        for (const auto& segment : disturbed({load_of(planned)}, disturbances_))
+            charge_ = after_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
     }
 
-    Demand demand_of(const Stretch& planned) const {
-        const auto stretch = at_same_part({planned}, known_.duration_s, flight_.flown.duration_s).front();
-        Demand demand;
-        demand.phase = stretch.phase;
-        for (const auto phase : flight::all_phases) {
-            if (phase < stretch.phase) demand.phase_begins_s += flight_.flown.duration_s[phase];
-        }
-        demand.from_s = demand.phase_begins_s + stretch.from_s;
-        demand.to_s = demand.phase_begins_s + stretch.to_s;
-        demand.mechanical = curves_[stretch.phase];
-        demand.compute_w = power_w(flight_.flown.compute, stretch.run);
-        return demand;
+    LoadSegment load_of(const ScheduleSegment& planned) const {
+        const auto flown =
+            rescale_to_flown_durations({planned}, known_.duration_s, actual_.duration_s).front();
+        LoadSegment segment;
+        segment.phase = flown.phase;
+        segment.phase_start_s = flown_.start_s[flown.phase];
+        segment.start_s = segment.phase_start_s + flown.start_s;
+        segment.end_s = segment.phase_start_s + flown.end_s;
+        segment.mechanical = curves_[flown.phase];
+        segment.compute_w = power_w(actual_.compute, flown.run);
+        return segment;
     }
 
-    void learn(const Interval& interval, double observed_percent, double foreseen_percent) {
-        const double mechanical = mechanical_percent(interval.phase, interval.from_s, interval.to_s);
+    void learn(const PhaseSegment& interval, double observed_percent, double predicted_percent) {
+        const double mechanical = mechanical_percent(interval);
         rest_mechanical_percent_ = std::max(0.0, rest_mechanical_percent_ - mechanical);
-        if (observed_percent < 0.0 || observed_percent > jump_factor * foreseen_percent) return;
-        learned_.time_s += interval.to_s - interval.from_s;
+        if (observed_percent < 0.0 || observed_percent > jump_factor * predicted_percent) return;
+        learned_.time_s += interval.duration_s();
         learned_.observed_percent += observed_percent;
-        learned_.foreseen_percent += foreseen_percent;
+        learned_.predicted_percent += predicted_percent;
         learned_.mechanical_percent += mechanical;
     }
 
-    double worth_left() const { return worth_of_charge(adaptive_, charge_.soc_percent); }
+    double soc_left_percent() const { return energy_equivalent_soc_percent(adaptive_, charge_.soc_percent); }
 
     const AdaptivePlanner& adaptive_;
-    const Mission& known_;
+    const PlanningProblem& known_;
     const Planner& planner_;
+    const MissionSetup& actual_;
     const std::vector<Disturbance>& disturbances_;
+    battery::Battery battery_;  ///< as it really is
+    MissionTimeline planned_;
+    MissionTimeline flown_;
     AdaptiveFlight flight_;
     flight::PerPhase<std::optional<mechanical::FourierModel>> curves_;
     battery::Discharge charge_;
     Learned learned_;
     std::optional<compute::Configuration> running_;
     double running_for_s_ = 0.0;
-    double end_s_ = 0.0;
-    double reserve_percent_ = 0.0;  ///< as worth_left
+    double reserve_percent_ = 0.0;  ///< as soc_left_percent()
     double reach_ = 0.0;            ///< what the reserve is kept against, as a part of mechanical power
     double rest_mechanical_percent_ = 0.0;
 };
 
 }  // namespace
 
-AdaptivePlanner make_adaptive_planner(const Mission& mission) {
-    if (!mission.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
-    AdaptivePlanner planner{mission, std::nullopt, {}};
+AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
+    if (!problem.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
+    AdaptivePlanner planner{problem, std::nullopt, {}};
     auto& battery = planner.known.battery;
     if (battery.thevenin) {
         battery.voltage_v = open_circuit_voltage_v(
-            battery, (mission.initial_soc_percent + mission.reserve_soc_percent) / 2.0);
+            battery, (problem.initial_soc_percent + problem.reserve_soc_percent) / 2.0);
         battery.resistance_ohm += battery.thevenin->rc_resistance_ohm;
         planner.open_circuit = battery.thevenin->open_circuit;
         battery.thevenin.reset();
@@ -235,11 +218,11 @@ AdaptivePlanner make_adaptive_planner(const Mission& mission) {
     return planner;
 }
 
-AdaptiveFlight fly_adaptively(const AdaptivePlanner& planner, const Mission& actual,
+AdaptiveFlight fly_adaptively(const AdaptivePlanner& planner, const MissionSetup& actual,
                               const std::vector<Disturbance>& disturbances) {
     Flight flight(planner, actual, disturbances);
     for (const auto& interval : intervals_of(planner.known)) flight.fly(interval);
-    return flight.landed(actual.battery);
+    return flight.landed();
 }
 
 }  // namespace flightwatt::mission

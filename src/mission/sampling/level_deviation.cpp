@@ -1,5 +1,6 @@
 #include "mission/sampling/level_deviation.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/prediction.h"
 #include "mission/planning/depletion_table.h"
@@ -8,67 +9,73 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <boost/math/distributions/normal.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::mission {
 
-std::optional<double> stated_level_sd_w(const Mission& mission, flight::Phase phase) {
-    const auto percent = mission.uncertainty.level_sd_percent[phase];
-    if (!percent || !mission.mechanical) return std::nullopt;
-    const double duration_s = mission.duration_s[phase];
-    const auto model = flown_model(mission.mechanical->phases[phase], duration_s, mission.phase_clock);
-    return units::part_of(std::abs(energy_j(model, duration_s) / duration_s), *percent);
+LevelDeviation level_deviation(const MissionSetup& mission, flight::Phase phase) {
+    const auto& model = mission.mechanical->phases[phase];
+    if (const auto percent = mission.uncertainty.level_sd_percent[phase]) {
+        const double duration_s = mission.duration_s[phase];
+        const auto flown = flown_model(model, duration_s, mission.phase_clock);
+        const double mean_w = std::abs(energy_j(flown, duration_s) / duration_s);
+        return {units::part_of(mean_w, *percent), DeviationSource::stated};
+    }
+    if (phase == flight::Phase::cruise && mission.cruise_level)
+        return {mission.cruise_level->sd_w.value(), DeviationSource::conditions};
+    if (const auto& spread = model.level_spread) {
+        const double weight_square_sum = forecast_of(*mission.mechanical, phase).weight_square_sum;
+        return {spread->level_sd_w * std::sqrt(1.0 + weight_square_sum), DeviationSource::flights,
+                static_cast<std::size_t>(spread->flights)};
+    }
+    if (model.errors) return {model.errors->a0_w, DeviationSource::fit_error};
+    return {};
 }
 
-double level_sd_w(const Mission& mission, flight::Phase phase) {
+double level_sd_w(const MissionSetup& mission, flight::Phase phase) {
     if (!mission.mechanical) {
         throw InputError({mission.file}, "mechanical = \"none\": there are no flights that differ",
                          "a chance needs a mechanical model of two flights or more");
     }
-    if (const auto stated_w = stated_level_sd_w(mission, phase)) return *stated_w;
-    if (phase == flight::Phase::cruise && mission.cruise_level) return mission.cruise_level->sd_w.value();
-    const double duration_s = mission.duration_s[phase];
-    const auto energy = predict_before_flight(forecast_of(*mission.mechanical, phase), duration_s);
-    if (!energy.uncertainty_known) {
-        throw InputError(
-            {mission.file},
-            fmt::format("the mechanical model does not say how flights differ: [{}] has no spread",
-                        to_string(phase)),
-            "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
-            "[uncertainty] with level_sd_percent");
-    }
-    return units::joule_from_wh(std::sqrt(energy.variance_wh2)) / duration_s;
+    const auto deviation = level_deviation(mission, phase);
+    if (deviation.source != DeviationSource::none && deviation.source != DeviationSource::fit_error)
+        return deviation.sd_w;
+    throw InputError({mission.file},
+                     fmt::format("the mechanical model does not say how flights differ: [{}] has no spread",
+                                 to_string(phase)),
+                     "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
+                     "[uncertainty] with level_sd_percent");
 }
 
 namespace {
 
-double phase_drain_percent(const Mission& mission, const compute::Configuration& configuration,
-                           flight::Phase phase) {
-    const auto table = make_drain_table(mission, {configuration});
-    return drain_percent(table, {0, phase, 0.0, mission.duration_s[phase]});
+double phase_depletion_percent(const MissionSetup& mission, const compute::Configuration& configuration,
+                               flight::Phase phase) {
+    const auto table = make_depletion_table(mission, {configuration});
+    return soc_depletion_percent(table, {{phase, 0.0, mission.duration_s[phase]}, 0});
 }
 
 }  // namespace
 
-double drain_sd_percent(const Mission& mission, const std::vector<compute::Configuration>& configurations) {
-    const auto hungriest =
+double soc_depletion_sd_percent(const MissionSetup& mission,
+                                const std::vector<compute::Configuration>& configurations) {
+    const auto most_power =
         std::max_element(configurations.begin(), configurations.end(), [&](const auto& a, const auto& b) {
             return power_w(mission.compute, a) < power_w(mission.compute, b);
         });
-    if (hungriest == configurations.end()) throw std::invalid_argument("drain_sd_percent: no configuration");
+    if (most_power == configurations.end())
+        throw std::invalid_argument("soc_depletion_sd_percent: no configuration");
     double variance = 0.0;
     for (const auto phase : flight::all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
         auto stronger = mission;
         stronger.mechanical->phases[phase].fourier.a0_w += level_sd_w(mission, phase);
-        const double more = phase_drain_percent(stronger, *hungriest, phase) -
-                            phase_drain_percent(mission, *hungriest, phase);
+        const double more = phase_depletion_percent(stronger, *most_power, phase) -
+                            phase_depletion_percent(mission, *most_power, phase);
         if (!std::isfinite(more)) {
             throw NoAnswerError(
                 fmt::format("the battery cannot deliver the most that this mission may draw in {}, with one "
-                            "standard deviation "
-                            "more of mechanical power",
+                            "standard deviation more of mechanical power",
                             to_string(phase)));
         }
         variance += more * more;
@@ -76,13 +83,13 @@ double drain_sd_percent(const Mission& mission, const std::vector<compute::Confi
     return std::sqrt(variance);
 }
 
-double margin_percent(const Mission& mission, const std::vector<compute::Configuration>& configurations,
+double margin_percent(const MissionSetup& mission, const std::vector<compute::Configuration>& configurations,
                       double probability) {
     if (!(probability >= 0.5 && probability < 1.0)) {
         throw std::invalid_argument("margin_percent: the probability is not from 0.5 to below 1");
     }
-    const double sd_percent = drain_sd_percent(mission, configurations);
-    return boost::math::quantile(boost::math::normal_distribution<double>(), probability) * sd_percent;
+    const double sd_percent = soc_depletion_sd_percent(mission, configurations);
+    return normal_quantile(probability) * sd_percent;
 }
 
 }  // namespace flightwatt::mission

@@ -16,13 +16,13 @@ namespace {
 constexpr int panel_width = 640;
 constexpr auto time_title = "time since lift-off [s]";
 constexpr auto soc_title = "final state of charge [%]";
-constexpr auto worth_title = "utility (mean worth a second)";
+constexpr auto utility_title = "utility (mean worth a second)";
 
-VegaJson worth_axes() {
-    return {{"x", quantity("soc_percent", soc_title)}, {"y", quantity("utility", worth_title)}};
+VegaJson utility_axes() {
+    return {{"x", quantity("soc_percent", soc_title)}, {"y", quantity("utility", utility_title)}};
 }
 
-VegaJson points_layer(const std::vector<WorthPoint>& points) {
+VegaJson points_layer(const std::vector<UtilityPoint>& points) {
     FigureData data({"soc_percent", "utility"}, {"mission", "kind"});
     for (const bool planned : {true, false}) {  // a planned one stands behind a given one that is as good
         for (const auto& point : points) {
@@ -35,7 +35,7 @@ VegaJson points_layer(const std::vector<WorthPoint>& points) {
     shapes["range"] = {"diamond", "circle"};
     auto sizes = kinds;
     sizes["range"] = {190, 60};
-    auto encoding = worth_axes();
+    auto encoding = utility_axes();
     encoding["color"] = category("kind", "", {{"scale", kinds}});
     encoding["shape"] = category("kind", "", {{"scale", shapes}});
     encoding["size"] = {{"field", "kind"}, {"type", "ordinal"}, {"title", ""}, {"scale", sizes}};
@@ -48,19 +48,19 @@ VegaJson points_layer(const std::vector<WorthPoint>& points) {
 }
 
 /// Points that a reader cannot tell apart share a name.
-std::vector<WorthPoint> named_together(const std::vector<WorthPoint>& points) {
+std::vector<UtilityPoint> named_together(const std::vector<UtilityPoint>& points) {
     constexpr double near_part = 0.02;  // of what the points span
-    const auto span_of = [&](double WorthPoint::*value) {
+    const auto span_of = [&](double UtilityPoint::*value) {
         const auto [low, high] = std::minmax_element(
             points.begin(), points.end(),
-            [&](const WorthPoint& a, const WorthPoint& b) { return a.*value < b.*value; });
+            [&](const UtilityPoint& a, const UtilityPoint& b) { return a.*value < b.*value; });
         return (*high).*value - (*low).*value;
     };
-    const double soc_span = span_of(&WorthPoint::soc_percent);
-    const double utility_span = span_of(&WorthPoint::utility);
-    std::vector<WorthPoint> together;
+    const double soc_span = span_of(&UtilityPoint::soc_percent);
+    const double utility_span = span_of(&UtilityPoint::utility);
+    std::vector<UtilityPoint> together;
     for (const auto& point : points) {
-        const auto twin = std::find_if(together.begin(), together.end(), [&](const WorthPoint& other) {
+        const auto twin = std::find_if(together.begin(), together.end(), [&](const UtilityPoint& other) {
             return std::abs(other.soc_percent - point.soc_percent) <= near_part * soc_span &&
                    std::abs(other.utility - point.utility) <= near_part * utility_span;
         });
@@ -74,7 +74,7 @@ std::vector<WorthPoint> named_together(const std::vector<WorthPoint>& points) {
 }
 
 /// Names to the right of their points, at the figure's right end to the left.
-VegaJson names_layer(const std::vector<WorthPoint>& points) {
+VegaJson names_layer(const std::vector<UtilityPoint>& points) {
     FigureData data({"soc_percent", "utility"}, {"mission", "side"});
     constexpr double right_end = 0.65;
     double greatest_percent = 0.0;
@@ -85,7 +85,7 @@ VegaJson names_layer(const std::vector<WorthPoint>& points) {
     }
     const auto texts = [&](const std::string& side, int away_px) -> VegaJson {
         const bool to_the_left = side == "left";
-        auto encoding = worth_axes();
+        auto encoding = utility_axes();
         encoding["text"] = category("mission", "mission");
         return {{"transform", VegaJson::array({{{"filter", {{"field", "side"}, {"equal", side}}}}})},
                 {"mark",
@@ -119,23 +119,12 @@ VegaJson rule_layer(std::string_view channel, double value, const std::string& t
     return {{"data", one}, {"layer", {rule, name}}};
 }
 
-/// Begins of the phases since the mission began.
-flight::PerPhase<double> begins_s(const mission::Mission& mission) {
-    flight::PerPhase<double> begins;
-    double time_s = 0.0;
-    for (const auto phase : flight::all_phases) {
-        begins[phase] = time_s;
-        time_s += mission.duration_s[phase];
-    }
-    return begins;
-}
-
 VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
     FigureData data({"from_s", "to_s", "middle_s", "power_w", "long_s"}, {"component", "runs"});
     for (const auto& running : running_times(mission)) {
         const auto& component = mission.compute.components[running.component];
-        data.add({running.from_s, running.to_s, std::midpoint(running.from_s, running.to_s),
-                  power_w(component.profile, running.qos), running.to_s - running.from_s},
+        data.add({running.start_s, running.end_s, std::midpoint(running.start_s, running.end_s),
+                  power_w(component.profile, running.qos), running.end_s - running.start_s},
                  {component.name, describe_qos(component, running.qos)});
     }
     const VegaJson axis{{"scale", {{"domain", {0.0, duration_s}}, {"nice", false}}},
@@ -166,10 +155,11 @@ VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
 
 VegaJson edge_layer(const mission::Mission& mission) {
     FigureData data({"begin_s", "middle_s"}, {"phase"});
-    const auto begins = begins_s(mission);
+    const auto timeline = mission::timeline_of(mission.duration_s);
     for (const auto phase : flight::all_phases) {
         if (mission.duration_s[phase] <= 0.0) continue;
-        data.add({begins[phase], begins[phase] + mission.duration_s[phase] / 2.0}, {phase_word(phase)});
+        data.add({timeline.start_s[phase], timeline.start_s[phase] + mission.duration_s[phase] / 2.0},
+                 {phase_word(phase)});
     }
     const auto x = quantity("begin_s", time_title);
     const VegaJson rule{
@@ -181,29 +171,24 @@ VegaJson edge_layer(const mission::Mission& mission) {
     return {{"data", data.json()}, {"layer", {rule, word}}};
 }
 
-double duration_of(const mission::Mission& mission) {
-    const auto& parts = mission.duration_s.values;
-    return std::accumulate(parts.begin(), parts.end(), 0.0);
-}
-
 }  // namespace
 
 std::vector<Running> running_times(const mission::Mission& mission) {
-    const auto begins = begins_s(mission);
+    const auto timeline = mission::timeline_of(mission.duration_s);
     std::vector<Running> times;
     std::map<std::size_t, std::size_t> last;  // of each component, its index in `times`
-    for (const auto& stretch : mission.schedule) {
-        const double from_s = begins[stretch.phase] + stretch.from_s;
-        const double to_s = begins[stretch.phase] + stretch.to_s;
-        for (const auto& run : stretch.run) {
+    for (const auto& segment : mission.schedule) {
+        const double start_s = timeline.start_s[segment.phase] + segment.start_s;
+        const double end_s = timeline.start_s[segment.phase] + segment.end_s;
+        for (const auto& run : segment.run) {
             const auto before = last.find(run.component);
             if (before != last.end() && times[before->second].qos == run.qos &&
-                from_s - times[before->second].to_s < mission::same_time_tolerance_s(to_s)) {
-                times[before->second].to_s = to_s;
+                start_s - times[before->second].end_s < mission::same_time_tolerance_s(end_s)) {
+                times[before->second].end_s = end_s;
                 continue;
             }
             last[run.component] = times.size();
-            times.push_back({run.component, from_s, to_s, run.qos});
+            times.push_back({run.component, start_s, end_s, run.qos});
         }
     }
     return times;
@@ -217,12 +202,12 @@ std::string describe_qos(const compute::Component& component, const std::vector<
     return parts.empty() ? "on" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-Figure worth_figure(const SimulatedMission& planned, const std::vector<WorthPoint>& points,
-                    const std::string& id) {
+Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points,
+                      const std::string& id) {
     Figure figure;
     figure.id = id;
     figure.caption =
-        "What the schedules are worth, by the planned mission's utilities, over what they leave. To the left "
+        "The utility of the schedules, by that of the planned mission, over what they leave. To the left "
         "of the reserve a schedule spends what was to be kept; above the bound there is none that keeps it. "
         "What runs after the battery's end counts nothing.";
     figure.description = "Utility over final state of charge.";
@@ -252,14 +237,16 @@ Figure strip_figure(const SimulatedMission& planned, const std::string& id) {
     figure.description = fmt::format("What {} runs when.", planned.title);
     for (const auto& running : running_times(mission)) {
         const auto& component = mission.compute.components[running.component];
-        figure.description += fmt::format(" {} {} from {:.0f} to {:.0f} s.", component.name,
-                                          describe_qos(component, running.qos), running.from_s, running.to_s);
+        figure.description +=
+            fmt::format(" {} {} from {:.0f} to {:.0f} s.", component.name,
+                        describe_qos(component, running.qos), running.start_s, running.end_s);
     }
     figure.spec = new_spec(figure);
     figure.spec["width"] = panel_width;
     figure.spec["height"] = {{"step", 42}};
     figure.spec["usermeta"] = {{"margin_px", 150}};  // the components' names
-    figure.spec["layer"] = {bars_layer(mission, duration_of(mission)), edge_layer(mission)};
+    figure.spec["layer"] = {bars_layer(mission, mission::timeline_of(mission.duration_s).duration_s),
+                            edge_layer(mission)};
     return figure;
 }
 

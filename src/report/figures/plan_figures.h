@@ -9,8 +9,8 @@
 
 namespace flightwatt::report {
 
-/// A schedule's worth beside what it leaves in the battery.
-struct WorthPoint {
+/// A schedule's utility beside what it leaves in the battery.
+struct UtilityPoint {
     std::string mission;
     double soc_percent = 0.0;
     double utility = 0.0;
@@ -18,15 +18,15 @@ struct WorthPoint {
 };
 
 /// Utility over final state of charge, a point a mission, with the planned one's reserve and proven bound.
-Figure worth_figure(const SimulatedMission& planned, const std::vector<WorthPoint>& points,
-                    const std::string& id);
+Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points,
+                      const std::string& id);
 
-/// When a component of a mission runs with which quality of service, from begin to end as it is seen: equal
+/// When a component of a mission runs with which quality of service, from start to end as it is seen: equal
 /// neighbours are one.
 struct Running {
     std::size_t component = 0;
-    double from_s = 0.0;  ///< since the mission began
-    double to_s = 0.0;
+    double start_s = 0.0;  ///< since the mission began
+    double end_s = 0.0;
     std::vector<double> qos;
 };
 

@@ -43,8 +43,9 @@ compute::Configuration greatest(const compute::ComputeModel& compute) {
     return run;
 }
 
-std::vector<mission::Stretch> throughout(const mission::Mission& mission, const compute::Configuration& run) {
-    std::vector<mission::Stretch> schedule;
+std::vector<mission::ScheduleSegment> throughout(const mission::MissionSetup& mission,
+                                                 const compute::Configuration& run) {
+    std::vector<mission::ScheduleSegment> schedule;
     for (const auto phase : flight::all_phases) {
         if (mission.duration_s[phase] > 0.0) schedule.push_back({phase, 0.0, mission.duration_s[phase], run});
     }
@@ -66,7 +67,7 @@ bool same_profiles(const compute::ComputeModel& a, const compute::ComputeModel& 
 
 }  // namespace
 
-std::optional<QosMap> qos_map(const mission::Mission& mission) {
+std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     const auto axes = axes_of(mission.compute);
     if (axes.size() < 2) return std::nullopt;
     QosMap map{axes[0], axes[1], {}, ""};
@@ -75,7 +76,6 @@ std::optional<QosMap> qos_map(const mission::Mission& mission) {
         map.others +=
             fmt::format("{}{} {:g}", map.others.empty() ? "" : ", ", axes[a].name, axes[a].nodes.back());
     }
-    auto probe = mission;
     mission::SimulationSteps steps;
     steps.integration_s = 1.0;  // constant or smooth power: the error is far below a hundredth of a percent
     for (const auto phase : flight::all_phases)
@@ -84,8 +84,7 @@ std::optional<QosMap> qos_map(const mission::Mission& mission) {
         run[map.y.component].qos[map.y.parameter] = y;
         for (const double x : map.x.nodes) {
             run[map.x.component].qos[map.x.parameter] = x;
-            probe.schedule = throughout(mission, run);
-            const auto summary = simulate(probe, steps).summary;
+            const auto summary = simulate(mission, throughout(mission, run), steps).summary;
             map.soc_percent.push_back(
                 summary.final_soc_percent.value_or(std::numeric_limits<double>::quiet_NaN()));
         }
@@ -93,8 +92,8 @@ std::optional<QosMap> qos_map(const mission::Mission& mission) {
     return map;
 }
 
-bool have_same_map(const mission::Mission& a, const mission::Mission& b) {
-    const auto mechanical = [](const mission::Mission& mission) {
+bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b) {
+    const auto mechanical = [](const mission::MissionSetup& mission) {
         return mission.mechanical ? to_toml(*mission.mechanical) : std::string();
     };
     const auto nameless = [](battery::Battery battery) {

@@ -30,9 +30,9 @@ struct QosMap {
 
 /// The map of a mission's model, battery and durations, whatever its schedule says; its first two parameters
 /// are the axes, further ones stand at their greatest value. std::nullopt with fewer than two parameters.
-std::optional<QosMap> qos_map(const mission::Mission& mission);
+std::optional<QosMap> qos_map(const mission::MissionSetup& mission);
 
 /// Whether two missions have the same map: the same flight, components and battery.
-bool have_same_map(const mission::Mission& a, const mission::Mission& b);
+bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b);
 
 }  // namespace flightwatt::report

@@ -57,10 +57,10 @@ std::map<std::pair<double, double>, std::string> configurations(const QosMap& ma
                                                                 std::span<const SimulatedMission> missions) {
     std::map<std::pair<double, double>, std::string> marked;
     for (const auto& mission : missions) {
-        for (const auto& stretch : mission.mission.schedule) {
+        for (const auto& segment : mission.mission.schedule) {
             std::optional<double> x;
             std::optional<double> y;
-            for (const auto& running : stretch.run) {
+            for (const auto& running : segment.run) {
                 if (running.component == map.x.component) x = running.qos[map.x.parameter];
                 if (running.component == map.y.component) y = running.qos[map.y.parameter];
             }

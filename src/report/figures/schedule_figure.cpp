@@ -15,22 +15,6 @@ namespace {
 constexpr int panel_width = 640;
 constexpr auto time_title = "time since lift-off [s]";
 constexpr auto soc_title = "state of charge [%]";
-using PhaseStarts = flight::PerPhase<double>;
-
-PhaseStarts phase_starts_s(const mission::Mission& mission) {
-    PhaseStarts starts;
-    double time_s = 0.0;
-    for (const auto phase : flight::all_phases) {
-        starts[phase] = time_s;
-        time_s += mission.duration_s[phase];
-    }
-    return starts;
-}
-
-double duration_s(const mission::Mission& mission) {
-    const auto& parts = mission.duration_s.values;
-    return std::accumulate(parts.begin(), parts.end(), 0.0);
-}
 
 FigureData curve_rows(std::span<const SimulatedMission> missions) {
     FigureData data({"time_s", "soc_percent", "power_w", "mission_number"}, {"phase"});
@@ -136,10 +120,11 @@ VegaJson phase_layers(std::span<const SimulatedMission> missions) {
     });
     if (!all_alike) return VegaJson::array();
     FigureData data({"start_s", "end_s", "middle_s"}, {"word"});
-    const auto starts_s = phase_starts_s(missions.front().mission);
+    const auto timeline = mission::timeline_of(missions.front().mission.duration_s);
     for (const auto phase : flight::all_phases) {
-        const double end_s = starts_s[phase] + missions.front().mission.duration_s[phase];
-        data.add({starts_s[phase], end_s, std::midpoint(starts_s[phase], end_s)}, {phase_word(phase)});
+        const double start_s = timeline.start_s[phase];
+        const double end_s = timeline.end_s[phase];
+        data.add({start_s, end_s, std::midpoint(start_s, end_s)}, {phase_word(phase)});
     }
     const VegaJson edge{
         {"data", data.json()},
@@ -159,17 +144,17 @@ VegaJson phase_layers(std::span<const SimulatedMission> missions) {
     return VegaJson::array({edge, word});
 }
 
-/// A bar a stretch: when a mission runs which configuration.
+/// A bar a segment: when a mission runs which configuration.
 VegaJson strip_panel(std::span<const SimulatedMission> missions, double longest_s) {
     FigureData data({"start_s", "end_s", "compute_w"}, {"mission", "phase", "runs"});
     for (const auto& simulated : missions) {
         const auto& mission = simulated.mission;
-        const auto starts_s = phase_starts_s(mission);
-        for (const auto& stretch : mission.schedule) {
-            const double start_s = starts_s[stretch.phase];
+        const auto timeline = mission::timeline_of(mission.duration_s);
+        for (const auto& segment : mission.schedule) {
+            const double start_s = timeline.start_s[segment.phase];
             data.add(
-                {start_s + stretch.from_s, start_s + stretch.to_s, power_w(mission.compute, stretch.run)},
-                {simulated.title, phase_word(stretch.phase), describe(mission.compute, stretch.run)});
+                {start_s + segment.start_s, start_s + segment.end_s, power_w(mission.compute, segment.run)},
+                {simulated.title, phase_word(segment.phase), describe(mission.compute, segment.run)});
         }
     }
     const VegaJson axis{{"scale", {{"domain", {0.0, longest_s}}, {"nice", false}}},
@@ -214,7 +199,8 @@ Figure schedule_figure(std::span<const SimulatedMission> missions, const Publish
                   "x",
                   {}};
     double longest_s = 0.0;
-    for (const auto& mission : missions) longest_s = std::max(longest_s, duration_s(mission.mission));
+    for (const auto& mission : missions)
+        longest_s = std::max(longest_s, mission.simulation.summary.duration_s);
     const auto titles = title_rows(missions);
     auto layers = phase_layers(missions);
     layers.push_back(curve_layer(missions, titles));

@@ -1,6 +1,6 @@
 #include "mission/planning/depletion_table.h"
 
-#include "helpers/test_paths.h"
+#include "helpers/paper_missions.h"
 #include "mission/simulation.h"
 
 #include <cmath>
@@ -11,48 +11,46 @@
 namespace flightwatt::mission {
 namespace {
 
-Mission paper(const std::string& name) {
-    return read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"));
-}
+using test::paper_mission;
 
 /// State of charge after the mission's own schedule, by a table.
 std::optional<double> tabled_soc(const Mission& mission) {
-    const auto table = make_drain_table(mission, configurations_of(mission.schedule));
+    const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
     return soc_after(table, tabled(mission.schedule, table));
 }
 
-/// A schedule of stretches that begin and end anywhere.
-std::vector<Stretch> random_schedule(const Mission& mission, std::mt19937& random) {
+/// A schedule of segments that begin and end anywhere.
+std::vector<ScheduleSegment> random_schedule(const Mission& mission, std::mt19937& random) {
     const auto known = configurations_of(mission.schedule);
     std::uniform_int_distribution<std::size_t> any(0, known.size() - 1);
-    std::vector<Stretch> schedule;
+    std::vector<ScheduleSegment> schedule;
     for (const auto phase : flight::all_phases) {
         const double duration_s = mission.duration_s[phase];
         std::uniform_real_distribution<double> length_s(0.01, 90.0);
-        for (double from_s = 0.0; from_s < duration_s;) {
-            const double to_s = std::min(duration_s, from_s + length_s(random));
-            schedule.push_back({phase, from_s, to_s, known[any(random)]});
-            from_s = to_s;
+        for (double start_s = 0.0; start_s < duration_s;) {
+            const double end_s = std::min(duration_s, start_s + length_s(random));
+            schedule.push_back({phase, start_s, end_s, known[any(random)]});
+            start_s = end_s;
         }
     }
     return schedule;
 }
 
-TEST(DrainTable, AgreesWithRungeKuttaOnThePapersSchedules) {
+TEST(DepletionTable, AgreesWithRungeKuttaOnThePapersSchedules) {
     for (const auto* name : {"computing-only", "mechanical-only", "invariant-5.8fps-32bit",
                              "invariant-10fps-240bit", "phased", "adaptive"}) {
-        const auto mission = paper(name);
+        const auto mission = paper_mission(name);
         const auto soc = tabled_soc(mission);
         ASSERT_TRUE(soc) << name;
         EXPECT_NEAR(*soc, *simulate(mission).summary.final_soc_percent, 1e-8) << name;
     }
-    EXPECT_LT(*tabled_soc(paper("invariant-32fps-448bit")), 0.0) << "empty before the end";
+    EXPECT_LT(*tabled_soc(paper_mission("invariant-32fps-448bit")), 0.0) << "empty before the end";
 }
 
-TEST(DrainTable, AgreesWithRungeKuttaOnRandomSchedules) {
+TEST(DepletionTable, AgreesWithRungeKuttaOnRandomSchedules) {
     std::mt19937 random(3);
     for (const double resistance_ohm : {0.0, 0.002, 0.02, 0.04}) {
-        auto mission = paper("phased");
+        auto mission = paper_mission("phased");
         mission.battery = {"", 3.6, resistance_ohm, 6.0};
         for (int i = 0; i < 10; ++i) {
             mission.schedule = random_schedule(mission, random);
@@ -65,33 +63,32 @@ TEST(DrainTable, AgreesWithRungeKuttaOnRandomSchedules) {
     }
 }
 
-TEST(DrainTable, SumsSlotsAsItSumsStretches) {
+TEST(DepletionTable, SumsSlotsAsItSumsSegments) {
     std::mt19937 random(4);
-    auto mission = paper("phased");
+    auto mission = paper_mission("phased");
     mission.battery = {"", 3.6, 0.02, 6.0};
     mission.schedule = random_schedule(mission, random);
-    const auto table = make_drain_table(mission, configurations_of(mission.schedule));
-    const auto stretches = tabled(mission.schedule, table);
-    const auto drains = make_slot_drains(table, stretches);
+    const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
+    const auto segments = tabled(mission.schedule, table);
+    const auto depletions = make_slot_depletions(table, segments);
     std::vector<std::uint16_t> choices;
-    for (const auto& stretch : stretches)
-        choices.push_back(static_cast<std::uint16_t>(stretch.configuration));
-    EXPECT_NEAR(soc_after(drains, choices), *soc_after(table, stretches), 1e-12);
+    for (const auto& segment : segments) choices.push_back(static_cast<std::uint16_t>(segment.configuration));
+    EXPECT_NEAR(soc_after(depletions, choices), *soc_after(table, segments), 1e-12);
     choices.pop_back();
-    EXPECT_THROW(soc_after(drains, choices), std::invalid_argument);
+    EXPECT_THROW(soc_after(depletions, choices), std::invalid_argument);
 }
 
-TEST(DrainTable, SaysItsError) {
-    auto mission = paper("phased");
+TEST(DepletionTable, SaysItsError) {
+    auto mission = paper_mission("phased");
     mission.battery = {"", 3.6, 0.02, 6.0};
-    const auto table = make_drain_table(mission, configurations_of(mission.schedule));
+    const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
     EXPECT_LE(table.error_percent, 1e-8);
     EXPECT_GT(table.error_percent, 0.0);
 }
 
-TEST(DrainTable, FollowsAStretchedAndARunOnPhase) {
+TEST(DepletionTable, FollowsBothPhaseClocks) {
     for (const auto clock : {mechanical::PhaseClock::stretched, mechanical::PhaseClock::absolute}) {
-        auto mission = paper("mechanical-only");
+        auto mission = paper_mission("mechanical-only");
         mission.phase_clock = clock;
         mission.duration_s[flight::Phase::cruise] = 900.5;
         mission.schedule = {{flight::Phase::takeoff, 0, 28, {}},
@@ -101,25 +98,25 @@ TEST(DrainTable, FollowsAStretchedAndARunOnPhase) {
     }
 }
 
-TEST(DrainTable, KnowsWhereTheBatteryCannotDeliver) {
-    auto mission = paper("phased");
+TEST(DepletionTable, KnowsWhereTheBatteryCannotDeliver) {
+    auto mission = paper_mission("phased");
     mission.battery = {"", 11.1, 0.5, 3.2};  // at most 61.6 W; the middle of the cruise needs 68
     EXPECT_TRUE(simulate(mission).summary.undeliverable);
     EXPECT_FALSE(tabled_soc(mission));
-    mission.schedule = paper("invariant-5.8fps-32bit").schedule;
+    mission.schedule = paper_mission("invariant-5.8fps-32bit").schedule;
     EXPECT_FALSE(simulate(mission).summary.undeliverable);
     EXPECT_NEAR(*tabled_soc(mission), *simulate(mission).summary.final_soc_percent, 1e-6);
 }
 
-TEST(DrainTable, DoesNotAnswerWhereTheBatteryIsCharged) {
-    auto mission = paper("mechanical-only");
+TEST(DepletionTable, DoesNotAnswerWhereTheBatteryIsCharged) {
+    auto mission = paper_mission("mechanical-only");
     mission.mechanical->phases[flight::Phase::landing].fourier.a0_w -= 40.0;
     EXPECT_FALSE(tabled_soc(mission));
 }
 
-TEST(DrainTable, RefusesAConfigurationThatItDoesNotHold) {
-    const auto mission = paper("phased");
-    const auto table = make_drain_table(mission, {mission.schedule.front().run});
+TEST(DepletionTable, RefusesAConfigurationThatItDoesNotHold) {
+    const auto mission = paper_mission("phased");
+    const auto table = make_depletion_table(mission, {mission.schedule.front().run});
     EXPECT_THROW(tabled(mission.schedule, table), std::invalid_argument);
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double impossible = std::numeric_limits<double>::infinity();
 
 /// Whether the runs of `choices` last as they must, from the definition alone.
-bool dwells(const SlotChoiceProblem& problem, const std::vector<std::size_t>& choices) {
+bool dwells(const MultipleChoiceKnapsack& problem, const std::vector<std::size_t>& choices) {
     const auto& slots = problem.slots;
     for (std::size_t i = 0; i < slots.size();) {
         std::size_t end = i;
@@ -44,30 +44,30 @@ bool dwells(const SlotChoiceProblem& problem, const std::vector<std::size_t>& ch
 }
 
 struct Enumerated {
-    double worth = -impossible;
+    double utility = -impossible;
     double least_drain = impossible;
 };
 
 /// Every way to choose.
-Enumerated enumerate(const SlotChoiceProblem& problem) {
+Enumerated enumerate(const MultipleChoiceKnapsack& problem) {
     Enumerated best;
     std::vector<std::size_t> choices(problem.slots.size(), 0);
     for (;;) {
-        double worth = 0.0;
-        double drain = 0.0;
+        double utility = 0.0;
+        double cost = 0.0;
         bool allowed = true;
         for (std::size_t i = 0; i < choices.size(); ++i) {
             const auto& slot = problem.slots[i];
             allowed = allowed && (slot.fixed ? choices[i] == *slot.fixed : choices[i] < problem.free_choices);
-            worth += problem.worth_per_s[choices[i]] * slot.duration_s;
-            drain += slot.drain[choices[i]];
+            utility += problem.utility_per_s[choices[i]] * slot.duration_s;
+            cost += slot.cost[choices[i]];
         }
         if (allowed && dwells(problem, choices)) {
-            best.least_drain = std::min(best.least_drain, drain);
-            if (drain <= problem.budget) best.worth = std::max(best.worth, worth);
+            best.least_drain = std::min(best.least_drain, cost);
+            if (cost <= problem.budget) best.utility = std::max(best.utility, utility);
         }
         std::size_t i = 0;
-        while (i < choices.size() && ++choices[i] == problem.worth_per_s.size()) choices[i++] = 0;
+        while (i < choices.size() && ++choices[i] == problem.utility_per_s.size()) choices[i++] = 0;
         if (i == choices.size()) return best;
     }
 }
@@ -80,33 +80,33 @@ struct RandomCase {
     bool alike = false;  ///< drain is power times time, as without resistance
 };
 
-SlotChoiceProblem random_problem(std::mt19937& random, const RandomCase& kind) {
+MultipleChoiceKnapsack random_problem(std::mt19937& random, const RandomCase& kind) {
     const auto uniform = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
     const auto count = [&](int low, int high) {
         return static_cast<std::size_t>(std::uniform_int_distribution<int>(low, high)(random));
     };
-    SlotChoiceProblem problem;
+    MultipleChoiceKnapsack problem;
     problem.free_choices = count(1, 3);
     const auto choices = problem.free_choices + (kind.fixed ? count(0, 1) : 0);
     std::vector<double> power;
     for (std::size_t c = 0; c < choices; ++c) {
-        problem.worth_per_s.push_back(kind.alike ? std::round(uniform(0, 5)) : uniform(0, 5));
+        problem.utility_per_s.push_back(kind.alike ? std::round(uniform(0, 5)) : uniform(0, 5));
         power.push_back(uniform(0.5, 4));
     }
     const auto slots = count(1, choices == 4 ? 7 : 8);
     double least = 0.0;
     double most = 0.0;
     for (std::size_t i = 0; i < slots; ++i) {
-        ChoiceSlot slot;
+        KnapsackSlot slot;
         slot.duration_s = kind.alike ? 10.0 : uniform(1, 10);
         for (std::size_t c = 0; c < choices; ++c) {
-            slot.drain.push_back(power[c] * slot.duration_s * (kind.alike ? 1.0 : uniform(0.9, 1.1)));
-            if (kind.impossible && uniform(0, 1) < 0.1) slot.drain.back() = impossible;
+            slot.cost.push_back(power[c] * slot.duration_s * (kind.alike ? 1.0 : uniform(0.9, 1.1)));
+            if (kind.impossible && uniform(0, 1) < 0.1) slot.cost.back() = impossible;
         }
         if (kind.fixed && uniform(0, 1) < 0.3) slot.fixed = count(0, static_cast<int>(choices) - 1);
-        const auto [low, high] = std::minmax_element(slot.drain.begin(), slot.drain.end());
+        const auto [low, high] = std::minmax_element(slot.cost.begin(), slot.cost.end());
         least += std::isfinite(*low) ? *low : 0.0;
         most += std::isfinite(*high) ? *high : 40.0;
         problem.slots.push_back(slot);
@@ -118,8 +118,8 @@ SlotChoiceProblem random_problem(std::mt19937& random, const RandomCase& kind) {
     return problem;
 }
 
-void expect_the_enumerated(const SlotChoiceProblem& problem, int& feasible) {
-    const auto plan = choose_slots(problem);
+void expect_the_enumerated(const MultipleChoiceKnapsack& problem, int& feasible) {
+    const auto plan = solve_knapsack(problem);
     const auto all = enumerate(problem);
     if (!std::isfinite(all.least_drain)) {
         EXPECT_FALSE(plan.possible);
@@ -127,30 +127,30 @@ void expect_the_enumerated(const SlotChoiceProblem& problem, int& feasible) {
         return;
     }
     EXPECT_TRUE(plan.possible);
-    ASSERT_EQ(plan.feasible, std::isfinite(all.worth));
+    ASSERT_EQ(plan.feasible, std::isfinite(all.utility));
     EXPECT_TRUE(dwells(problem, plan.choices));
     if (!plan.feasible) {
-        EXPECT_NEAR(plan.drain, all.least_drain, 1e-9);
+        EXPECT_NEAR(plan.cost, all.least_drain, 1e-9);
         return;
     }
     ++feasible;
-    double worth = 0.0;
-    double drain = 0.0;
+    double utility = 0.0;
+    double cost = 0.0;
     for (std::size_t i = 0; i < plan.choices.size(); ++i) {
         const auto& slot = problem.slots[i];
         EXPECT_EQ(plan.choices[i], slot.fixed.value_or(plan.choices[i]));
-        worth += problem.worth_per_s[plan.choices[i]] * slot.duration_s;
-        drain += slot.drain[plan.choices[i]];
+        utility += problem.utility_per_s[plan.choices[i]] * slot.duration_s;
+        cost += slot.cost[plan.choices[i]];
     }
-    EXPECT_NEAR(plan.worth, worth, 1e-9);
-    EXPECT_NEAR(plan.drain, drain, 1e-9);
-    EXPECT_LE(drain, problem.budget + 1e-9);
-    EXPECT_GE(plan.bound, all.worth - 1e-9);
-    EXPECT_LE(plan.bound, plan.worth * (1.0 + 1e-6) + 1e-9);
-    EXPECT_NEAR(plan.worth, all.worth, 1e-6 * all.worth + 1e-9);
+    EXPECT_NEAR(plan.utility, utility, 1e-9);
+    EXPECT_NEAR(plan.cost, cost, 1e-9);
+    EXPECT_LE(cost, problem.budget + 1e-9);
+    EXPECT_GE(plan.bound, all.utility - 1e-9);
+    EXPECT_LE(plan.bound, plan.utility * (1.0 + 1e-6) + 1e-9);
+    EXPECT_NEAR(plan.utility, all.utility, 1e-6 * all.utility + 1e-9);
 }
 
-TEST(SlotChoice, IsTheBestOfAllThatCanBeEnumerated) {
+TEST(KnapsackSolution, IsTheBestOfAllThatCanBeEnumerated) {
     std::mt19937 random(20201104);
     int feasible = 0;
     for (int kind = 0; kind < 32; ++kind) {
@@ -165,63 +165,63 @@ TEST(SlotChoice, IsTheBestOfAllThatCanBeEnumerated) {
 }
 
 /// So many slots and choices, with no two slots alike.
-SlotChoiceProblem large_problem(std::size_t slots, std::size_t choices, double dwell_s) {
+MultipleChoiceKnapsack large_problem(std::size_t slots, std::size_t choices, double dwell_s) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0.9, 1.1);
-    SlotChoiceProblem problem;
+    MultipleChoiceKnapsack problem;
     problem.free_choices = choices;
     problem.dwell_s = dwell_s;
     for (std::size_t c = 0; c < choices; ++c) {
-        problem.worth_per_s.push_back(std::sqrt(static_cast<double>(c)) * uniform(random));
+        problem.utility_per_s.push_back(std::sqrt(static_cast<double>(c)) * uniform(random));
     }
     for (std::size_t i = 0; i < slots; ++i) {
-        ChoiceSlot slot{10.0, {}, {}};
+        KnapsackSlot slot{10.0, {}, {}};
         for (std::size_t c = 0; c < choices; ++c)
-            slot.drain.push_back((1.0 + static_cast<double>(c)) * uniform(random));
+            slot.cost.push_back((1.0 + static_cast<double>(c)) * uniform(random));
         problem.slots.push_back(slot);
-        problem.budget += slot.drain.front() + 0.37 * (slot.drain.back() - slot.drain.front());
+        problem.budget += slot.cost.front() + 0.37 * (slot.cost.back() - slot.cost.front());
     }
     return problem;
 }
 
-TEST(SlotChoice, ProvesItsGapWhereNothingIsAlike) {
+TEST(KnapsackSolution, ProvesItsGapWhereNothingIsAlike) {
     for (const double dwell_s : {0.0, 60.0}) {
         const auto problem = large_problem(70, 20, dwell_s);
         const auto begin = std::chrono::steady_clock::now();
-        const auto plan = choose_slots(problem);
+        const auto plan = solve_knapsack(problem);
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
         ASSERT_TRUE(plan.feasible);
-        EXPECT_LE(plan.drain, problem.budget);
-        EXPECT_LE(plan.bound, plan.worth * 1.001) << dwell_s;
-        EXPECT_GE(plan.bound, plan.worth);
+        EXPECT_LE(plan.cost, problem.budget);
+        EXPECT_LE(plan.bound, plan.utility * 1.001) << dwell_s;
+        EXPECT_GE(plan.bound, plan.utility);
         RecordProperty("seconds_dwell_" + std::to_string(static_cast<int>(dwell_s)),
                        std::to_string(took.count()));
     }
 }
 
-TEST(SlotChoice, StaysWithinItsMeansInTenHours) {
+TEST(KnapsackSolution, StaysWithinItsMeansInTenHours) {
     for (const double dwell_s : {0.0, 120.0}) {
         const auto problem = large_problem(3600, 8, dwell_s);
-        const auto plan = choose_slots(problem);
+        const auto plan = solve_knapsack(problem);
         ASSERT_TRUE(plan.feasible);
-        EXPECT_LE(plan.drain, problem.budget);
-        EXPECT_LE(plan.bound, plan.worth * 1.001) << dwell_s;
+        EXPECT_LE(plan.cost, problem.budget);
+        EXPECT_LE(plan.bound, plan.utility * 1.001) << dwell_s;
     }
 }
 
-TEST(SlotChoice, HasABoundThatHoldsWhenItMayNotSearch) {
+TEST(KnapsackSolution, HasABoundThatHoldsWhenItMayNotSearch) {
     const auto problem = large_problem(12, 3, 0.0);
-    const auto plan = choose_slots(problem, {1e-9, 1});
+    const auto plan = solve_knapsack(problem, {1e-9, 1});
     const auto best = enumerate(problem);
-    EXPECT_GE(plan.bound, best.worth - 1e-9);
-    EXPECT_LE(plan.worth, best.worth + 1e-9);
-    EXPECT_LE(plan.drain, problem.budget);
+    EXPECT_GE(plan.bound, best.utility - 1e-9);
+    EXPECT_LE(plan.utility, best.utility + 1e-9);
+    EXPECT_LE(plan.cost, problem.budget);
 }
 
-TEST(SlotChoice, OfNoSlotsIsNothing) {
-    const auto plan = choose_slots({{}, {1.0}, 1, 0.0, 0.0, {}});
+TEST(KnapsackSolution, OfNoSlotsIsNothing) {
+    const auto plan = solve_knapsack({{}, {1.0}, 1, 0.0, 0.0, {}});
     EXPECT_TRUE(plan.feasible);
-    EXPECT_EQ(plan.worth, 0.0);
+    EXPECT_EQ(plan.utility, 0.0);
     EXPECT_TRUE(plan.choices.empty());
 }
 

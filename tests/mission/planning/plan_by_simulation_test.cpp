@@ -3,10 +3,11 @@
 #include "mission/planning/plan_by_simulation.h"
 
 #include "base/error.h"
-#include "helpers/test_paths.h"
+#include "helpers/paper_missions.h"
 #include "mission/feasibility_limits.h"
-#include "mission/flown_schedule.h"
 #include "mission/infeasibility_report.h"
+#include "mission/planning/plan_rest.h"
+#include "mission/planning/voltage_course.h"
 #include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
@@ -19,10 +20,11 @@
 namespace flightwatt::mission {
 namespace {
 
-MissionOfCruise thevenin_plan(double reserve_soc_percent = 20.0, double cutoff_voltage_v = 10.5) {
+std::function<PlanningProblem(double)> thevenin_plan(double reserve_soc_percent = 20.0,
+                                                     double cutoff_voltage_v = 10.5) {
     return [=](double cruise_s) {
-        auto mission = read_mission(test::source_dir() / "missions" / "synthetic" / "thevenin-plan.toml",
-                                    {true, cruise_s});
+        auto mission = std::get<PlanningProblem>(read_mission(
+            test::source_dir() / "missions" / "synthetic" / "thevenin-plan.toml", {true, cruise_s}));
         mission.reserve_soc_percent = reserve_soc_percent;
         mission.cutoff_voltage_v = cutoff_voltage_v;
         return mission;
@@ -30,28 +32,27 @@ MissionOfCruise thevenin_plan(double reserve_soc_percent = 20.0, double cutoff_v
 }
 
 /// A pack that sags and recovers, and a mission of few slots and two levels.
-Mission small_mission(std::mt19937& random) {
+PlanningProblem small_mission(std::mt19937& random) {
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     auto mission = thevenin_plan(0.0, 0.0)(1500.0);
     mission.battery.resistance_ohm = 0.02 + 0.1 * uniform(random);
     mission.battery.thevenin->rc_resistance_ohm = 0.1 * uniform(random);
     mission.battery.thevenin->rc_time_constant_s = 10.0 + 100.0 * uniform(random);
-    mission.plan->slot_s = 150.0 + 100.0 * uniform(random);
-    mission.plan->choices[0].levels = {{5.8, 12.0 + 20.0 * uniform(random)}};
+    mission.plan.slot_s = 150.0 + 100.0 * uniform(random);
+    mission.plan.choices[0].levels = {{5.8, 12.0 + 20.0 * uniform(random)}};
     return mission;
 }
 
 /// The most that any schedule is worth which lands, simulated.
-double best_of_all(const Mission& mission, const Planner& planner) {
+double best_of_all(const PlanningProblem& mission, const Planner& planner) {
     const auto slots = slots_of(mission);
     double best = -1.0;
     for (std::size_t code = 0; code < (std::size_t{1} << slots.size()); ++code) {
-        std::vector<Stretch> schedule;
+        std::vector<ScheduleSegment> schedule;
         for (std::size_t i = 0; i < slots.size(); ++i) {
-            schedule.push_back({slots[i].phase, slots[i].from_s, slots[i].to_s,
-                                planner.drains.configurations[(code >> i) & 1]});
+            schedule.push_back({slots[i], planner.depletions.configurations[(code >> i) & 1]});
         }
-        const auto summary = simulate(with_schedule(mission, schedule), {1e3, 1.0}).summary;
+        const auto summary = simulate(mission, schedule, {1e3, 1.0}).summary;
         if (summary.keeps_reserve) best = std::max(best, *summary.utility);
     }
     return best;
@@ -77,7 +78,7 @@ TEST(SimulatedPlan, IsCloseToTheBestOfAllSchedules) {
     double worst_gap_percent = 0.0;
     for (int i = 0; i < 8; ++i) {
         auto mission = small_mission(random);
-        const auto least = simulate(with_least_schedule(mission)).summary;
+        const auto least = simulate(with_minimum_energy_schedule(mission)).summary;
         if (!least.feasible) continue;
         std::uniform_real_distribution<double> share(0.3, 1.0);
         mission.reserve_soc_percent = share(random) * *least.final_soc_percent;
@@ -111,12 +112,12 @@ TEST(SimulatedPlan, IsNotCutOff) {
 }
 
 TEST(SimulatedPlan, KeepsThePapersBatteryFromItsCutOff) {
-    auto mission = read_mission(test::source_dir() / "missions" / "paper" / "plan.toml", {true, {}});
-    mission.schedule.clear();
+    auto mission = test::paper_problem("plan");
+    mission.fixed.clear();
     mission.reserve_soc_percent = 1.0;
     mission.battery = {"", 3.6, 0.02, 3.4};
     const double least_v = [&] {
-        const auto rows = simulate(with_least_schedule(mission)).curve.rows;
+        const auto rows = simulate(with_minimum_energy_schedule(mission)).curve.rows;
         return std::min_element(
                    rows.begin(), rows.end(),
                    [](const auto& a, const auto& b) { return a.terminal_voltage_v < b.terminal_voltage_v; })
@@ -131,14 +132,34 @@ TEST(SimulatedPlan, KeepsThePapersBatteryFromItsCutOff) {
     EXPECT_FALSE(plan_mission(mission).plan.feasible);
 }
 
-TEST(SimulatedPlan, HasATableThatHoldsAlongIt) {
-    const auto plan = plan_mission(thevenin_plan()(1800.0));
-    const auto& table = plan.planner.drains;
-    const auto stretches = tabled(plan.flown.schedule, table);
-    EXPECT_FALSE(soc_after(table, stretches)) << "along other schedules it does not hold";
+TEST(Planner, HasATableThatHoldsAlongACourse) {
+    const auto problem = thevenin_plan()(1800.0);
+    const auto plan = plan_mission(problem);
+    const auto course = voltage_course_of(problem, plan.flown.schedule);
+    ASSERT_TRUE(course);
+    const auto table = with_voltage_course(problem, make_planner(problem), *course).depletions;
+    const auto segments = tabled(plan.flown.schedule, table);
+    EXPECT_FALSE(soc_after(table, segments)) << "along other schedules it does not hold";
     double soc_percent = 100.0;
-    for (const auto& stretch : stretches) soc_percent -= drain_percent(table, stretch);
+    for (const auto& segment : segments) soc_percent -= soc_depletion_percent(table, segment);
     EXPECT_NEAR(soc_percent, *plan.summary.final_soc_percent, 1e-3);
+}
+
+TEST(PlanRest, AnswersALearnedFactorOnAPackWhoseVoltageFalls) {
+    const auto problem = thevenin_plan()(1800.0);
+    const auto planner = make_planner(problem);
+    const auto soc_with = [&](double mechanical_factor) {
+        const auto plan =
+            plan_rest(problem, planner, {0.0, 100.0, std::nullopt, 0.0, mechanical_factor}, 95.0);
+        EXPECT_FALSE(plan.feasible) << "so that the schedule is the one that demands least energy";
+        return plan.final_soc_percent;
+    };
+    const double mechanical_percent = 10.0 * (soc_with(1.0) - soc_with(1.1));
+    EXPECT_GT(mechanical_percent, 0.0);
+    double tabled_percent = 0.0;
+    for (const auto& slot : slots_of(problem))
+        tabled_percent += soc_depletion_percent(planner.mechanical_depletion, {slot, 0});
+    EXPECT_NEAR(mechanical_percent, tabled_percent, 1e-6);
 }
 
 TEST(SimulatedPlan, KeepsTheReserveWithAProbability) {
@@ -180,32 +201,33 @@ TEST(SimulatedPlan, SaysWhatIsMissing) {
     const auto mission = mission_of(1800.0);
     const auto plan = plan_mission(mission);
     ASSERT_FALSE(plan.plan.feasible);
-    const auto shortfall = shortfall_of(mission, plan, mission_of);
-    EXPECT_GT(shortfall.short_percent, 0.0);
-    EXPECT_GT(shortfall.short_wh, 0.0);
-    ASSERT_TRUE(shortfall.cut_off_at_s && shortfall.cruise_s && shortfall.capacity_ah);
-    EXPECT_FALSE(shortfall.reserve_soc_percent) << "it is not the reserve";
-    EXPECT_TRUE(plan_mission(mission_of(*shortfall.cruise_s)).plan.feasible);
-    EXPECT_FALSE(plan_mission(mission_of(*shortfall.cruise_s + 0.1)).plan.feasible);
+    const auto report = infeasibility_report(mission, plan, mission_of);
+    EXPECT_GT(report.short_percent, 0.0);
+    EXPECT_GT(report.short_wh, 0.0);
+    ASSERT_TRUE(report.cut_off_at_s && report.cruise_s && report.capacity_ah);
+    EXPECT_FALSE(report.reserve_soc_percent) << "it is not the reserve";
+    EXPECT_TRUE(plan_mission(mission_of(*report.cruise_s)).plan.feasible);
+    EXPECT_FALSE(plan_mission(mission_of(*report.cruise_s + 0.1)).plan.feasible);
     for (const double more_ah : {-1e-5, 1e-5}) {
         auto other = mission;
-        other.battery.capacity_ah = *shortfall.capacity_ah + more_ah;
+        other.battery.capacity_ah = *report.capacity_ah + more_ah;
         EXPECT_EQ(plan_mission(other).plan.feasible, more_ah > 0.0);
     }
 }
 
-TEST(SimulatedPlan, AnswersTheInverseQuestions) {
+TEST(SimulatedPlan, HasFeasibilityLimits) {
     const auto cruise = longest_cruise(thevenin_plan());
     EXPECT_NEAR(cruise.residual_percent, 0.0, 1e-6);
-    EXPECT_FALSE(cruise.cut_off_is_the_limit);
+    EXPECT_EQ(cruise.limited_by, FeasibilityBound::charge);
     const auto cut_off = longest_cruise(thevenin_plan(20.0, 11.0));
     EXPECT_LT(cut_off.value, cruise.value);
-    EXPECT_TRUE(cut_off.cut_off_is_the_limit);
+    EXPECT_EQ(cut_off.limited_by, FeasibilityBound::cut_off);
     EXPECT_GT(cut_off.residual_percent, 1.0);
     const auto mission = thevenin_plan()(1800.0);
     const auto payload = largest_payload(mission);
     EXPECT_NEAR(payload.residual_percent, 0.0, 1e-6);
-    EXPECT_FALSE(simulate(with_payload(mission, payload.value + 0.01)).summary.keeps_reserve);
+    EXPECT_FALSE(simulate(with_payload(with_minimum_energy_schedule(mission), payload.value + 0.01))
+                     .summary.keeps_reserve);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "mission/replanning/adaptive_flight.h"
 
-#include "helpers/rejected.h"
-#include "mission/file/adaptive_policy_toml.h"
+#include "helpers/paper_missions.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"
 
@@ -10,19 +9,18 @@
 namespace flightwatt::mission {
 namespace {
 
-Mission paper(const std::string& name) {
-    return read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"), {true, std::nullopt});
-}
+using test::paper_mission;
+using test::paper_problem;
 
 /// The best schedule of the same mission if nothing happens.
-Mission planned_beforehand() {
-    auto mission = paper("adaptive-replanned");
+PlanningProblem planned_beforehand() {
+    auto mission = paper_problem("adaptive-replanned");
     mission.adaptive.reset();
     return mission;
 }
 
-MissionSummary flown(const Mission& mission, const std::vector<Disturbance>& disturbances) {
-    return fly(make_flyable(mission), {}, disturbances).simulation.summary;
+MissionSummary flown(const AnyMission& mission, const std::vector<Disturbance>& disturbances) {
+    return fly(prepare(mission), {}, disturbances).simulation.summary;
 }
 
 Disturbance headwind(double factor) {
@@ -39,17 +37,19 @@ Disturbance weak_pack(double factor) {
 
 Disturbance drop(double at_s, double percent) {
     Disturbance lost;
-    lost.from_s = at_s;
+    lost.start_s = at_s;
     lost.soc_drop_percent = percent;
     return lost;
 }
 
 TEST(AdaptiveFlight, KeepsItsReserveInAHeadwindThatEmptiesStaticSchedules) {
-    const auto summary = flown(paper("adaptive-replanned"), {headwind(1.1)});
+    const auto summary = flown(paper_problem("adaptive-replanned"), {headwind(1.1)});
     EXPECT_TRUE(summary.keeps_reserve) << *summary.final_soc_percent;
     EXPECT_LT(*summary.final_soc_percent, 2.5) << "and does not hoard";
-    for (const auto& mission : {paper("phased"), paper("invariant-10fps-240bit"), planned_beforehand()})
-        EXPECT_TRUE(flown(mission, {headwind(1.1)}).depleted_at_s) << mission.name;
+    const std::vector<AnyMission> others{paper_mission("phased"), paper_mission("invariant-10fps-240bit"),
+                                         planned_beforehand()};
+    for (const auto& mission : others)
+        EXPECT_TRUE(flown(mission, {headwind(1.1)}).depleted_at_s) << setup_of(mission).name;
 }
 
 TEST(AdaptiveFlight, KeepsItsReserveWhateverElseHappens) {
@@ -59,7 +59,7 @@ TEST(AdaptiveFlight, KeepsItsReserveWhateverElseHappens) {
         {headwind(0.9)},
     };
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        const auto summary = flown(paper("adaptive-replanned"), cases[i]);
+        const auto summary = flown(paper_problem("adaptive-replanned"), cases[i]);
         EXPECT_TRUE(summary.keeps_reserve) << i << ": " << *summary.final_soc_percent;
     }
     for (std::size_t i = 0; i < 4; ++i)
@@ -67,19 +67,19 @@ TEST(AdaptiveFlight, KeepsItsReserveWhateverElseHappens) {
 }
 
 TEST(AdaptiveFlight, LandsWithAsMuchAsPossibleWhereTheReserveCannotBeKept) {
-    const auto summary = flown(paper("adaptive-replanned"), {headwind(1.13)});
+    const auto summary = flown(paper_problem("adaptive-replanned"), {headwind(1.13)});
     // The paper's schedule of that name runs the least wherever nothing is fixed.
-    const auto least = flown(paper("adaptive"), {headwind(1.13)});
+    const auto least = flown(paper_mission("adaptive"), {headwind(1.13)});
     EXPECT_TRUE(summary.feasible);
     EXPECT_FALSE(summary.keeps_reserve);
     EXPECT_LT(*least.final_soc_percent, 2.0);
     EXPECT_NEAR(*summary.final_soc_percent, *least.final_soc_percent, 0.5);
     EXPECT_NE(describe(summary).find("less than the reserve of 2 %"), std::string::npos);
-    EXPECT_NE(describe(summary).find("what drains least was run"), std::string::npos);
+    EXPECT_NE(describe(summary).find("what demands least energy was run"), std::string::npos);
 }
 
 TEST(AdaptiveFlight, IsNearlyAsGoodAsThePlanIfNothingHappens) {
-    const auto adaptive = flown(paper("adaptive-replanned"), {});
+    const auto adaptive = flown(paper_problem("adaptive-replanned"), {});
     const auto plan = plan_mission(planned_beforehand());
     EXPECT_TRUE(adaptive.keeps_reserve);
     EXPECT_GE(*adaptive.utility, 0.97 * *plan.summary.utility);
@@ -88,7 +88,7 @@ TEST(AdaptiveFlight, IsNearlyAsGoodAsThePlanIfNothingHappens) {
 
 TEST(AdaptiveFlight, LearnsHowMuchMoreMechanicalPowerIs) {
     const auto at = [](const std::vector<Disturbance>& disturbances) {
-        return flown(paper("adaptive-replanned"), disturbances).decisions->mechanical_factor;
+        return flown(paper_problem("adaptive-replanned"), disturbances).decisions->mechanical_factor;
     };
     EXPECT_NEAR(at({}), 1.0, 1e-6);
     EXPECT_NEAR(at({headwind(1.1)}), 1.0 + 0.1 * 688.0 / (688.0 + 60.0), 1e-6)
@@ -97,17 +97,17 @@ TEST(AdaptiveFlight, LearnsHowMuchMoreMechanicalPowerIs) {
 }
 
 TEST(AdaptiveFlight, KeepsWhatIsFixed) {
-    const auto flight = fly(make_flyable(paper("adaptive-replanned")), {}, {headwind(1.3)});
+    const auto flight = fly(prepare(paper_problem("adaptive-replanned")), {}, {headwind(1.3)});
     bool found = false;
-    for (const auto& stretch : flight.flown.schedule) {
-        if (stretch.phase != flight::Phase::cruise || stretch.from_s != 240.0) continue;
-        found = stretch.to_s == 360.0 && stretch.run == compute::Configuration{{0, {32.0}}, {1, {448.0}}};
+    for (const auto& segment : flight.schedule) {
+        if (segment.phase != flight::Phase::cruise || segment.start_s != 240.0) continue;
+        found = segment.end_s == 360.0 && segment.run == compute::Configuration{{0, {32.0}}, {1, {448.0}}};
     }
     EXPECT_TRUE(found);
 }
 
 TEST(AdaptiveFlight, DecidesAsOftenAsItIsTold) {
-    auto mission = paper("adaptive-replanned");
+    auto mission = paper_problem("adaptive-replanned");
     EXPECT_EQ(flown(mission, {}).decisions->made, 69U);
     mission.adaptive->decide_every_s = 60.0;
     const auto summary = flown(mission, {headwind(1.1)});
@@ -116,7 +116,7 @@ TEST(AdaptiveFlight, DecidesAsOftenAsItIsTold) {
 }
 
 TEST(AdaptiveFlight, FliesAPackWhoseVoltageFalls) {
-    auto mission = paper("adaptive-replanned");
+    auto mission = paper_problem("adaptive-replanned");
     mission.battery = battery::read_battery(test::source_dir() / "fits" / "battery" / "synthetic-3s.toml");
     mission.battery.capacity_ah = 1.05;
     for (const double factor : {1.0, 1.1}) {
@@ -124,26 +124,6 @@ TEST(AdaptiveFlight, FliesAPackWhoseVoltageFalls) {
         EXPECT_TRUE(summary.keeps_reserve) << *summary.final_soc_percent;
         EXPECT_LT(*summary.final_soc_percent, 6.0) << factor;
     }
-}
-
-std::optional<AdaptivePolicy> policy(const std::string& text) {
-    return read_adaptive_policy(parse_toml(text, "m.toml"));
-}
-
-TEST(AdaptivePolicyToml, ReadsAndRefuses) {
-    EXPECT_FALSE(policy(""));
-    EXPECT_FALSE(policy("[policy]\nkind = \"static\"\n"));
-    EXPECT_EQ(policy("[policy]\nkind = \"adaptive\"\n")->decide_every_s, 0.0);
-    EXPECT_EQ(policy("[policy]\nkind = \"adaptive\"\nprobability = 0.9\n")->probability, 0.9);
-    const auto refused = [](const std::string& text) { return test::rejected([&] { policy(text); }); };
-    EXPECT_EQ(refused("[policy]\nkind = \"adaptiv\"\n"),
-              "m.toml:2:1: there is no policy 'adaptiv'; it is \"adaptive\" or \"static\"");
-    EXPECT_EQ(
-        refused("[policy]\nkind = \"static\"\nprobability = 0.9\n"),
-        "m.toml:3:1: `probability` has no meaning with kind = \"static\"; leave it out, or make it kind = "
-        "\"adaptive\"");
-    EXPECT_EQ(refused("[policy]\nkind = \"adaptive\"\ndecide_every_s = 0\n"),
-              "m.toml:3:1: decide_every_s = 0 is out of range; expected 0.1 to 1000000");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "report/sections/plan_section.h"
 
-#include "helpers/test_paths.h"
+#include "helpers/paper_missions.h"
 #include "report/figures/plan_figures.h"
 
 #include <gmock/gmock.h>
@@ -11,8 +11,8 @@ namespace {
 
 using testing::HasSubstr;
 
-mission::Mission paper(const std::string& name) {
-    return mission::read_mission(test::source_dir() / "missions" / "paper" / (name + ".toml"), {true, std::nullopt});
+mission::AnyMission paper(const std::string& name) {
+    return mission::read_mission(test::paper_mission_path(name), {true, std::nullopt});
 }
 
 TEST(PlanSection, IsEmptyWhereNothingWasPlanned) {
@@ -38,7 +38,7 @@ TEST(PlanSection, ShowsThePlanBesideMissionsOfItsKind) {
 }
 
 TEST(PlanSection, SaysWhereNoPlanKeepsTheReserve) {
-    auto mission = paper("plan");
+    auto mission = test::paper_problem("plan");
     mission.reserve_soc_percent = 60.0;
     const auto missions = simulate_for_report({mission});
     EXPECT_FALSE(missions[0].planned->feasible);
@@ -48,13 +48,13 @@ TEST(PlanSection, SaysWhereNoPlanKeepsTheReserve) {
 }
 
 TEST(RunningTimes, JoinEqualNeighboursOverPhases) {
-    const auto mission = paper("adaptive");
+    const auto mission = test::paper_mission("adaptive");
     const auto times = running_times(mission);
     ASSERT_EQ(times.size(), 6U) << "two components: little, much, little";
-    EXPECT_EQ(times[0].from_s, 0.0);
-    EXPECT_NEAR(times[2].to_s - times[2].from_s, 120.0, 1e-9);
+    EXPECT_EQ(times[0].start_s, 0.0);
+    EXPECT_NEAR(times[2].end_s - times[2].start_s, 120.0, 1e-9);
     EXPECT_EQ(describe_qos(mission.compute.components[times[2].component], times[2].qos), "fps 32");
-    EXPECT_NEAR(times[4].to_s, 688.0, 1.0);
+    EXPECT_NEAR(times[4].end_s, 688.0, 1.0);
 }
 
 }  // namespace

@@ -1,14 +1,14 @@
-#include "mission/flight_draws.h"
+#include "mission/sampling/flight_draws.h"
 
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/prediction.h"
-#include "mission/disturbance.h"
 #include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include <boost/random/normal_distribution.hpp>
 #include <fmt/format.h>
@@ -25,29 +25,31 @@ void note_source(FlightSpreads& spreads, bool is_drawn, const std::string& sourc
     (is_drawn ? spreads.drawn : spreads.not_drawn).push_back(fmt::format("{} ({})", source, basis));
 }
 
-void find_level(const Mission& mission, flight::Phase phase, FlightSpreads& spreads) {
-    const auto source = fmt::format("{} level", to_string(phase));
-    auto& sd_w = spreads.level_sd_w[phase];
-    const auto& model = mission.mechanical->phases[phase];
-    std::string basis = "the model has no spread: fit two flights or more";
-    if (const auto stated_w = stated_level_sd_w(mission, phase)) {
-        sd_w = *stated_w;
-        basis = fmt::format("sd {:.4g} W, stated", sd_w);
-    } else if (phase == flight::Phase::cruise && mission.cruise_level) {
-        sd_w = mission.cruise_level->sd_w.value();
-        basis = fmt::format("sd {:.4g} W, of the flights about what the conditions say", sd_w);
-    } else if (const auto& spread = model.level_spread) {
-        sd_w =
-            spread->level_sd_w * std::sqrt(1.0 + forecast_of(*mission.mechanical, phase).weight_square_sum);
-        basis = fmt::format("sd {:.4g} W, of {} flights", sd_w, spread->flights);
-    } else if (model.errors) {
-        sd_w = model.errors->a0_w;
-        basis = fmt::format("sd {:.4g} W, the fit's standard error; not how flights differ", sd_w);
+std::string basis_of(const LevelDeviation& deviation) {
+    const auto sd = fmt::format("sd {:.4g} W, ", deviation.sd_w);
+    switch (deviation.source) {
+        case DeviationSource::none:
+            return "the model has no spread: fit two flights or more";
+        case DeviationSource::stated:
+            return sd + "stated";
+        case DeviationSource::conditions:
+            return sd + "of the flights about what the conditions say";
+        case DeviationSource::flights:
+            return sd + fmt::format("of {} flights", deviation.flights);
+        case DeviationSource::fit_error:
+            return sd + "the fit's standard error; not how flights differ";
     }
-    note_source(spreads, sd_w > 0.0, source, basis);
+    throw std::logic_error("basis_of: no such source of a deviation");
 }
 
-void find_duration(const Mission& mission, flight::Phase phase, FlightSpreads& spreads) {
+void find_level(const MissionSetup& mission, flight::Phase phase, FlightSpreads& spreads) {
+    const auto deviation = level_deviation(mission, phase);
+    spreads.level_sd_w[phase] = deviation.sd_w;
+    note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)),
+                basis_of(deviation));
+}
+
+void find_duration(const MissionSetup& mission, flight::Phase phase, FlightSpreads& spreads) {
     const auto source = fmt::format("{} duration", to_string(phase));
     auto& sd_s = spreads.duration_sd_s[phase];
     std::vector<double> flown_s;
@@ -69,7 +71,7 @@ void find_duration(const Mission& mission, flight::Phase phase, FlightSpreads& s
     note_source(spreads, sd_s > 0.0, source, basis);
 }
 
-void find_compute(const Mission& mission, FlightSpreads& spreads) {
+void find_compute(const MissionSetup& mission, FlightSpreads& spreads) {
     const auto& components = mission.compute.components;
     for (std::size_t i = 0; i < components.size(); ++i) {
         const auto source = fmt::format("power of {}", components[i].name);
@@ -84,7 +86,7 @@ void find_compute(const Mission& mission, FlightSpreads& spreads) {
     }
 }
 
-void find_battery(const Mission& mission, FlightSpreads& spreads) {
+void find_battery(const MissionSetup& mission, FlightSpreads& spreads) {
     const auto& battery = mission.battery;
     const auto& intervals = battery.intervals;
     const auto find = [&](const std::string& source, bool has_interval) {
@@ -184,7 +186,9 @@ void draw_compute(const Uncertainty& stated, Normals& normal, compute::ComputeMo
     }
 }
 
-FlightSpreads find_spreads(const Mission& mission) {
+}  // namespace
+
+FlightSpreads find_spreads(const MissionSetup& mission) {
     FlightSpreads spreads;
     for (const auto phase : flight::all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
@@ -196,11 +200,7 @@ FlightSpreads find_spreads(const Mission& mission) {
     return spreads;
 }
 
-}  // namespace
-
-bool has_spread(const Mission& mission) { return !find_spreads(mission).drawn.empty(); }
-
-FlightSpreads spreads_of(const Mission& mission) {
+FlightSpreads spreads_of(const MissionSetup& mission) {
     auto spreads = find_spreads(mission);
     if (!spreads.drawn.empty()) return spreads;
     throw InputError({mission.file},
@@ -211,8 +211,8 @@ FlightSpreads spreads_of(const Mission& mission) {
                      "compute_sd_percent or capacity_sd_percent");
 }
 
-Mission draw_flight(const Mission& mission, const FlightSpreads& spreads, std::uint64_t seed,
-                    std::uint64_t index) {
+MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,
+                         std::uint64_t index) {
     Normals normal(seed, index);
     auto flight = mission;
     for (const auto phase : flight::all_phases) {
@@ -224,7 +224,6 @@ Mission draw_flight(const Mission& mission, const FlightSpreads& spreads, std::u
         flight.duration_s[phase] =
             std::max(shortest_part * planned_s, planned_s + duration_z * spreads.duration_sd_s[phase]);
     }
-    flight.schedule = at_same_part(std::move(flight.schedule), mission.duration_s, flight.duration_s);
     draw_battery(mission.uncertainty, normal, flight.battery);
     draw_compute(mission.uncertainty, normal, flight.compute);
     return flight;

@@ -16,25 +16,21 @@ struct FlightSpreads {
     std::vector<std::string> not_drawn;  ///< what is taken as it is, for want of a spread
 };
 
-/// Levels: level_sd_percent, or the standard deviation between the model's flights times sqrt(1 + sum of
-/// their squared weights), which is that of a new flight about an average of few (as in drain_spread.h, and
-/// like there taken as known), or the standard error of the level alone where one flight was fitted.
-/// Durations: duration_sd_s, or what the model's flights show, with the same factor and in proportion to the
+/// Levels: as level_deviation. Durations: duration_sd_s, or what the model's flights show, with the same factor and in proportion to the
 /// mission's duration. Computing: compute_sd_percent, or the standard errors of the profile's nodes. Battery:
 /// capacity_sd_percent, and the 95 % intervals of its file.
-/// Throws InputError, which says what is missing and how to get it, where there is nothing to draw from.
-FlightSpreads spreads_of(const Mission& mission);
+FlightSpreads find_spreads(const MissionSetup& mission);
 
-/// Whether there is something to draw from.
-bool has_spread(const Mission& mission);
+/// The same. Throws InputError, which says what is missing and how to get it, where there is nothing to draw
+/// from.
+FlightSpreads spreads_of(const MissionSetup& mission);
 
 /// The mission as flight number `index` flies it: all normal, independent of each other, and of `seed` and
 /// `index` alone. Levels move a phase's whole curve; a component's nodes move together, unless they have
 /// standard errors of their own; an interval that is not symmetric has a deviation for each side; a time
 /// constant is normal in its logarithm; the knots of an open-circuit voltage move together. Durations stop at
 /// a tenth of the planned, other quantities that cannot be negative at 0 (or a thousandth of their value).
-/// The schedule keeps to the same parts of the phases.
-Mission draw_flight(const Mission& mission, const FlightSpreads& spreads, std::uint64_t seed,
-                    std::uint64_t index);
+MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,
+                         std::uint64_t index);
 
 }  // namespace flightwatt::mission

@@ -32,7 +32,7 @@ struct SampledFlights {
     double final_soc_sd_percent = 0.0;
     std::array<double, shown_quantiles_percent.size()> final_soc_quantiles_percent{};
     double probability_depleted = 0.0;                      ///< empty before the end
-    double probability_gave_out = 0.0;                      ///< that, or cut off, or beyond the power limit
+    double probability_battery_failure = 0.0;               ///< that, or cut off, or beyond the power limit
     double probability_below_reserve = 0.0;                 ///< the share of the flights
     double probability_below_reserve_standard_error = 0.0;  ///< sqrt(p (1 - p) / samples)
     battery::Interval probability_below_reserve_95;         ///< Wilson's score interval (1927)

@@ -1,8 +1,7 @@
-// The Thévenin circuit: its file, and its discharge against closed forms and limits.
+// Discharges of the Thévenin circuit, against closed forms and limits.
 
 #include "battery/battery.h"
 #include "battery/discharge.h"
-#include "helpers/rejected.h"
 
 #include <cmath>
 
@@ -11,8 +10,6 @@
 namespace flightwatt::battery {
 namespace {
 
-using test::rejected;
-
 /// Open circuit 12.5 V - 1.5 V times the part drawn, 0.08 ohm, and 0.05 ohm with 25 s.
 Battery straight_pack() {
     Battery pack{"straight", 0.0, 0.08, 2.0};
@@ -20,61 +17,7 @@ Battery straight_pack() {
     return pack;
 }
 
-const std::string pack_toml = R"(name = "pack"
-model = "thevenin"
-capacity_ah = 2.0
-resistance_ohm = 0.08
-rc_resistance_ohm = 0.05
-rc_time_constant_s = 25.0
-
-[open_circuit]
-soc_percent = [0.0, 50.0, 100.0]
-voltage_v = [10.0, 11.4, 12.5]
-standard_error_v = [0.2, 0.01, 0.02]
-
-# 95 %
-[intervals]
-resistance_ohm = [0.07, 0.09]
-rc_time_constant_s = [20.0, 31.0]
-)";
-
-TEST(Thevenin, IsWrittenAsItIsRead) {
-    const auto pack = battery_from(parse_toml(pack_toml, "b.toml"));
-    EXPECT_EQ(to_toml(pack), pack_toml);
-    EXPECT_EQ(pack.intervals.resistance_ohm, (Interval{0.07, 0.09}));
-    EXPECT_FALSE(pack.intervals.capacity_ah);
-    EXPECT_EQ(pack.intervals.open_circuit_standard_error_v.size(), 3U);
-    EXPECT_DOUBLE_EQ(open_circuit_voltage_v(pack, 75.0), 11.95);
-    EXPECT_EQ(open_circuit_voltage_v(pack, 100.0), 12.5);
-    EXPECT_EQ(open_circuit_voltage_v(pack, 0.0), 10.0);
-    EXPECT_DOUBLE_EQ(terminal_voltage_v(pack, {50.0, 0.1}, 2.0), 11.4 - 0.1 - 0.16);
-}
-
-TEST(Thevenin, RefusesWhatIsNoBattery) {
-    const auto of = [](const std::string& from, const std::string& to) {
-        auto text = pack_toml;
-        text.replace(text.find(from), from.size(), to);
-        return rejected([&] { battery_from(parse_toml(text, "b.toml")); });
-    };
-    EXPECT_EQ(of("thevenin", "rint"),
-              "b.toml:2:1: there is no battery model 'rint'; it is \"paper\" or \"thevenin\"");
-    EXPECT_EQ(of("[0.0, 50.0, 100.0]", "[0.0, 50.0, 99.0]"),
-              "b.toml:9:1: soc_percent does not rise from 0 to 100; expected [0, ..., 100]");
-    EXPECT_EQ(of("[10.0, 11.4, 12.5]", "[10.0, 12.5]"),
-              "b.toml:10:1: 2 voltages for 3 states of charge; expected one each");
-    EXPECT_EQ(of("[10.0, 11.4, 12.5]", "[10.0, 11.4, 11.3]"),
-              "b.toml:10:1: the open-circuit voltage is not positive, or falls as charge rises; expected "
-              "values in the order of soc_percent, none below the one before");
-    EXPECT_EQ(of("25.0", "0.01"),
-              "b.toml:6:1: rc_time_constant_s = 0.01 is out of range; expected 0.1 to 100000; what is faster "
-              "counts as resistance_ohm");
-    EXPECT_EQ(of("[0.07, 0.09]", "[0.09, 0.1]"),
-              "b.toml:15:1: this is no interval around resistance_ohm = 0.08; expected [LOW, HIGH]");
-    EXPECT_NE(of("name = \"pack\"", "voltage_v = 11.1"), "");
-    EXPECT_NE(of("[0.2, 0.01, 0.02]", "[0.2, -0.01, 0.02]"), "");
-}
-
-TEST(Thevenin, MeetsTheClosedFormOfConstantCurrent) {
+TEST(TheveninDischarge, MeetsTheClosedFormOfConstantCurrent) {
     const auto pack = straight_pack();
     constexpr double current_a = 3.0;
     const auto exact = [&](double t) {
@@ -89,8 +32,9 @@ TEST(Thevenin, MeetsTheClosedFormOfConstantCurrent) {
     }
 }
 
-TEST(Thevenin, DoesNotDependOnTheStep) {
-    const auto pack = battery_from(parse_toml(pack_toml, "b.toml"));  // its curve has a kink at 50 %
+TEST(TheveninDischarge, DoesNotDependOnTheStep) {
+    auto pack = straight_pack();
+    pack.thevenin->open_circuit = {{0.0, 50.0, 100.0}, {10.0, 11.4, 12.5}};  // with a kink at 50 %
     const auto load = [](double t) { return 60.0 + 40.0 * std::sin(0.3 * t); };
     const auto coarse = discharge(pack, load, 0.0, 900.0, {100.0, 0.0}, {0.1, 0.0});
     const auto fine = discharge(pack, load, 0.0, 900.0, {100.0, 0.0}, {0.007, 0.0});
@@ -102,7 +46,7 @@ TEST(Thevenin, DoesNotDependOnTheStep) {
     EXPECT_TRUE(std::isfinite(longest.soc_percent));
 }
 
-TEST(Thevenin, FlatWithoutRcIsThePapersBattery) {
+TEST(TheveninDischarge, FlatWithoutRcIsThePapersBattery) {
     const Battery paper{"", 11.1, 0.08, 2.0};
     auto flat = straight_pack();
     flat.thevenin = TheveninCircuit{{{0.0, 100.0}, {11.1, 11.1}}, 0.0, 1.0};
@@ -120,7 +64,7 @@ TEST(Thevenin, FlatWithoutRcIsThePapersBattery) {
     EXPECT_NEAR(end.soc_percent, 100.0 - 100.0 * 100.0 / 11.1 * 300.0 / 7200.0, 1e-6);
 }
 
-TEST(Thevenin, EndsAtCutOff) {
+TEST(TheveninDischarge, EndsAtCutOff) {
     // Without RC and at constant current the terminal voltage falls along a straight line.
     auto pack = straight_pack();
     pack.thevenin->rc_resistance_ohm = 0.0;
@@ -142,7 +86,7 @@ TEST(Thevenin, EndsAtCutOff) {
     EXPECT_FALSE(discharge(pack, load, 0.0, 100.0, {100.0, 0.0}, {0.1, 11.7}).cut_off_at_s);
 }
 
-TEST(Thevenin, TheRootIsTheCutOffTime) {
+TEST(TheveninDischarge, TheRootIsTheCutOffTime) {
     // In a step of 10 s: what a bisection of whole discharges finds is the time reported.
     const auto pack = straight_pack();
     const auto load = [](double t) { return 20.0 + 3.0 * t; };
@@ -157,7 +101,7 @@ TEST(Thevenin, TheRootIsTheCutOffTime) {
     EXPECT_NEAR(voltage_at(*fine.cut_off_at_s), 11.0, 1e-8);
 }
 
-TEST(Thevenin, SaysWhenItCannotDeliver) {
+TEST(TheveninDischarge, SaysWhenItCannotDeliver) {
     auto pack = straight_pack();
     pack.resistance_ohm = 0.5;  // full: 12.5^2 / 2 = 78.1 W
     const auto ramp = [](double t) { return t; };

@@ -1,6 +1,6 @@
-#include "mission/planned_mission_file.h"
-
+#include "base/format_version.h"
 #include "base/toml_text.h"
+#include "mission/mission_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -29,10 +29,10 @@ std::string key_text(const std::string& name) {
     return bare ? name : toml_string(name);
 }
 
-std::string run_text(const Mission& mission, const compute::Configuration& run) {
+std::string run_text(const compute::ComputeModel& compute, const compute::Configuration& run) {
     std::string text;
     for (const auto& running : run) {
-        const auto& component = mission.compute.components.at(running.component);
+        const auto& component = compute.components.at(running.component);
         std::string qos;
         for (std::size_t i = 0; i < running.qos.size(); ++i) {
             qos += (i == 0 ? " " : ", ") + key_text(component.profile.parameters[i]) + " = " +
@@ -44,12 +44,13 @@ std::string run_text(const Mission& mission, const compute::Configuration& run) 
     return text.empty() ? "{}" : "{" + text + " }";
 }
 
-std::string schedule_text(const Mission& mission) {
+std::string schedule_text(const compute::ComputeModel& compute,
+                          const std::vector<ScheduleSegment>& schedule) {
     std::string text;
-    for (const auto& stretch : mission.schedule) {
-        text += "\n[[schedule]]\nphase = " + toml_string(to_string(stretch.phase)) +
-                "\nfrom = " + toml_real(stretch.from_s) + "\nto = " + toml_real(stretch.to_s) +
-                "\nrun = " + run_text(mission, stretch.run) + "\n";
+    for (const auto& segment : schedule) {
+        text += "\n[[schedule]]\nphase = " + toml_string(to_string(segment.phase)) +
+                "\nfrom = " + toml_real(segment.start_s) + "\nto = " + toml_real(segment.end_s) +
+                "\nrun = " + run_text(compute, segment.run) + "\n";
     }
     return text;
 }
@@ -57,8 +58,11 @@ std::string schedule_text(const Mission& mission) {
 }  // namespace
 
 std::string planned_mission_toml(std::string_view text, const std::filesystem::path& path,
-                                 const Mission& planned, const std::filesystem::path& folder) {
+                                 const compute::ComputeModel& compute,
+                                 const std::vector<ScheduleSegment>& schedule,
+                                 const std::filesystem::path& folder) {
     auto root = toml::parse(text, path.string());
+    root.insert_or_assign("format", format_version);
     root.erase("plan");
     root.erase("schedule");
     root.erase("policy");  // the schedule is decided
@@ -72,7 +76,7 @@ std::string planned_mission_toml(std::string_view text, const std::filesystem::p
     }
     std::ostringstream out;
     out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};
-    return out.str() + "\n" + schedule_text(planned);
+    return out.str() + "\n" + schedule_text(compute, schedule);
 }
 
 }  // namespace flightwatt::mission

@@ -1,0 +1,130 @@
+#include "base/format_version.h"
+#include "base/toml_numbers.h"
+#include "mission/disturbance_file.h"
+#include "mission/file/schedule_toml.h"
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+/// The time that an entry's from, to and at are counted in: a phase, or the mission.
+struct TimeFrame {
+    std::string name;
+    double start_s = 0.0;  ///< since the mission began
+    double duration_s = 0.0;
+};
+
+TimeFrame frame_of(const TomlTable& entry, const flight::PerPhase<double>& duration_s) {
+    const auto timeline = timeline_of(duration_s);
+    const auto name = entry.optional_string("phase");
+    if (!name) return {"the mission", 0.0, timeline.duration_s};
+    const auto phase = flight::phase_from(*name);
+    if (!phase) {
+        throw InputError(entry.where("phase"), fmt::format("there is no phase '{}'", *name),
+                         "the phases are takeoff, cruise and landing");
+    }
+    if (duration_s[*phase] > 0.0) return {*name, timeline.start_s[*phase], duration_s[*phase]};
+    throw InputError(entry.where("phase"), fmt::format("{} takes no time in this mission", *name));
+}
+
+/// A time that an entry gives, as mission time.
+double read_mission_time_s(const TomlTable& entry, std::string_view key, const TimeFrame& frame) {
+    const double time_s = read_time_s(entry, key, frame.duration_s);
+    if (time_s >= 0.0 && time_s <= frame.duration_s) return frame.start_s + time_s;
+    throw InputError(entry.where(key), fmt::format("{} = {} s is not within {}", key, time_s, frame.name),
+                     fmt::format("it takes {} s in this mission", frame.duration_s));
+}
+
+/// Throws where one of `keys` stands with `other`.
+void refuse_beside(const TomlTable& entry, std::string_view other,
+                   std::initializer_list<std::string_view> keys, std::string_view why) {
+    for (const auto key : keys) {
+        if (!entry.has(key) || !entry.has(other)) continue;
+        throw InputError(entry.where(key), fmt::format("`{}` stands with `{}`: {}", key, other, why),
+                         "make two entries of it, or remove one");
+    }
+}
+
+void read_when(const TomlTable& entry, const TimeFrame& frame, Disturbance& disturbance) {
+    disturbance.start_s = frame.start_s;
+    disturbance.end_s = frame.start_s + frame.duration_s;
+    if (entry.has("at")) {
+        disturbance.start_s = read_mission_time_s(entry, "at", frame);
+        if (disturbance.start_s < disturbance.end_s) return;
+        throw InputError(entry.where("at"), fmt::format("{} is over then", frame.name), "let it be earlier");
+    }
+    if (entry.has("from")) disturbance.start_s = read_mission_time_s(entry, "from", frame);
+    if (entry.has("to")) disturbance.end_s = read_mission_time_s(entry, "to", frame);
+    if (disturbance.end_s > disturbance.start_s) return;
+    throw InputError(entry.where(entry.has("from") ? "from" : "to"), "the segment is empty",
+                     "it must start before it ends");
+}
+
+Disturbance read_disturbance(const TomlTable& entry, const flight::PerPhase<double>& duration_s) {
+    constexpr double largest_factor = 100.0;
+    constexpr double largest_w = 1e6;
+    constexpr std::string_view of_pack = "a pack is weaker from the start on";
+    entry.refuse_keys_except({"phase", "from", "to", "at", "mechanical_factor", "mechanical_w",
+                              "compute_factor", "compute_w", "soc_drop_percent", "capacity_factor",
+                              "resistance_factor"});
+    if (entry.has("soc_drop_percent") && !entry.has("at")) {
+        throw InputError(entry.where("soc_drop_percent"), "a drop happens at one moment, and none is given",
+                         "add at = SECONDS");
+    }
+    if (entry.has("at") && !entry.has("soc_drop_percent")) {
+        throw InputError(entry.where("at"), "`at` is when charge drops, and no soc_drop_percent is given",
+                         "for a segment use from and to");
+    }
+    refuse_beside(entry, "at",
+                  {"from", "to", "mechanical_factor", "mechanical_w", "compute_factor", "compute_w"},
+                  "one is a moment, the other lasts");
+    for (const std::string_view pack : {"capacity_factor", "resistance_factor"})
+        refuse_beside(entry, pack, {"phase", "from", "to", "at"}, of_pack);
+    Disturbance disturbance;
+    read_when(entry, frame_of(entry, duration_s), disturbance);
+    disturbance.mechanical_factor =
+        number_in_or(between(0.0, largest_factor), entry, "mechanical_factor", disturbance.mechanical_factor);
+    disturbance.mechanical_w =
+        number_in_or(between(-largest_w, largest_w), entry, "mechanical_w", disturbance.mechanical_w);
+    disturbance.compute_factor =
+        number_in_or(between(0.0, largest_factor), entry, "compute_factor", disturbance.compute_factor);
+    disturbance.compute_w =
+        number_in_or(between(-largest_w, largest_w), entry, "compute_w", disturbance.compute_w);
+    disturbance.soc_drop_percent =
+        number_in_or(between(0.0, 100.0), entry, "soc_drop_percent", disturbance.soc_drop_percent);
+    disturbance.capacity_factor =
+        number_in_or(between(0.01, largest_factor), entry, "capacity_factor", disturbance.capacity_factor);
+    disturbance.resistance_factor =
+        number_in_or(between(0.0, largest_factor), entry, "resistance_factor", disturbance.resistance_factor);
+    return disturbance;
+}
+
+void refuse_nothing(const TomlTable& entry) {
+    for (const auto& key : entry.keys()) {
+        if (key != "phase" && key != "from" && key != "to") return;
+    }
+    throw InputError(entry.where(), "this entry changes nothing",
+                     "give it mechanical_factor, mechanical_w, compute_factor, compute_w, capacity_factor, "
+                     "resistance_factor or soc_drop_percent");
+}
+
+}  // namespace
+
+std::vector<Disturbance> read_disturbances(const std::filesystem::path& path,
+                                           const flight::PerPhase<double>& duration_s) {
+    const auto root = read_toml(path);
+    root.refuse_keys_except({"format", "disturbance"});
+    require_known_format(root);
+    std::vector<Disturbance> disturbances;
+    for (const auto& entry : root.tables("disturbance")) {
+        refuse_nothing(entry);
+        disturbances.push_back(read_disturbance(entry, duration_s));
+    }
+    if (disturbances.empty()) {
+        throw InputError(root.where(), "there are no disturbances", "add [[disturbance]] entries");
+    }
+    return disturbances;
+}
+
+}  // namespace flightwatt::mission

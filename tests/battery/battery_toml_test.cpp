@@ -1,0 +1,103 @@
+// Battery files.
+
+#include "battery/battery.h"
+#include "helpers/rejected.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::battery {
+namespace {
+
+using test::rejected;
+
+const std::string pack_toml = R"(name = "pack"
+model = "thevenin"
+capacity_ah = 2.0
+resistance_ohm = 0.08
+rc_resistance_ohm = 0.05
+rc_time_constant_s = 25.0
+
+[open_circuit]
+soc_percent = [0.0, 50.0, 100.0]
+voltage_v = [10.0, 11.4, 12.5]
+standard_error_v = [0.2, 0.01, 0.02]
+
+# 95 %
+[intervals]
+resistance_ohm = [0.07, 0.09]
+rc_time_constant_s = [20.0, 31.0]
+)";
+
+TEST(BatteryToml, IsWrittenAsItIsRead) {
+    const auto pack = battery_from(parse_toml(pack_toml, "b.toml"));
+    EXPECT_EQ(to_toml(pack), "format = 1\n" + pack_toml);
+    EXPECT_EQ(pack.intervals.resistance_ohm, (Interval{0.07, 0.09}));
+    EXPECT_FALSE(pack.intervals.capacity_ah);
+    EXPECT_EQ(pack.intervals.open_circuit_standard_error_v.size(), 3U);
+    EXPECT_DOUBLE_EQ(open_circuit_voltage_v(pack, 75.0), 11.95);
+    EXPECT_EQ(open_circuit_voltage_v(pack, 100.0), 12.5);
+    EXPECT_EQ(open_circuit_voltage_v(pack, 0.0), 10.0);
+    EXPECT_DOUBLE_EQ(terminal_voltage_v(pack, {50.0, 0.1}, 2.0), 11.4 - 0.1 - 0.16);
+}
+
+TEST(BatteryToml, RefusesWhatIsNoBattery) {
+    const auto of = [](const std::string& from, const std::string& to) {
+        auto text = pack_toml;
+        text.replace(text.find(from), from.size(), to);
+        return rejected([&] { battery_from(parse_toml(text, "b.toml")); });
+    };
+    EXPECT_EQ(of("thevenin", "rint"),
+              "b.toml:2:1: there is no battery model 'rint'; it is \"paper\" or \"thevenin\"");
+    EXPECT_EQ(of("[0.0, 50.0, 100.0]", "[0.0, 50.0, 99.0]"),
+              "b.toml:9:1: soc_percent does not rise from 0 to 100; expected [0, ..., 100]");
+    EXPECT_EQ(of("[10.0, 11.4, 12.5]", "[10.0, 12.5]"),
+              "b.toml:10:1: 2 voltages for 3 states of charge; expected one each");
+    EXPECT_EQ(of("[10.0, 11.4, 12.5]", "[10.0, 11.4, 11.3]"),
+              "b.toml:10:1: the open-circuit voltage is not positive, or falls as charge rises; expected "
+              "values in the order of soc_percent, none below the one before");
+    EXPECT_EQ(of("25.0", "0.01"),
+              "b.toml:6:1: rc_time_constant_s = 0.01, expected 0.1 to 100000; what is faster "
+              "counts as resistance_ohm");
+    EXPECT_EQ(of("[0.07, 0.09]", "[0.09, 0.1]"),
+              "b.toml:15:1: this is no interval around resistance_ohm = 0.08; expected [LOW, HIGH]");
+    EXPECT_NE(of("name = \"pack\"", "voltage_v = 11.1"), "");
+    EXPECT_NE(of("[0.2, 0.01, 0.02]", "[0.2, -0.01, 0.02]"), "");
+}
+
+TEST(BatteryToml, ReadsThePaperBattery) {
+    const auto battery = read_battery(test::source_dir() / "fits" / "battery" / "paper.toml");
+    EXPECT_EQ(battery.name, "paper");
+    EXPECT_EQ(battery.capacity_ah, 3.2);
+    // 100 % is 39.356 kJ in the figures.
+    EXPECT_NEAR(battery.voltage_v * battery.capacity_ah * 3600.0, 39356.0, 10.0);
+}
+
+TEST(BatteryToml, RefusesWhatIsNoPaperBattery) {
+    const auto of = [](const std::string& text) {
+        return rejected([&] { battery_from(parse_toml(text, "b.toml")); });
+    };
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\n"), "");
+    EXPECT_EQ(of("voltage_v = 0\nresistance_ohm = 0\ncapacity_ah = 1\n"),
+              "b.toml:1:1: voltage_v = 0, expected more than 0 and at most 1000000");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = -0.1\ncapacity_ah = 1\n"),
+              "b.toml:2:1: resistance_ohm = -0.1, expected 0 or more");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = -1\n"),
+              "b.toml:3:1: capacity_ah = -1, expected more than 0 and at most 1000000");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_mah = 1\n"),
+              "b.toml:3:1: has no key 'capacity_ah'; 'capacity_mah' is here; was that meant?");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 3\n"),
+              "b.toml:4:1: unknown key 'cells'; known keys: capacity_ah, intervals, model, "
+              "name, resistance_ohm, voltage_v");
+}
+
+TEST(BatteryToml, HasAFormatThatIsKnown) {
+    const auto folder = test::scratch_dir();
+    const auto path = test::write_text(folder / "b.toml", "format = 2\nvoltage_v = 10\n");
+    EXPECT_NE(rejected([&] { read_battery(path); }, folder).find("b.toml:1:1: format = 2 is newer"),
+              std::string::npos);
+    test::write_text(path, to_toml({"pack", 10.0, 0.0, 1.0}));
+    EXPECT_EQ(read_battery(path).capacity_ah, 1.0);
+}
+
+}  // namespace
+}  // namespace flightwatt::battery

@@ -1,0 +1,43 @@
+#include "mission/prepared_mission.h"
+
+#include "helpers/paper_missions.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+TEST(PreparedMission, KeepsAScheduleThatIsGiven) {
+    const auto mission = test::paper_mission("phased");
+    const auto prepared = prepare(mission);
+    EXPECT_EQ(prepared.schedule, mission.schedule);
+    EXPECT_EQ(prepared.origin, ScheduleOrigin::given);
+    EXPECT_EQ(fly(prepared).simulation.summary.final_soc_percent,
+              simulate(mission).summary.final_soc_percent);
+}
+
+TEST(PreparedMission, HasAPlanWhereNoneIsGiven) {
+    const auto problem = test::paper_problem("plan");
+    const auto flown = fly(prepare(problem));
+    EXPECT_FALSE(flown.schedule.empty());
+    EXPECT_EQ(flown.simulation.summary.schedule, ScheduleOrigin::optimal);
+    EXPECT_TRUE(flown.simulation.summary.keeps_reserve);
+    auto infeasible = problem;
+    infeasible.reserve_soc_percent = 60.0;
+    const auto summary = fly(prepare(infeasible)).simulation.summary;
+    EXPECT_EQ(summary.schedule, ScheduleOrigin::infeasible);
+    EXPECT_FALSE(summary.feasible);
+}
+
+TEST(PreparedMission, LeavesTheScheduleToAPolicy) {
+    const auto prepared = prepare(test::paper_problem("adaptive-replanned"));
+    EXPECT_TRUE(prepared.schedule.empty());
+    ASSERT_TRUE(prepared.adaptive);
+    const auto flown = fly(prepared);
+    EXPECT_EQ(flown.simulation.summary.schedule, ScheduleOrigin::replanned);
+    EXPECT_EQ(flown.schedule.front().start_s, 0.0);
+    EXPECT_EQ(flown.schedule.back().end_s, prepared.setup.duration_s[flight::Phase::landing]);
+}
+
+}  // namespace
+}  // namespace flightwatt::mission
