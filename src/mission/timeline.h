@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flight/flight_phases.h"
+#include "mechanical/mechanical_model.h"
 
 namespace flightwatt::mission {
 
