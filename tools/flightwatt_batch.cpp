@@ -2,12 +2,13 @@
 
 #include "base/atomic_file.h"
 #include "base/signal_watch.h"
-#include "base/toml_reader.h"
 #include "batch/batch_files.h"
+#include "batch/batch_fit.h"
 #include "batch/batch_run.h"
 #include "batch/folder_lock.h"
 #include "batch/interruption.h"
 #include "cli/output/fit_options.h"
+#include "cli/output/flight_options.h"
 #include "cli/output/table_one_output.h"
 #include "cli/progress.h"
 #include "cli/stage.h"
@@ -28,18 +29,18 @@ namespace {
 using namespace flightwatt;
 
 /// What is known of the run at any moment, by all threads.
-struct Watch {
+struct BatchProgressState {
     std::optional<cli::ProgressBar> bar;  ///< on a terminal
     std::atomic<std::size_t> done = 0;
     std::size_t all = 0;
 };
 
 /// Moves the bar on, or says what became of the log.
-batch::BatchProgress progress_of(const cli::StageCall& call, Watch& watch) {
+batch::BatchProgress progress_of(const cli::StageCall& call, BatchProgressState& state) {
     return [&](std::size_t done, std::size_t all, const batch::BatchFlight& flight) {
-        watch.done = done;
-        if (watch.bar) {
-            watch.bar->show(done, all);
+        state.done = done;
+        if (state.bar) {
+            state.bar->show(done, all);
             return;
         }
         const auto* what = !flight.record.accepted ? "rejected"
@@ -49,11 +50,11 @@ batch::BatchProgress progress_of(const cli::StageCall& call, Watch& watch) {
     };
 }
 
-std::function<void(int)> farewell_of(const cli::StageCall& call, Watch& watch) {
+std::function<void(int)> on_signal(const cli::StageCall& call, BatchProgressState& state) {
     return [&](int signal) {
-        if (watch.bar) watch.bar->clear();
+        if (state.bar) state.bar->clear();
         cli::note(call, fmt::format("stopped by {} after {} of {} logs; the same command goes on from there",
-                                    signal_name(signal), watch.done.load(), watch.all));
+                                    signal_name(signal), state.done.load(), state.all));
     };
 }
 
@@ -62,8 +63,8 @@ void report_notes(const cli::StageCall& call, const std::vector<batch::BatchFlig
         for (const auto& warning : flight.record.warnings) {
             cli::warn(call, fmt::format("{}: {}", flight.record.flight, warning));
         }
-        for (const auto& left_out : flight.selection.left_out) {
-            cli::warn(call, to_string(left_out));
+        for (const auto& exclusion : flight.selection.exclusions) {
+            cli::warn(call, to_string(exclusion));
         }
         if (!flight.record.accepted) {
             cli::note(call, fmt::format("{}: rejected: {}", flight.record.flight, flight.record.error));
@@ -77,18 +78,18 @@ void remove_model(const std::filesystem::path& out) {
 }
 
 /// Fits what the batch accepted. Takes the samples out of `flights`: of thousands, two copies are too many.
-mechanical::MechanicalModel fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight>& flights,
-                                      const std::filesystem::path& out) {
+batch::BatchFit fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight>& flights,
+                          const std::filesystem::path& out) {
     auto options = read_fit_options(call);
     options.name = call.get<std::string>("name");
     std::vector<mechanical::FlightSamples> samples;
     for (auto& flight : flights) {
         auto& taken = flight.selection.flights;
-        std::move(taken.begin(), taken.end(), std::back_inserter(samples));
+        for (auto& measured : taken) samples.push_back(std::move(measured.samples));
         taken.clear();
     }
     try {
-        return fit_mechanical_model(samples, options);
+        return batch::fit_flights(samples, options);
     } catch (...) {
         remove_model(out);
         throw;
@@ -117,16 +118,11 @@ unsigned read_jobs(const cli::StageCall& call) {
     return static_cast<unsigned>(jobs);
 }
 
-void refuse_unknown_flights(const std::set<std::string>& keep, const std::vector<batch::LogFile>& logs) {
+std::vector<std::string> names_of(const std::vector<batch::LogFile>& logs) {
     std::vector<std::string> names;
     names.reserve(logs.size());
     for (const auto& log : logs) names.push_back(log.flight);
-    for (const auto& name : keep) {
-        if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-        const auto near = nearest_word(name, names);
-        throw UsageError(fmt::format("--keep {}: there is no such flight{}", name,
-                                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
-    }
+    return names;
 }
 
 batch::BatchOptions read_batch_options(const cli::StageCall& call,
@@ -134,30 +130,24 @@ batch::BatchOptions read_batch_options(const cli::StageCall& call,
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
     batch::BatchOptions options;
     options.out = *call.output;
-    options.aircraft_id = call.maybe<std::string>("aircraft");
+    options.load = cli::read_flight_options(call);
     options.jobs = read_jobs(call);
-    options.correct_idle_offset = call.has("correct-idle-offset");
     options.needed_samples = mechanical::samples_needed(fit_options.phases.order);
-    if (const auto keep = call.maybe<std::vector<std::string>>("keep")) {
-        options.keep.insert(keep->begin(), keep->end());
-    }
     return options;
 }
 
 /// Writes the model and its Table I as files.
-void write_model(const mechanical::MechanicalModel& model, const TextTable& table,
-                 const batch::BatchOptions& options) {
+void write_model(const batch::BatchFit& fit, const TextTable& table, const batch::BatchOptions& options) {
     const batch::WriteGate::Pass pass(*options.gate);
-    write_file_atomically(options.out / batch::model_names.front(), to_toml(model));
-    for (auto name = batch::model_names.begin() + 1; name != batch::model_names.end(); ++name) {
-        write_file_atomically(options.out / *name, cli::table_text(table, *name));
+    for (const auto* name : batch::table_names) {
+        write_file_atomically(options.out / name, cli::table_text(table, name));
     }
+    write_batch_fit(fit, options.out);
 }
 
 /// What follows the logs: the catalogue and the fit. Returns the exit code.
-int conclude(const cli::StageCall& call, std::vector<batch::BatchFlight> flights,
-             const batch::BatchOptions& options,
-             const std::optional<mechanical::MechanicalModel>& published) {
+int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights,
+           const batch::BatchOptions& options, const std::optional<mechanical::MechanicalModel>& published) {
     report_notes(call, flights);
     {
         const batch::WriteGate::Pass pass(*options.gate);
@@ -170,9 +160,12 @@ int conclude(const cli::StageCall& call, std::vector<batch::BatchFlight> flights
         remove_model(options.out);
         throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", rejected));
     }
-    const auto model = fit_batch(call, flights, options.out);
+    auto fit = fit_batch(call, flights, options.out);
+    fit.excluded = options.load.excluded;
+    fit.keep = options.load.keep;
+    const auto& model = fit.model;
     const auto table = cli::table_of(model, published);
-    write_model(model, table, options);
+    write_model(fit, table, options);
     warn_of_bounds(call, model);
     if (call.json)
         cli::print(cli::json_text(summary_json(flights, model)));
@@ -192,7 +185,7 @@ int run_over_logs(const cli::StageCall& call) {
     if (const auto file = call.maybe<std::string>("published"))
         published = mechanical::read_mechanical_model(*file);
     const auto logs = batch::find_logs(call.inputs);
-    refuse_unknown_flights(options.keep, logs);
+    cli::refuse_unknown_flights(options.load, names_of(logs));
     make_directories(options.out);
     const batch::FolderLock lock(options.out);
     for (const auto& dropped : batch::find_dropped(logs, options.out)) {
@@ -200,13 +193,13 @@ int run_over_logs(const cli::StageCall& call) {
     }
     batch::WriteGate gate;
     options.gate = &gate;
-    Watch watch;
-    watch.all = logs.size();
-    if (::isatty(STDERR_FILENO) != 0) watch.bar.emplace(stderr, "logs");
-    const batch::Interruption interruption(gate, farewell_of(call, watch));
-    auto flights = run_batch(logs, options, progress_of(call, watch));
-    if (watch.bar) watch.bar->clear();
-    return conclude(call, std::move(flights), options, published);
+    BatchProgressState state;
+    state.all = logs.size();
+    if (::isatty(STDERR_FILENO) != 0) state.bar.emplace(stderr, "logs");
+    const batch::Interruption interruption(gate, on_signal(call, state));
+    auto flights = run_batch(logs, options, progress_of(call, state));
+    if (state.bar) state.bar->clear();
+    return finish(call, std::move(flights), options, published);
 }
 
 }  // namespace
@@ -225,7 +218,7 @@ int main(int argc, char** argv) {
         "and the\n"
         "others go on; the exit code is then 3. Flights whose log is gone are dropped. "
         "Logs\n"
-        "of a folder below FOLDER that holds a file not-fitted.txt are listed and left out of the fit; its "
+        "of a folder below FOLDER that holds a file not-fitted.txt are listed and excluded from the fit; its "
         "first "
         "line\n"
         "says why.\n\n"
@@ -234,11 +227,10 @@ int main(int argc, char** argv) {
         "ended, the same command goes on where it stopped and comes to the same results.";
     stage.output_help = "the folder of the results";
     cli::add_fit_options(stage.options);
-    cli::add_power_options(stage.options);
     stage.options.add_options()("name", po::value<std::string>()->value_name("NAME")->default_value("batch"),
                                 "the model's name")(
         "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
-        "jobs", po::value<int>()->value_name("N")->default_value(0, "one a core"), "logs at a time")(
-        "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
+        "jobs", po::value<int>()->value_name("N")->default_value(0, "one a core"), "logs at a time");
+    cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, run_over_logs);
 }

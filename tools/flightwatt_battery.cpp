@@ -2,11 +2,9 @@
 
 #include "battery/lipo_chart.h"
 #include "cli/output/battery_output.h"
+#include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
-#include "flight/flight_reader.h"
-#include "flight/power_check.h"
-#include "flight/segmentation.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -37,37 +35,24 @@ battery::IdentificationOptions read_options(const cli::StageCall& call) {
     return options;
 }
 
-/// What makes a power record absurd makes a battery record absurd. Without altitude there is no telling.
-std::vector<std::string> absurdities_of(const flight::FlightSeries& series) {
-    return series.altitude_m.empty() ? std::vector<std::string>{}
-                                     : examine_power(series, segment(series)).absurdities;
-}
-
 /// The records that can be used; each flight that cannot is named, with the reason.
 std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
-    const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
+    auto options = cli::read_flight_options(call);
+    options.flight_required = false;  // without altitude there is no telling power faults, but a battery
     std::vector<battery::DischargeRecord> records;
-    std::set<std::string> flights;
     std::optional<InputError> last_refusal;
-    for (const auto& file : call.inputs) {
-        const auto series = flight::read_flight(file, call.maybe<std::string>("aircraft"));
-        if (!flights.insert(series.flight).second) {  // it would foretell itself
-            throw UsageError(fmt::format("flight '{}' is given twice", series.flight));
-        }
-        for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
+    cli::for_each_flight(call, options, [&](const std::string& file, const auto& loaded) {
         try {
-            const auto absurdities = absurdities_of(series);
-            if (!absurdities.empty() && std::find(keep.begin(), keep.end(), series.flight) == keep.end()) {
-                throw InputError(
-                    {file}, fmt::format("{}: {}", series.flight, flight::describe_absurdities(absurdities)));
+            if (!loaded.exclusion.empty()) {
+                throw InputError({file}, fmt::format("{}: {}", loaded.series.flight, loaded.exclusion));
             }
-            records.push_back(battery::discharge_record(series));
+            records.push_back(battery::discharge_record(loaded.series));
         } catch (const InputError& error) {
             if (call.inputs.size() == 1) throw;
-            cli::warn(call, fmt::format("left out: {}", error.what()));
+            cli::warn(call, fmt::format("excluded: {}", error.what()));
             last_refusal = error;
         }
-    }
+    });
     if (records.empty() && last_refusal) throw InputError(*last_refusal);
     return records;
 }
@@ -147,9 +132,7 @@ int main(int argc, char** argv) {
                                 "else a guess after the usual chart of LiPo cells")(
         "cells", po::value<int>()->value_name("N"),
         "cells in series; default: by the highest resting voltage")(
-        "name", po::value<std::string>()->value_name("NAME"), "the battery's name; default: FILE's")(
-        "keep", po::value<std::vector<std::string>>()->value_name("FLIGHT")->composing(),
-        "use this flight though its power record is absurd")(
-        "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
+        "name", po::value<std::string>()->value_name("NAME"), "the battery's name; default: FILE's");
+    cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, identify);
 }

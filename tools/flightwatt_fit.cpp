@@ -3,11 +3,9 @@
 #include "base/atomic_file.h"
 #include "cli/output/fit_error_output.h"
 #include "cli/output/fit_options.h"
+#include "cli/output/flight_options.h"
 #include "cli/output/table_one_output.h"
 #include "cli/stage.h"
-#include "flight/flight_reader.h"
-#include "flight/power_check.h"
-#include "flight/segmentation.h"
 #include "mechanical/measured_flight.h"
 
 #include <algorithm>
@@ -23,43 +21,21 @@ namespace {
 
 using namespace flightwatt;
 
-mechanical::MeasuredFlights read_log(const cli::StageCall& call, const std::string& file,
-                                     std::size_t needed_samples) {
-    auto series = flight::read_flight(file, call.maybe<std::string>("aircraft"));
-    const auto phases = flight::segment(series);
-    flight::require_sortie(series, phases, file);
-    const auto power = flight::examine_power(series, phases);
-    if (call.has("correct-idle-offset")) flight::correct_idle_offset(series, power.idle);
-    for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
-    for (const auto& warning : phases.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
-    auto measured = mechanical::measure_flights(series, phases, needed_samples);
-    const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
-    if (!power.absurdities.empty() && std::find(keep.begin(), keep.end(), series.flight) == keep.end()) {
-        measured.flights.clear();
-        measured.left_out.push_back(
-            {series.flight, std::nullopt, flight::describe_absurdities(power.absurdities)});
-    }
-    for (const auto& left_out : measured.left_out) {
-        cli::warn(call, to_string(left_out));
-    }
-    return measured;
-}
-
 /// What goes beyond a plain fit.
-struct Wishes {
+struct FitRequest {
     bool auto_order = false;
     bool errors = false;
     mechanical::TableIntervals intervals = mechanical::TableIntervals::absent;
     std::optional<std::string> curves_file;
 };
 
-Wishes read_wishes(const cli::StageCall& call) {
-    Wishes wishes;
-    wishes.auto_order = !read_order(call, cli::AutoOrder::accepted);
-    wishes.curves_file = call.maybe<std::string>("curves");
-    if (call.has("intervals")) wishes.intervals = mechanical::TableIntervals::present;
-    wishes.errors = call.has("errors") || call.has("intervals") || wishes.curves_file;
-    return wishes;
+FitRequest read_request(const cli::StageCall& call) {
+    FitRequest request;
+    request.auto_order = !read_order(call, cli::AutoOrder::accepted);
+    request.curves_file = call.maybe<std::string>("curves");
+    if (call.has("intervals")) request.intervals = mechanical::TableIntervals::present;
+    request.errors = call.has("errors") || call.has("intervals") || request.curves_file;
+    return request;
 }
 
 mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
@@ -82,10 +58,12 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
 
 std::vector<mechanical::FlightSamples> read_flights(const cli::StageCall& call, int order) {
     std::vector<mechanical::FlightSamples> flights;
-    for (const auto& file : call.inputs) {
-        auto measured = read_log(call, file, mechanical::samples_needed(order));
+    const auto needed = mechanical::samples_needed(order);
+    cli::for_each_flight(call, cli::read_flight_options(call), [&](const auto&, const auto& loaded) {
+        auto measured = mechanical::measure_flights(loaded, needed);
+        for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
         for (auto& flight : measured.flights) flights.push_back(std::move(flight.samples));
-    }
+    });
     return flights;
 }
 
@@ -104,7 +82,7 @@ flight::PerPhase<mechanical::OrderChoice> choose_orders(const cli::StageCall& ca
 }
 
 int fit(const cli::StageCall& call) {
-    const auto wishes = read_wishes(call);
+    const auto request = read_request(call);
     auto options = read_options(call);
     const auto table_file = call.maybe<std::string>("table");
     if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
@@ -112,19 +90,19 @@ int fit(const cli::StageCall& call) {
     if (const auto file = call.maybe<std::string>("published"))
         published = mechanical::read_mechanical_model(*file);
     const auto flights =
-        read_flights(call, wishes.auto_order ? mechanical::highest_tried_order : options.phases.order);
+        read_flights(call, request.auto_order ? mechanical::highest_tried_order : options.phases.order);
     std::optional<flight::PerPhase<mechanical::OrderChoice>> choices;
-    if (wishes.auto_order) choices = choose_orders(call, flights, options);
+    if (request.auto_order) choices = choose_orders(call, flights, options);
 
     auto fitted = fit_model(flights, options);
     std::optional<flight::PerPhase<mechanical::PhaseErrorReport>> reports;
-    if (wishes.errors) reports = mechanical::add_errors(fitted);
+    if (request.errors) reports = mechanical::add_errors(fitted);
     const bool robust = options.phases.loss != mechanical::Loss::none;
     if (robust) note_down_weighted(call, fitted);
 
-    const auto table = cli::table_of(fitted.model, published, wishes.intervals);
+    const auto table = cli::table_of(fitted.model, published, request.intervals);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
-    if (wishes.curves_file) write_file_atomically(*wishes.curves_file, curves_csv(fitted, *reports));
+    if (request.curves_file) write_file_atomically(*request.curves_file, curves_csv(fitted, *reports));
     cli::write_result(call, to_toml(fitted.model));
     warn_of_bounds(call, fitted.model);
     warn_of_given_frequencies(call, fitted.model);
@@ -156,7 +134,6 @@ int main(int argc, char** argv) {
         "output\n"
         "as TOML; with -o it goes to the file and Table I is shown.";
     add_fit_options(stage.options, cli::AutoOrder::accepted);
-    cli::add_power_options(stage.options);
     stage.options.add_options()("name", po::value<std::string>()->value_name("NAME"), "the model's name")(
         "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
         "table", po::value<std::string>()->value_name("FILE"), "write Table I as .txt, .csv, .md or .tex")(
@@ -170,7 +147,7 @@ int main(int argc, char** argv) {
         "let the cruise level follow what 'flightwatt validate --covariate all' found to foretell it: "
         "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]")(
         "loss", po::value<std::string>()->value_name("HOW")->default_value("none"),
-        "none or huber: how outliers count in the last refinement")(
-        "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
+        "none or huber: how outliers count in the last refinement");
+    cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, fit);
 }

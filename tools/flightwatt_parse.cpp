@@ -1,8 +1,9 @@
 // flightwatt parse: a Paparazzi log to the series CSV of its power samples.
 
+#include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
-#include "flight/flight_reader.h"
+#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "flight/series_file.h"
 
@@ -12,34 +13,37 @@ namespace {
 
 using namespace flightwatt;
 
-nlohmann::ordered_json summary(const flight::FlightSeries& series) {
+nlohmann::ordered_json summary(const flight::FlightSeries& series, const flight::Track& power,
+                               const std::vector<std::string>& warnings) {
     return {{"flight", series.flight},
             {"aircraft_id", series.aircraft_id},
             {"aircraft_name", series.aircraft_name},
-            {"power_source", series.power_source},
-            {"samples", series.time_s.size()},
-            {"start_s", series.time_s.front()},
-            {"end_s", series.time_s.back()},
-            {"usual_interval_s", usual_interval_s(series)},
-            {"sources", series.sources},
-            {"warnings", series.warnings}};
+            {"power_source", power.source},
+            {"samples", power.time_s.size()},
+            {"start_s", power.time_s.front()},
+            {"end_s", power.time_s.back()},
+            {"usual_interval_s", flight::usual_interval_s(power.time_s)},
+            {"sources", sources_of(series)},
+            {"warnings", warnings}};
 }
 
 int parse(const cli::StageCall& call) {
-    const auto series = flight::read_flight(call.inputs.front(), call.maybe<std::string>("aircraft"));
+    auto options = cli::read_flight_options(call);
+    options.flight_required = false;
+    const auto loaded = cli::load_flight(call, call.inputs.front(), options);
+    const auto& series = loaded.series;
     cli::write_result(call, to_csv(series));
-    for (const auto& warning : series.warnings)
-        cli::warn(call, fmt::format("{}: {}", call.inputs.front(), warning));
+    const auto power = power_track(series);
     if (call.json) {
-        cli::print(cli::json_text(summary(series)));
+        cli::print(cli::json_text(summary(series, power, loaded.warnings)));
         return cli::ok;
     }
     cli::note(call,
               fmt::format("{}: aircraft {} {}, {} samples from {:.1f} to {:.1f} s, usually {:.2f} s apart",
-                          series.flight, series.aircraft_id, series.aircraft_name, series.time_s.size(),
-                          series.time_s.front(), series.time_s.back(), flight::usual_interval_s(series)));
-    for (const auto& [channel, source] : series.sources) {
-        cli::note(call, fmt::format("  {:<20} from {}", channel, source));
+                          series.flight, series.aircraft_id, series.aircraft_name, power.time_s.size(),
+                          power.time_s.front(), power.time_s.back(), flight::usual_interval_s(power.time_s)));
+    for (const auto& [name, source] : sources_of(series)) {
+        cli::note(call, fmt::format("  {:<20} from {}", name, source));
     }
     return cli::ok;
 }
@@ -51,11 +55,11 @@ int main(int argc, char** argv) {
     stage.name = "parse";
     stage.arguments = "FLIGHT.data";
     stage.description =
-        "Reads a Paparazzi .data log (also .gz, .bz2, .xz, .zst) with the .log beside it and writes its "
-        "power\n"
-        "samples with altitude, throttle, voltage, current, charge, energy and position as CSV.";
+        "Reads a Paparazzi .data log (also .gz, .bz2, .xz, .zst) with the .log beside it and writes all that\n"
+        "it tells of the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,\n"
+        "altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.\n"
+        "Any stage reads the series file as it reads the log, and comes to the same.";
     stage.max_inputs = 1;
-    stage.options.add_options()("aircraft", boost::program_options::value<std::string>()->value_name("ID"),
-                                "the aircraft to read, where several flew");
+    cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, parse);
 }

@@ -2,13 +2,16 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "cli/output/flight_options.h"
 #include "cli/stage.h"
-#include "flight/flight_reader.h"
-#include "flight/power_check.h"
-#include "flight/segmentation.h"
+#include "flight/chosen_track.h"
+#include "flight/cut_series.h"
 #include "mechanical/prediction.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -24,12 +27,37 @@ double positive(const cli::StageCall& call, const std::string& option, bool zero
         fmt::format("--{} is {}, expected {} s", option, value, zero_allowed ? "0 or more" : "more than 0"));
 }
 
-mechanical::Moment moment_of(const cli::StageCall& call) {
+/// The moment that is asked for: since lift-off, or on the log's clock.
+struct Moment {
+    std::optional<double> since_lift_off_s;
+    double log_time_s = 0.0;
+};
+
+Moment moment_of(const cli::StageCall& call) {
     if (call.has("until") == call.has("until-log-time")) {
         throw UsageError("expected either --until (seconds since lift-off) or --until-log-time");
     }
     if (call.has("until")) return {positive(call, "until", false), 0.0};
     return {std::nullopt, positive(call, "until-log-time", false)};
+}
+
+/// When it is: of several aircraft, when the first has flown so long.
+double time_of(const Moment& moment, const std::vector<flight::FlightSeries>& candidates, std::size_t sortie,
+               const flight::SegmentationOptions& options) {
+    if (!moment.since_lift_off_s) return moment.log_time_s;
+    std::optional<double> first_s;
+    std::optional<NoAnswerError> refusal;
+    for (const auto& series : candidates) {
+        try {
+            const double time_s =
+                mechanical::time_since_lift_off(series, *moment.since_lift_off_s, sortie, options);
+            first_s = std::min(first_s.value_or(time_s), time_s);
+        } catch (const NoAnswerError& error) {
+            if (!refusal) refusal = error;
+        }
+    }
+    if (!first_s) throw NoAnswerError(*refusal);
+    return *first_s;
 }
 
 /// The model that --model names. Its spread is what the interval rests on.
@@ -47,7 +75,7 @@ mechanical::MechanicalModel read_spread_model(const cli::StageCall& call) {
 
 /// What --level auto stands for: the level law where the model has one and the flight tells its covariate.
 mechanical::LevelSource automatic_source(const cli::StageCall& call, const mechanical::PhaseModel& cruise,
-                                         const mechanical::FlownSoFar& flown) {
+                                         const mechanical::FlightProgress& flown) {
     if (!cruise.level_law) return mechanical::LevelSource::curve;
     const auto covariate = cruise.level_law->covariate;
     if (flown.covariates[covariate]) return mechanical::LevelSource::covariate;
@@ -58,7 +86,7 @@ mechanical::LevelSource automatic_source(const cli::StageCall& call, const mecha
 }
 
 mechanical::LevelSource level_source(const cli::StageCall& call, const mechanical::PhaseModel& cruise,
-                                     const mechanical::FlownSoFar& flown) {
+                                     const mechanical::FlightProgress& flown) {
     const auto name = call.get<std::string>("level");
     if (name == "auto") return automatic_source(call, cruise, flown);
     if (name == "curve") return mechanical::LevelSource::curve;
@@ -70,7 +98,7 @@ mechanical::LevelSource level_source(const cli::StageCall& call, const mechanica
 
 /// What a law says beyond its flights is told, not refused: the flight is as it is.
 void warn_of_reach(const cli::StageCall& call, const mechanical::PhaseModel& cruise,
-                   const mechanical::FlownSoFar& flown) {
+                   const mechanical::FlightProgress& flown) {
     const auto& law = cruise.level_law.value();
     const double value = flown.covariates[law.covariate].value();
     if (level_at(law, value).within_flights) return;
@@ -82,7 +110,7 @@ void warn_of_reach(const cli::StageCall& call, const mechanical::PhaseModel& cru
 }
 
 struct Prediction {
-    mechanical::FlownSoFar flown;
+    mechanical::FlightProgress flown;
     double remaining_s = 0.0;
     mechanical::RestPrediction cruise;
     mechanical::EnergyEstimate landing;
@@ -90,6 +118,31 @@ struct Prediction {
     mechanical::EnergyEstimate rest;
     mechanical::EnergyInterval interval;
 };
+
+/// What was known at the moment: nothing that the log wrote later is looked at, in what is read, chosen,
+/// judged or said.
+mechanical::FlightProgress read_progress(const cli::StageCall& call, const Moment& moment) {
+    auto options = cli::read_flight_options(call);
+    const auto sortie = options.sortie.value_or(1) - 1;
+    options.sortie.reset();
+    options.flight_required = false;
+    const auto& file = call.inputs.front();
+    auto candidates = read_candidates(flight::FlightFile(file), options.aircraft_id);
+    const double until_s = time_of(moment, candidates, sortie, options.segmentation);
+    for (auto& series : candidates) series = cut_series(series, until_s);
+    auto series = choose_aircraft(std::move(candidates));
+    cli::refuse_unknown_flights(options, {series.flight});
+    if (power_track(series).empty() && !series.clock_restart) {
+        throw NoAnswerError(
+            fmt::format("{}: no power was measured by {:.1f} s of the log", series.flight, until_s));
+    }
+    const auto loaded = examine_flight(std::move(series), options);
+    cli::warn_of(call, file, loaded);
+    if (!loaded.exclusion.empty()) {
+        cli::warn(call, fmt::format("{}: no prediction can be trusted: {}", file, loaded.exclusion));
+    }
+    return mechanical::progress_at(loaded.series, until_s, sortie, options.segmentation);
+}
 
 Prediction predict_flight(const cli::StageCall& call) {
     Prediction prediction;
@@ -101,18 +154,8 @@ Prediction predict_flight(const cli::StageCall& call) {
         throw UsageError(
             fmt::format("--remaining {:g}: expected at most {:g} s", prediction.remaining_s, longest_s));
     }
-    const auto sortie = call.get<unsigned>("sortie");
-    if (sortie == 0) throw UsageError("--sortie is 0, expected 1 or more");
     const auto model = read_spread_model(call);
-    const auto& file = call.inputs.front();
-    const auto series = flight::read_flight(file, call.maybe<std::string>("aircraft"));
-    for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
-    const auto power = flight::examine_power(series, flight::segment(series));
-    if (!power.absurdities.empty()) {
-        cli::warn(call, fmt::format("{}: no prediction can be trusted: {}", file,
-                                    flight::describe_absurdities(power.absurdities)));
-    }
-    prediction.flown = mechanical::flown_so_far(series, moment, sortie - 1);
+    prediction.flown = read_progress(call, moment);
     const auto& cruise = model.phases[flight::Phase::cruise];
     const auto source = level_source(call, cruise, prediction.flown);
     prediction.cruise = predict_rest(mechanical::forecast_of(model, flight::Phase::cruise), prediction.flown,
@@ -195,8 +238,7 @@ int main(int argc, char** argv) {
         "what is expected of the cruise before its own power is looked at: the model's curve, the curve's "
         "mean (constant), the power that the airspeed measured so far stands for (airspeed), or that of the "
         "model's level law (covariate); auto is covariate for a model that was fitted with "
-        "--level-covariate, and else curve")(
-        "sortie", po::value<unsigned>()->value_name("N")->default_value(1), "which sortie of the log")(
-        "aircraft", po::value<std::string>()->value_name("ID"), "the aircraft to read, where several flew");
+        "--level-covariate, and else curve");
+    cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, predict);
 }

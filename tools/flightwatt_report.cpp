@@ -1,7 +1,7 @@
 // flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
 
+#include "base/number.h"
 #include "cli/numeric_options.h"
-#include "cli/output/fit_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
@@ -60,15 +60,16 @@ battery::IdentificationOptions read_identification_options(const cli::StageCall&
 
 /// The flights' model with its validation.
 void add_model(const cli::StageCall& call, const report::BatchContent& content,
-               const std::optional<report::ReportModel>& model, const report::PublishedFigures& figures,
-               report::PageHead& head, std::vector<report::Section>& sections) {
-    if (!model) {
+               const report::PublishedFigures& figures, report::PageHead& head,
+               std::vector<report::Section>& sections) {
+    if (!content.fit) {
         head.notes.push_back("There is no model of these flights: the batch could not fit them.");
         return;
     }
-    for (const auto& note : model->notes) cli::warn(call, note);
-    sections.push_back(model_section(*model, figures, "model"));
-    if (!model->notes.empty()) return;
+    std::optional<mechanical::MechanicalModel> published;
+    if (const auto file = call.maybe<std::string>("published"))
+        published = mechanical::read_mechanical_model(*file);
+    sections.push_back(model_section(report::model_of(*content.fit, published), figures, "model"));
     const auto most = cli::count_option(call, "max-validation-flights");
     if (content.measured.size() < 2 || content.measured.size() > most) {
         head.notes.push_back(fmt::format(
@@ -76,25 +77,19 @@ void add_model(const cli::StageCall& call, const report::BatchContent& content,
             most, content.measured.size()));
         return;
     }
-    sections.push_back(report::validation_section(leave_one_out(content.measured, read_fit_options(call))));
+    sections.push_back(report::validation_section(leave_one_out(content.measured, content.fit->options)));
 }
 
 /// What the batch's folder has to say: flights, model, validation and battery.
 void add_batch(const cli::StageCall& call, const std::filesystem::path& out,
                const report::PublishedFigures& figures, report::PageHead& head,
                std::vector<report::Section>& sections) {
-    const auto options = read_fit_options(call);
     const auto identification = read_identification_options(call);
-    const auto kept = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
-    std::optional<mechanical::MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published"))
-        published = mechanical::read_mechanical_model(*file);
-    const auto content = report::read_batch_content(out, options, {kept.begin(), kept.end()});
-    const auto model = report::read_batch_model(out, content, options, published);
+    const auto content = report::read_batch_content(out);
     head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
-    sections.push_back(
-        report::flights_section(content.flights, model ? std::optional(model->model) : std::nullopt));
-    add_model(call, content, model, figures, head, sections);
+    sections.push_back(report::flights_section(
+        content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt));
+    add_model(call, content, figures, head, sections);
     sections.push_back(report::battery_section(report::identify_for_report(
         content.flights, identification, cli::count_option(call, "max-battery-flights"))));
 }
@@ -167,9 +162,7 @@ int main(int argc, char** argv) {
         R"(Writes one HTML page, to be opened offline, of what flightwatt batch left in the folder OUT (flights,
 model, validation, battery) and of missions (software, schedules, quality of service, plan). Its figures are
 Vega-Lite specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node)
-and .pdf (where rsvg-convert is). Give the fit options that the batch was given.)";
-    cli::add_fit_options(stage.options);
-    cli::add_keep_option(stage.options);
+and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)";
     const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
     auto add = stage.options.add_options();
     add("figures", text("DIR"), "write every figure to DIR");

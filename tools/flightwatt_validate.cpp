@@ -1,10 +1,9 @@
 // flightwatt validate: leaves each flight out, fits the others and predicts its energy.
 
 #include "cli/output/fit_options.h"
+#include "cli/output/flight_options.h"
 #include "cli/output/validation_output.h"
 #include "cli/stage.h"
-#include "flight/flight_reader.h"
-#include "flight/power_check.h"
 #include "mechanical/covariates.h"
 #include "mechanical/measured_flight.h"
 
@@ -19,37 +18,39 @@ namespace {
 
 using namespace flightwatt;
 
-/// The flights of one log. In flight, those that are not in cruise at the moment are left out.
-std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, const std::string& file,
-                                                     std::size_t needed_samples) {
-    const auto series = flight::read_flight(file, call.maybe<std::string>("aircraft"));
-    const auto phases = flight::segment(series);
-    flight::require_sortie(series, phases, file);
-    for (const auto& warning : series.warnings) cli::warn(call, fmt::format("{}: {}", file, warning));
-    const auto power = flight::examine_power(series, phases);
-    const auto keep = call.maybe<std::vector<std::string>>("keep").value_or(std::vector<std::string>{});
-    if (!power.absurdities.empty() && std::find(keep.begin(), keep.end(), series.flight) == keep.end()) {
-        cli::warn(call, to_string(mechanical::LeftOut{series.flight, std::nullopt,
-                                                      flight::describe_absurdities(power.absurdities)}));
-        return {};
-    }
-    auto measured = mechanical::measure_flights(series, phases, needed_samples);
-    for (const auto& left_out : measured.left_out) {
-        cli::warn(call, to_string(left_out));
-    }
-    const auto until_s = call.maybe<double>("until");
-    if (!until_s) return std::move(measured.flights);
-    std::vector<mechanical::MeasuredFlight> in_cruise;
+/// Those that are in cruise at the moment, with what they had flown by then.
+std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call,
+                                                  const flight::LoadedFlight& loaded,
+                                                  mechanical::MeasuredFlights measured, double until_s,
+                                                  const flight::SegmentationOptions& options) {
+    std::vector<mechanical::MeasuredFlight> flights;
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
         try {
-            flight.flown = mechanical::flown_so_far(series, {until_s, 0.0}, measured.sorties[i]);
-            in_cruise.push_back(std::move(flight));
+            const auto sortie = measured.sorties[i];
+            const double time_s = mechanical::time_since_lift_off(loaded.series, until_s, sortie, options);
+            flight.flown = mechanical::progress_at(loaded.series, time_s, sortie, options);
+            flights.push_back(std::move(flight));
         } catch (const NoAnswerError& error) {
-            cli::warn(call, fmt::format("{} is left out: {}", flight.samples.flight, error.what()));
+            cli::warn(call, fmt::format("{} is excluded: {}", flight.samples.flight, error.what()));
         }
     }
-    return in_cruise;
+    return flights;
+}
+
+/// The flights of all inputs. In flight, those that are not in cruise at the moment are excluded.
+std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples) {
+    std::vector<mechanical::MeasuredFlight> flights;
+    const auto until_s = call.maybe<double>("until");
+    const auto options = cli::read_flight_options(call);
+    cli::for_each_flight(call, options, [&](const auto&, const auto& loaded) {
+        auto measured = mechanical::measure_flights(loaded, needed_samples);
+        for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
+        auto read = until_s ? in_cruise(call, loaded, std::move(measured), *until_s, options.segmentation)
+                            : std::move(measured.flights);
+        std::move(read.begin(), read.end(), std::back_inserter(flights));
+    });
+    return flights;
 }
 
 /// --covariate NAME[,NAME] or all.
@@ -57,7 +58,7 @@ std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
     const auto text = call.maybe<std::string>("covariate");
     if (!text) return {};
     if (call.has("until")) {
-        throw UsageError("--covariate is for predictions before the flight: leave out it or --until");
+        throw UsageError("--covariate is for predictions before the flight: give it or --until");
     }
     if (*text == "all") return {mechanical::all_covariates.begin(), mechanical::all_covariates.end()};
     std::vector<std::string> names;
@@ -121,11 +122,7 @@ int validate_flights(const cli::StageCall& call) {
         throw UsageError(fmt::format("--until is {}, expected more than 0 s since lift-off", *until_s));
     }
     const auto covariates = read_covariates(call);
-    std::vector<mechanical::MeasuredFlight> flights;
-    for (const auto& file : call.inputs) {
-        auto read = read_flights(call, file, mechanical::samples_needed(options.phases.order));
-        std::move(read.begin(), read.end(), std::back_inserter(flights));
-    }
+    const auto flights = read_flights(call, mechanical::samples_needed(options.phases.order));
     const auto validated = leave_one_out(flights, options, covariates);
     cli::write_result(call, report(validated, covariates, until_s.has_value()));
     if (call.json) cli::print(cli::scores_json(validated).dump(2) + "\n");
@@ -160,7 +157,6 @@ int main(int argc, char** argv) {
         "landing,\n"
         "whose power is near zero. Bias is predicted less measured.";
     cli::add_fit_options(stage.options);
-    cli::add_keep_option(stage.options);
     stage.options.add_options()("until", po::value<double>()->value_name("S"),
                                 "validate the prediction in flight, S seconds after lift-off")(
         "covariate", po::value<std::string>()->value_name("NAME[,NAME]"),
@@ -169,7 +165,7 @@ int main(int argc, char** argv) {
         "first "
         "60 s of the cruise (wind_m_per_s, airspeed_m_per_s, ground_speed_m_per_s, "
         "airspeed_cubed_m3_per_s3), or "
-        "all: one further model by_NAME each")("aircraft", po::value<std::string>()->value_name("ID"),
-                                               "the aircraft to read, where several flew");
+        "all: one further model by_NAME each");
+    cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, validate_flights);
 }

@@ -48,8 +48,8 @@ std::vector<CsvTable::Cell> split_line(std::string_view text, const Location& wh
 
 }  // namespace
 
-CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header) {
-    CsvTable table{file, {}, {}};
+void for_each_csv_row(std::string_view text, const std::string& file,
+                      const std::function<void(CsvTable::Row&)>& on_row) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // spreadsheets begin with it
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     std::size_t line_number = 0;
@@ -61,21 +61,26 @@ CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader hea
         ++line_number;
         if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
         if (line.empty() || line.front() == '#') continue;
-        auto cells = split_line(line, {file, line_number});
-        if (width == 0) {
-            width = cells.size();
-            if (header == CsvHeader::present) {
-                for (auto& cell : cells) table.columns.push_back(std::move(cell.text));
-                continue;
-            }
+        CsvTable::Row row{line_number, split_line(line, {file, line_number})};
+        if (width == 0) width = row.cells.size();
+        if (row.cells.size() != width) {
+            throw InputError({file, line_number}, fmt::format("{} cells, expected {} as in the first line",
+                                                              row.cells.size(), width));
         }
-        if (cells.size() != width) {
-            throw InputError({file, line_number},
-                             fmt::format("{} cells, expected {} as in the first line", cells.size(), width));
-        }
-        table.rows.push_back({line_number, std::move(cells)});
+        on_row(row);
     }
     if (width == 0) throw InputError({file}, "is empty, expected a CSV table");
+}
+
+CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header) {
+    CsvTable table{file, {}, {}};
+    for_each_csv_row(text, file, [&](CsvTable::Row& row) {
+        if (header == CsvHeader::present && table.columns.empty()) {
+            for (auto& cell : row.cells) table.columns.push_back(std::move(cell.text));
+        } else {
+            table.rows.push_back(std::move(row));
+        }
+    });
     return table;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,6 +35,11 @@ enum class CsvHeader { present, absent };
 /// open quote.
 CsvTable read_csv(const std::filesystem::path& path, CsvHeader header = CsvHeader::present);
 CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header = CsvHeader::present);
+
+/// The rows of a CSV text one at a time, the header's first, for files too large to hold as text. Throws as
+/// parse_csv does.
+void for_each_csv_row(std::string_view text, const std::string& file,
+                      const std::function<void(CsvTable::Row&)>& on_row);
 
 /// The index of a named column. Throws InputError that lists the columns there are.
 std::size_t column_index(const CsvTable& table, std::string_view name);

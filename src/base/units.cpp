@@ -43,11 +43,15 @@ constexpr std::array named_units{
     NamedUnit{"%", {Quantity::percent, 1.0}},
     NamedUnit{"percent", {Quantity::percent, 1.0}},
     NamedUnit{"pprz", {Quantity::percent, percent_per_whole / pprz_full_scale}},
+    NamedUnit{"deg", {Quantity::degree, 1.0}},
+    NamedUnit{"decideg", {Quantity::degree, 0.1}},
+    NamedUnit{"rad", {Quantity::degree, degree_per_rad}},
 };
 
 }  // namespace
 
 std::optional<Unit> parse_unit(std::string_view text) {
+    if (text == "1e7deg") return Unit{Quantity::degree, 1e-7};  // means its inverse
     // A number in front scales the unit behind it: "1e-1V", "0.01A".
     double scale = 1.0;
     const auto number = std::from_chars(text.data(), text.data() + text.size(), scale);

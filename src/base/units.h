@@ -11,6 +11,7 @@ inline constexpr double seconds_per_hour = 3600.0;
 inline constexpr double pprz_full_scale = 9600.0;  ///< Paparazzi's MAX_PPRZ: full throttle in "pprz"
 inline constexpr double percent_per_whole = 100.0;
 inline constexpr double rad_per_turn = 2.0 * std::numbers::pi;
+inline constexpr double degree_per_rad = 180.0 / std::numbers::pi;
 /// The paper's Table I counts time in units of which every phase lasts 28, whatever its seconds.
 inline constexpr double table_one_time_per_phase = 28.0;
 
@@ -44,14 +45,26 @@ constexpr double joule_from_microjoule(double energy_uj) { return energy_uj * mi
 constexpr double second_from_millisecond(double time_ms) { return time_ms * milli; }
 
 /// What a declared unit measures; the base unit of each is the suffix used in names.
-enum class Quantity { volt, ampere, watt, ampere_hour, watt_hour, metre, metre_per_second, second, percent };
+enum class Quantity {
+    volt,
+    ampere,
+    watt,
+    ampere_hour,
+    watt_hour,
+    metre,
+    metre_per_second,
+    second,
+    percent,
+    degree
+};
 
 struct Unit {
     Quantity quantity;
     double factor;  ///< value in the base unit = factor * raw value
 };
 
-/// Reads a unit as Paparazzi message definitions write it: "V", "1e-1V", "decivolt", "mAh", "cm/s", "pprz".
+/// Reads a unit as Paparazzi message definitions write it: "V", "1e-1V", "decivolt", "mAh", "cm/s", "pprz",
+/// "1e7deg" (ten millionths of a degree).
 /// std::nullopt if it is none of the quantities above.
 std::optional<Unit> parse_unit(std::string_view text);
 

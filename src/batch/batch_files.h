@@ -16,7 +16,12 @@ inline constexpr auto record_ending = ".record.json";
 
 /// What a batch writes into OUT itself; the first one is the catalogue, the others are the fit's.
 inline constexpr auto catalogue_name = "flights.csv";
-inline constexpr std::array model_names{"model.toml", "table1.txt", "table1.csv", "table1.md"};
+inline constexpr auto model_name = "model.toml";
+inline constexpr auto model_errors_name = "model_errors.toml";  ///< the same with its errors
+inline constexpr auto fit_name = "fit.json";                    ///< see BatchFit
+inline constexpr std::array table_names{"table1.txt", "table1.csv", "table1.md"};
+inline constexpr std::array model_names{model_name,     model_errors_name, fit_name,
+                                        table_names[0], table_names[1],    table_names[2]};
 
 /// A flight of an earlier run whose log is no longer among those of the batch, and what became of it.
 struct DroppedFlight {

@@ -6,11 +6,9 @@
 #include "batch/batch_files.h"
 #include "batch/fit_selection.h"
 #include "batch/interruption.h"
-#include "flight/flight_reader.h"
-#include "flight/power_check.h"
+#include "flight/load_flight.h"
+#include "flight/phase_statistics.h"
 #include "flight/series_file.h"
-#include "telemetry/data_file.h"
-#include "telemetry/log_configuration.h"
 
 #include <algorithm>
 #include <atomic>
@@ -38,17 +36,22 @@ void write_result(const BatchOptions& options, const std::string& flight, const 
 }
 
 /// Of everything that the result depends on.
-std::string fingerprint_of(const LogFile& log, const BatchOptions& options) {
+std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, const BatchOptions& options) {
+    const auto& load = options.load;
+    const auto& segmentation = load.segmentation;
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 5");
+    fingerprint.add(FLIGHTWATT_VERSION " record 6");
     fingerprint.add(log.flight);
     fingerprint.add(log.path.string());
-    fingerprint.add(options.aircraft_id.value_or(""));
+    fingerprint.add(load.aircraft_id.value_or(""));
     fingerprint.add(log.why_not_fitted);
-    fingerprint.add(options.correct_idle_offset ? "idle offset corrected" : "");
-    fingerprint.add(telemetry::DataFile(log.path).text());
-    const auto configuration = telemetry::find_log_file(log.path);
-    fingerprint.add(configuration ? read_file(*configuration) : "no .log");
+    fingerprint.add(load.correct_idle_offset ? "idle offset corrected" : "");
+    fingerprint.add(load.sortie ? fmt::format("sortie {}", *load.sortie) : "");
+    fingerprint.add(fmt::format("{} {} {} {} {} {}", segmentation.rest_s, segmentation.hold_s,
+                                segmentation.idle_throttle_percent, segmentation.cruise_fraction,
+                                segmentation.ground_fraction, segmentation.flight_height_m));
+    fingerprint.add(file.text());
+    fingerprint.add(file.log_text().value_or("no .log"));
     return fingerprint.hex();
 }
 
@@ -96,40 +99,30 @@ std::string describe(const InputError& error) {
 }
 
 /// Reads, segments and writes one log. Throws InputError where it cannot be used.
-BatchFlight do_accepted(const LogFile& log, const BatchOptions& options) {
-    BatchFlight done;
-    auto series = flight::read_flight(log.path, options.aircraft_id);
-    series.flight = log.flight;
-    const auto phases = flight::segment(series);
-    flight::require_sortie(series, phases, log.path.string());
-    const auto power = flight::examine_power(series, phases);
-    if (options.correct_idle_offset) flight::correct_idle_offset(series, power.idle);
-    done.record = record_of(series, phases);
-    done.record.absurdities = power.absurdities;
-    done.record.why_not_fitted = log.why_not_fitted;
-    done.selection = batch::select_for_fit(series, phases, done.record, options.needed_samples, options.keep);
-    write_result(options, log.flight, series_ending, to_csv(series));
-    write_result(options, log.flight, phases_ending, flight::phases_csv(series, phases));
-    return done;
+FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, const BatchOptions& options) {
+    auto loaded = flight::load_flight(file, options.load);
+    loaded.series.flight = log.flight;
+    auto record = record_of(loaded);
+    record.why_not_fitted = log.why_not_fitted;
+    write_result(options, log.flight, series_ending, to_csv(loaded.series));
+    write_result(options, log.flight, phases_ending, flight::phases_csv(loaded.series, loaded.phases));
+    return record;
 }
 
 BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     BatchFlight done;
     std::string fingerprint;
     try {
-        fingerprint = fingerprint_of(log, options);
+        const flight::FlightFile file(log.path);
+        fingerprint = fingerprint_of(file, log, options);
         if (auto record = remembered(options, log, fingerprint)) {
             done.was_up_to_date = true;
             done.record = std::move(*record);
-            if (!done.record.accepted) return done;
-            auto series = flight::read_series_csv(result_path(options, log.flight, series_ending));
-            series.flight = log.flight;
-            done.selection = batch::select_for_fit(series, batch::phases_of(done.record), done.record,
-                                                   options.needed_samples, options.keep);
+            done.selection = select_for_fit(done.record, options.needed_samples, options.load);
             return done;
         }
         remove_results(options, log.flight);
-        done = do_accepted(log, options);
+        done.record = do_accepted(file, log, options);
     } catch (const InputError& error) {
         remove_results(options, log.flight);
         done = {};
@@ -143,6 +136,7 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     write_result(options, log.flight, record_ending, text);
     done.record = record_from_json(text).value();  // what later runs remember: both must report the same
     done.record.flight = log.flight;
+    done.selection = select_for_fit(done.record, options.needed_samples, options.load);
     return done;
 }
 

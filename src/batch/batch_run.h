@@ -3,13 +3,10 @@
 #include "base/text_table.h"
 #include "batch/flight_record.h"
 #include "batch/log_files.h"
-#include "mechanical/flight_samples.h"
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -19,19 +16,17 @@ class WriteGate;
 
 struct BatchOptions {
     std::filesystem::path out;
-    std::optional<std::string> aircraft_id;
+    flight::LoadOptions load;
     unsigned jobs = 0;  ///< logs at a time; 0: one a core
     std::size_t needed_samples = 8;
-    bool correct_idle_offset = false;  ///< see correct_idle_offset()
-    std::set<std::string> keep = {};   ///< flights that are fitted though they would be left out
-    WriteGate* gate = nullptr;         ///< passed to write a file, if there is one
+    WriteGate* gate = nullptr;  ///< passed to write a file, if there is one
 };
 
 /// One log of a batch, done or found up to date.
 struct BatchFlight {
     FlightRecord record;
     bool was_up_to_date = false;
-    mechanical::FlightSelection selection;  ///< what a fit takes from it; empty if it was rejected
+    mechanical::MeasuredFlights selection;  ///< what a fit takes from it; empty if it was rejected
 };
 
 /// Called as logs finish, from one thread at a time: how many are done, of how many, and which it was.

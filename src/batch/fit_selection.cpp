@@ -2,37 +2,28 @@
 
 #include "flight/power_check.h"
 
+#include <utility>
+
 namespace flightwatt::batch {
 
-void restore_airspeed(const FlightRecord& record, mechanical::FlightSamples& flight) {
-    for (const auto& phase : record.phases) {
-        if (flight.flight != mechanical::flight_name_of_sortie(record.flight, phase.sortie)) continue;
-        auto& samples = flight.phases[phase.phase];
-        if (samples) samples->airspeed_cubed_m3_per_s3 = phase.airspeed_cubed_m3_per_s3;
-    }
+std::string exclusion_of(const FlightRecord& record, const flight::LoadOptions& options) {
+    if (options.excluded.contains(record.flight)) return "--exclude names it";
+    if (options.keep.contains(record.flight)) return "";
+    if (!record.power_faults.empty()) return flight::describe_power_faults(record.power_faults);
+    return record.why_not_fitted;
 }
 
-mechanical::FlightSelection select_for_fit(const flight::FlightSeries& series,
-                                           const flight::FlightPhases& phases, const FlightRecord& record,
-                                           std::size_t needed_samples, const std::set<std::string>& keep) {
-    auto selection = mechanical::select_samples(series, phases, needed_samples);
-    for (auto& flight : selection.flights) restore_airspeed(record, flight);
-    if (!keep.contains(series.flight)) {
-        if (!record.absurdities.empty()) {
-            mechanical::leave_out_all(selection, series.flight,
-                                      flight::describe_absurdities(record.absurdities));
-        } else if (!record.why_not_fitted.empty()) {
-            mechanical::leave_out_all(selection, series.flight, record.why_not_fitted);
-        }
+mechanical::MeasuredFlights select_for_fit(FlightRecord& record, std::size_t needed_samples,
+                                           const flight::LoadOptions& options) {
+    auto measured = std::exchange(record.measured, {});
+    if (const auto exclusion = exclusion_of(record, options); !exclusion.empty() && record.accepted) {
+        measured.flights.clear();
+        measured.sorties.clear();
+        measured.exclusions.push_back({record.flight, std::nullopt, exclusion});
+        return measured;
     }
-    for (auto& flight : selection.flights) {
-        for (auto& phase : flight.phases.values) {
-            if (!phase) continue;
-            phase->tau.shrink_to_fit();
-            phase->power_w.shrink_to_fit();
-        }
-    }
-    return selection;
+    mechanical::exclude_short_phases(measured, needed_samples);
+    return measured;
 }
 
 }  // namespace flightwatt::batch

@@ -1,6 +1,7 @@
 #include "batch/flight_record.h"
 
-#include "flight/airspeed.h"
+#include "batch/measured_json.h"
+#include "flight/chosen_track.h"
 #include "flight/edge_witness.h"
 
 #include <fmt/format.h>
@@ -21,8 +22,6 @@ Json phase_json(const RecordedPhase& phase) {
         {"start_gap_s", phase.start_gap_s},
         {"end_gap_s", phase.end_gap_s},
         {"complete", phase.complete},
-        {"airspeed_cubed_m3_per_s3",
-         phase.airspeed_cubed_m3_per_s3 ? Json(*phase.airspeed_cubed_m3_per_s3) : Json()},
         {"samples", statistics.samples},
         {"mean_power_w", statistics.mean_power_w},
         {"energy_wh", statistics.energy_wh},
@@ -40,9 +39,6 @@ RecordedPhase recorded_phase(const Json& json) {
     phase.start_gap_s = json.at("start_gap_s");
     phase.end_gap_s = json.at("end_gap_s");
     phase.complete = json.at("complete");
-    if (const auto& airspeed = json.at("airspeed_cubed_m3_per_s3"); !airspeed.is_null()) {
-        phase.airspeed_cubed_m3_per_s3 = airspeed.get<double>();
-    }
     phase.statistics.samples = json.at("samples");
     phase.statistics.mean_power_w = json.at("mean_power_w");
     phase.statistics.energy_wh = json.at("energy_wh");
@@ -64,43 +60,28 @@ std::string verdict_text(const flight::ExplainedEdge& explained) {
 
 }  // namespace
 
-FlightRecord record_of(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
+FlightRecord record_of(const flight::LoadedFlight& loaded) {
+    const auto& [series, phases, power, exclusion, warnings] = loaded;
     FlightRecord record;
     record.flight = series.flight;
     record.accepted = true;
     record.aircraft_id = series.aircraft_id;
-    record.power_source = series.power_source;
-    record.current_origin = series.current_origin;
-    record.warnings = series.warnings;
-    record.warnings.insert(record.warnings.end(), phases.warnings.begin(), phases.warnings.end());
-    for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
-        for (const auto& edge : explain_edges(series, phases.sorties[s])) {
+    record.power_source = power_track(series).source;
+    record.current_origin = to_string(series.current_origin);
+    record.warnings = warnings;
+    record.power_faults = power.power_faults;
+    record.measured = mechanical::measure_flights(series, phases, 0);
+    for (const auto& sortie : phases.sorties) {
+        for (const auto& edge : explain_edges(series, sortie)) {
             record.verdicts.push_back({edge.edge.time_s, verdict_text(edge)});
         }
-        for (const auto& span : phases.sorties[s].phases) {
-            record.phases.push_back(
-                {s + 1, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s, span.end.gap_s,
-                 span.complete, phase_statistics(series, span.start.time_s, span.end.time_s),
-                 mean_cubed_airspeed_m3_per_s3(series.airspeed_track, span.start.time_s, span.end.time_s)});
+        for (const auto& span : sortie.phases) {
+            record.phases.push_back({sortie.number, span.phase, span.start.time_s, span.end.time_s,
+                                     span.start.gap_s, span.end.gap_s, span.complete,
+                                     phase_statistics(series, span.start.time_s, span.end.time_s)});
         }
     }
     return record;
-}
-
-flight::FlightPhases phases_of(const FlightRecord& record) {
-    flight::FlightPhases phases;
-    for (const auto& recorded : record.phases) {
-        if (phases.sorties.size() < recorded.sortie) phases.sorties.resize(recorded.sortie);
-        flight::PhaseSpan span;
-        span.phase = recorded.phase;
-        span.start.time_s = recorded.start_s;
-        span.end.time_s = recorded.end_s;
-        span.start.gap_s = recorded.start_gap_s;
-        span.end.gap_s = recorded.end_gap_s;
-        span.complete = recorded.complete;
-        phases.sorties[recorded.sortie - 1].phases.push_back(span);
-    }
-    return phases;
 }
 
 std::string to_json_text(const FlightRecord& record) {
@@ -122,8 +103,9 @@ std::string to_json_text(const FlightRecord& record) {
                     {"phases", phases},
                     {"verdicts", verdicts},
                     {"warnings", record.warnings},
-                    {"absurdities", record.absurdities},
-                    {"why_not_fitted", record.why_not_fitted}};
+                    {"power_faults", record.power_faults},
+                    {"why_not_fitted", record.why_not_fitted},
+                    {"measured", measured_json(record.measured)}};
     // File names need not be UTF-8, and a record must never fail for that.
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -146,8 +128,9 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
             record.verdicts.push_back({edge.at("time_s"), edge.at("verdict")});
         }
         record.warnings = json.at("warnings").get<std::vector<std::string>>();
-        record.absurdities = json.at("absurdities").get<std::vector<std::string>>();
+        record.power_faults = json.at("power_faults").get<std::vector<std::string>>();
         record.why_not_fitted = json.at("why_not_fitted");
+        record.measured = measured_from_json(json.at("measured"));
         return record;
     } catch (const std::exception&) {
         return std::nullopt;  // damaged or of another version: the log is done again

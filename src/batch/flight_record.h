@@ -1,8 +1,8 @@
 #pragma once
 
-#include "flight/flight_series.h"
+#include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
-#include "flight/segmentation.h"
+#include "mechanical/measured_flight.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -22,8 +22,6 @@ struct RecordedPhase {
     double end_gap_s = 0.0;
     bool complete = true;
     flight::PhaseStatistics statistics;
-    /// Of the airspeed, which the series CSV does not hold; see PhaseSamples.
-    std::optional<double> airspeed_cubed_m3_per_s3 = {};
 };
 
 /// What the autopilot says of an edge of a phase.
@@ -42,19 +40,17 @@ struct FlightRecord {
     std::string error;  ///< why it was rejected
     std::string aircraft_id;
     std::string power_source;
-    std::string current_origin;  ///< see FlightSeries
+    std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;
     std::vector<RecordedVerdict> verdicts;  ///< of the edges that the log shows
     std::vector<std::string> warnings;
-    std::vector<std::string> absurdities;  ///< of its power record: see PowerReport
-    std::string why_not_fitted;            ///< what its folder says: see LogFile
+    std::vector<std::string> power_faults;  ///< of its power record: see PowerReport
+    std::string why_not_fitted;             ///< what its folder says: see LogFile
+    mechanical::MeasuredFlights measured;   ///< of every complete phase, however few its samples
 };
 
 /// The record of a flight that was read and segmented.
-FlightRecord record_of(const flight::FlightSeries& series, const flight::FlightPhases& phases);
-
-/// The phases again, without their evidence: what a fit needs.
-flight::FlightPhases phases_of(const FlightRecord& record);
+FlightRecord record_of(const flight::LoadedFlight& loaded);
 
 /// The record as JSON, and back. Reading gives std::nullopt for what is no record of this version.
 std::string to_json_text(const FlightRecord& record);

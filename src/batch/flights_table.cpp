@@ -12,8 +12,9 @@ namespace {
 bool is_used(const BatchFlight& flight, const RecordedPhase& phase) {
     const auto name = mechanical::flight_name_of_sortie(flight.record.flight, phase.sortie);
     return std::any_of(flight.selection.flights.begin(), flight.selection.flights.end(),
-                       [&](const mechanical::FlightSamples& samples) {
-                           return samples.flight == name && samples.phases[phase.phase].has_value();
+                       [&](const mechanical::MeasuredFlight& measured) {
+                           return measured.samples.flight == name &&
+                                  measured.samples.phases[phase.phase].has_value();
                        });
 }
 
@@ -95,7 +96,7 @@ std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
     std::string text =
         "flight,sortie,phase,start_s,end_s,duration_s,samples,mean_power_w,energy_wh,counter_energy_wh,used,"
         "gaps,"
-        "longest_gap_s,complete,aircraft_id,power_source,absurdities,error\n";
+        "longest_gap_s,complete,aircraft_id,power_source,power_faults,error\n";
     for (const auto& flight : flights) {
         const auto& record = flight.record;
         const auto name = csv_cell(record.flight);
@@ -112,7 +113,7 @@ std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
                 statistics.counter_energy_wh ? fmt::format("{}", *statistics.counter_energy_wh) : "",
                 is_used(flight, phase), statistics.gaps, statistics.longest_gap_s, phase.complete,
                 csv_cell(record.aircraft_id), csv_cell(record.power_source),
-                csv_cell(fmt::format("{}", fmt::join(record.absurdities, "; "))));
+                csv_cell(fmt::format("{}", fmt::join(record.power_faults, "; "))));
         }
     }
     return text;

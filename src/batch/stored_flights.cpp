@@ -37,8 +37,6 @@ StoredFlight read_flight_of(const std::filesystem::path& file) {
     if (!flight.record.accepted) return flight;
     flight.series = flight::read_series_csv(file.parent_path() / (name + series_ending));
     flight.series.flight = name;
-    flight.series.current_origin = flight.record.current_origin;
-    flight.series.power_source = flight.record.power_source;
     flight.phases = flight::read_phases_csv(file.parent_path() / (name + phases_ending));
     return flight;
 }

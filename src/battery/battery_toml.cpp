@@ -106,7 +106,6 @@ std::string interval_lines(const BatteryIntervals& intervals) {
 }  // namespace
 
 Battery battery_from(const TomlTable& table) {
-    require_known_format(table);
     Battery battery;
     battery.name = table.optional_string("name").value_or("");
     const auto model = table.optional_string("model").value_or("paper");
@@ -124,7 +123,11 @@ Battery battery_from(const TomlTable& table) {
     return battery;
 }
 
-Battery read_battery(const std::filesystem::path& path) { return battery_from(read_toml(path)); }
+Battery read_battery(const std::filesystem::path& path) {
+    const auto root = read_toml(path);
+    require_known_format(root);
+    return battery_from(root);
+}
 
 std::string to_toml(const Battery& battery) {
     std::string text = format_line() + fmt::format("name = {}\n", toml_string(battery.name));

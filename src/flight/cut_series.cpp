@@ -1,37 +1,42 @@
 #include "flight/cut_series.h"
 
-#include "flight/series_file.h"
-
 #include <algorithm>
 
 namespace flightwatt::flight {
 namespace {
 
-std::size_t count_until(const std::vector<double>& time_s, double until_s) {
-    return static_cast<std::size_t>(std::upper_bound(time_s.begin(), time_s.end(), until_s) - time_s.begin());
+Track cut_track(const Track& track, double until_s) {
+    const auto end = std::upper_bound(track.time_s.begin(), track.time_s.end(), until_s);
+    const auto count = end - track.time_s.begin();
+    return {track.name,
+            track.source,
+            track.device,
+            track.since_s,
+            {track.time_s.begin(), end},
+            {track.value.begin(), track.value.begin() + count}};
 }
 
-void cut_track(Track& track, double until_s) {
-    const auto count = count_until(track.time_s, until_s);
-    track.time_s.resize(count);
-    track.value.resize(count);
+void cut_skipped(std::vector<telemetry::SkippedLines>& skipped, double until_s) {
+    for (auto& skip : skipped) {
+        std::erase_if(skip.lines, [&](const auto& at) { return at.time_s > until_s; });
+    }
+    std::erase_if(skipped, [](const auto& skip) { return skip.lines.empty(); });
+    std::sort(skipped.begin(), skipped.end(),
+              [](const auto& a, const auto& b) { return a.first_line() < b.first_line(); });
 }
 
 }  // namespace
 
 FlightSeries cut_series(const FlightSeries& series, double until_s) {
     FlightSeries cut = series;
-    const auto count = count_until(series.time_s, until_s);
-    cut.time_s.resize(count);
-    for (const auto& channel : series_channels()) {
-        auto& values = cut.*channel.values;
-        if (!values.empty()) values.resize(count);
+    cut.tracks.clear();
+    for (const auto& track : series.tracks) {
+        if (track.since_s <= until_s) cut.tracks.push_back(cut_track(track, until_s));
     }
-    for (auto* track : {&cut.altitude_track, &cut.ground_speed_track, &cut.airspeed_track,
-                        &cut.witnesses.mode, &cut.witnesses.block}) {
-        cut_track(*track, until_s);
-    }
-    std::erase_if(cut.witnesses.takeoff_s, [&](double time_s) { return time_s > until_s; });
+    std::erase_if(cut.assumed_definitions,
+                  [&](const auto& definition) { return definition.since_s > until_s; });
+    cut_skipped(cut.skipped, until_s);
+    if (cut.clock_restart && cut.clock_restart->known_s > until_s) cut.clock_restart.reset();
     return cut;
 }
 

@@ -4,10 +4,8 @@
 
 namespace flightwatt::flight {
 
-/// What the series held at `until_s` (the log's own seconds): nothing later is left, in no channel, track or
-/// witness. Values that are interpolated between a sample before and one after (channels other than power
-/// and what its message carries) are kept; what uses a cut series takes altitude, speed and airspeed from
-/// their own tracks, which are exact. The planned ground altitude is known before a flight and stays.
+/// The series as it would have been read from a log that ends at `until_s` (the log's own seconds), in every
+/// field: nothing later is left. What is known before a flight stays.
 FlightSeries cut_series(const FlightSeries& series, double until_s);
 
 }  // namespace flightwatt::flight

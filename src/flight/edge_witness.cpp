@@ -1,6 +1,7 @@
 #include "flight/edge_witness.h"
 
 #include "base/units.h"
+#include "flight/chosen_track.h"
 
 #include <algorithm>
 #include <cctype>
@@ -58,23 +59,23 @@ bool name_contains(const std::map<int, std::string>& names, int block, std::stri
 }
 
 std::vector<EdgeWitness> events_of(const FlightSeries& series, EdgeKind kind, double edge_s) {
-    const auto& known = series.witnesses;
     std::vector<EdgeWitness> witnesses;
-    const auto modes = changes_of(known.mode);
-    const auto blocks = changes_of(known.block);
+    const auto modes = changes_of(chosen_track(series, "mode"));
+    const auto blocks = changes_of(chosen_track(series, "block"));
     const auto mode_text = [](const Change& c) { return fmt::format("mode {} -> {}", c.from, c.to); };
     const auto block_text = [&](const Change& c) {
         const auto name = [&](int block) {
-            const auto found = known.block_names.find(block);
-            return found == known.block_names.end() ? fmt::format("{}", block) : found->second;
+            const auto found = series.block_names.find(block);
+            return found == series.block_names.end() ? fmt::format("{}", block) : found->second;
         };
         return fmt::format("block {} -> {}", name(c.from), name(c.to));
     };
-    const auto& names = known.block_names;
+    const auto& names = series.block_names;
     switch (kind) {
         case EdgeKind::lift_off: {
             std::vector<Change> messages;
-            for (const double time_s : known.takeoff_s) messages.push_back({time_s, 0, 0});
+            for (const double time_s : chosen_track(series, "takeoff").time_s)
+                messages.push_back({time_s, 0, 0});
             add_nearest(
                 witnesses, edge_s, messages, [](const Change&) { return true; },
                 [](const Change&) { return std::string("TAKEOFF"); });

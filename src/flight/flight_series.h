@@ -1,5 +1,8 @@
 #pragma once
 
+#include "telemetry/telemetry_log.h"
+
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -7,55 +10,65 @@
 
 namespace flightwatt::flight {
 
-/// A value that is known at some times, in order.
+/// A quantity on its own clock, as one field of the log tells it. `time_s` rises strictly, `value` is as long
+/// and finite. A value at t depends on nothing that the log wrote of a later time.
 struct Track {
-    std::vector<double> time_s;
-    std::vector<double> value;
+    std::string name = {};    ///< with the unit as suffix: "power_w"
+    std::string source = {};  ///< "ENERGY.power"
+    std::string device = {};  ///< one of several that report the quantity one at a time; usually empty
+    double since_s = -std::numeric_limits<double>::infinity();  ///< when the log first had the field at all
+    std::vector<double> time_s = {};                            ///< the log's own seconds
+    std::vector<double> value = {};
+
     bool empty() const { return time_s.empty(); }
+    bool operator==(const Track&) const = default;
 };
 
-/// What the autopilot said of the flight's state: witnesses for the segmentation, never its answer.
-struct FlightWitnesses {
-    std::vector<double> takeoff_s;  ///< times of TAKEOFF messages, in the log's seconds
-    Track mode;                     ///< PPRZ_MODE.ap_mode: 0 manual, 1 auto1, 2 auto2
-    Track block;                    ///< NAVIGATION.cur_block
-    std::map<int, std::string> block_names;
+/// Where the autopilot's current came from.
+enum class CurrentOrigin {
+    unknown,
+    sensor,   ///< the airframe converts an ADC reading
+    throttle  ///< computed from throttle: a power model fitted to it is circular
 };
 
-/// The physical channels of one aircraft in one log, on the clock of its power samples: `time_s` rises
-/// strictly, and every channel is as long as it or empty (the log has none).
+/// "measured by a sensor", "computed from throttle" or "unknown".
+std::string_view to_string(CurrentOrigin origin);
+
+/// The log's clock began anew: what stands behind is another recording.
+struct ClockRestart {
+    double known_s = 0.0;  ///< a log that ends before this time shows nothing of it
+    double from_s = 0.0;
+    double to_s = 0.0;
+    std::string message;
+    bool operator==(const ClockRestart&) const = default;
+};
+
+/// One aircraft in one log, as it was logged: every track that could tell something, several of one name
+/// where several messages tell it. What is taken for the altitude, the power ... is decided when it is asked
+/// for (chosen_track.h), so that a series which is cut equals the series of a log that ends there.
 struct FlightSeries {
     std::string file;           ///< it was read from, for errors
     std::string flight;         ///< the log's name without folder and ending
-    std::string aircraft_id;    ///< as the log writes it; empty if unknown (a series CSV)
+    std::string aircraft_id;    ///< as the log writes it; empty if unknown (a plain CSV)
     std::string aircraft_name;  ///< from the .log; may be empty
 
-    std::vector<double> time_s;  ///< the log's own seconds
-    std::vector<double> altitude_m;
-    std::vector<double> throttle_percent;
-    std::vector<double> voltage_v;
-    std::vector<double> current_a;
-    std::vector<double> power_w;
-    std::vector<double> charge_ah;
-    std::vector<double> energy_wh;
-    std::vector<double> east_m;
-    std::vector<double> north_m;
-    std::vector<double> ground_speed_m_per_s;
+    // Known before the flight, from the .log.
+    CurrentOrigin current_origin = CurrentOrigin::unknown;
+    std::optional<double> planned_ground_altitude_m;
+    std::map<int, std::string> block_names;  ///< of the track "block"
+    bool lacks_log = false;                  ///< telemetry without its .log
 
-    std::map<std::string, std::string> sources;  ///< channel name to the message and field it came from
-    std::string current_origin =
-        "unknown";             ///< "measured by a sensor", "computed from throttle" or "unknown"
-    std::string power_source;  ///< "ENERGY.power", "ENERGY.voltage * ENERGY.current", ...
+    std::vector<Track> tracks;  ///< in the order of track_names(), of one name the best first
+    std::vector<telemetry::AssumedDefinition> assumed_definitions;
+    std::vector<telemetry::SkippedLines> skipped;  ///< by first line
+    std::optional<ClockRestart> clock_restart;
+    std::vector<std::string> notes;  ///< what was done to it, for its reader
 
-    /// Altitude and speed on their own, faster clocks; empty in a series read from CSV.
-    Track altitude_track;
-    Track ground_speed_track;
-    Track airspeed_track;                     ///< [m/s] as measured; empty without a sensor
-    Track wind_speed_track;                   ///< [m/s] as the aircraft estimates it
-    std::optional<double> ground_altitude_m;  ///< from the flight plan or NAVIGATION_REF
-    FlightWitnesses witnesses;
-
-    std::vector<std::string> warnings;  ///< what a user should know: skipped lines, assumed definitions
+    bool operator==(const FlightSeries&) const = default;
 };
+
+/// Every name that a track can have, in the order of the series file's columns: altitude_m,
+/// throttle_percent, voltage_v, current_a, power_w, charge_ah, energy_wh, east_m, north_m, ...
+const std::vector<std::string>& track_names();
 
 }  // namespace flightwatt::flight

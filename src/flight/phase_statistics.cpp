@@ -1,6 +1,7 @@
 #include "flight/phase_statistics.h"
 
 #include "base/units.h"
+#include "flight/chosen_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,18 +34,16 @@ std::string edge_cells(const PhaseEdge& edge) {
 
 }  // namespace
 
-double usual_interval_s(const FlightSeries& series) {
+double usual_interval_s(const std::vector<double>& time_s) {
     std::vector<double> intervals;
-    for (std::size_t i = 1; i < series.time_s.size(); ++i) {
-        intervals.push_back(series.time_s[i] - series.time_s[i - 1]);
-    }
+    for (std::size_t i = 1; i < time_s.size(); ++i) intervals.push_back(time_s[i] - time_s[i - 1]);
     if (intervals.empty()) return 0.0;
     const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
     std::nth_element(intervals.begin(), middle, intervals.end());
     return *middle;
 }
 
-double gap_threshold_s(const FlightSeries& series) { return 3.0 * usual_interval_s(series); }
+double gap_threshold_s(const std::vector<double>& time_s) { return 3.0 * usual_interval_s(time_s); }
 
 double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s,
                   double end_s) {
@@ -60,12 +59,15 @@ double integrated(const std::vector<double>& time_s, const std::vector<double>& 
 }
 
 double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s) {
-    return units::wh_from_joule(integrated(series.time_s, series.power_w, start_s, end_s));
+    const auto power = power_track(series);
+    return units::wh_from_joule(integrated(power.time_s, power.value, start_s, end_s));
 }
 
 PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s) {
     PhaseStatistics statistics;
-    const double gap_s = gap_threshold_s(series);
+    const auto power = power_track(series);
+    const auto& time_s = power.time_s;
+    const double gap_s = gap_threshold_s(time_s);
     double last_s = start_s;
     const auto count_gap = [&](double until_s) {
         const double interval_s = until_s - last_s;
@@ -74,18 +76,17 @@ PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, dou
         last_s = until_s;
     };
     double sum_w = 0.0;
-    const auto& time_s = series.time_s;
     for (auto i = first_at_or_after(time_s, start_s); i < time_s.size() && time_s[i] <= end_s; ++i) {
         count_gap(time_s[i]);
-        sum_w += series.power_w[i];
+        sum_w += power.value[i];
         ++statistics.samples;
     }
     count_gap(end_s);
     if (statistics.samples > 0) statistics.mean_power_w = sum_w / static_cast<double>(statistics.samples);
-    statistics.energy_wh = integrated_energy_wh(series, start_s, end_s);
-    if (!series.energy_wh.empty()) {
+    statistics.energy_wh = units::wh_from_joule(integrated(time_s, power.value, start_s, end_s));
+    if (const auto counter = chosen_at(series, "energy_wh", time_s); !counter.empty()) {
         statistics.counter_energy_wh =
-            interpolated(time_s, series.energy_wh, end_s) - interpolated(time_s, series.energy_wh, start_s);
+            interpolated(time_s, counter, end_s) - interpolated(time_s, counter, start_s);
     }
     return statistics;
 }
@@ -100,12 +101,12 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
             edge);
     }
     text += '\n';
-    for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
-        for (const auto& span : phases.sorties[s].phases) {
+    for (const auto& sortie : phases.sorties) {
+        for (const auto& span : sortie.phases) {
             const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
-            text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", s + 1, to_string(span.phase),
-                                span.start.time_s, span.end.time_s, span.duration_s(), statistics.samples,
-                                statistics.mean_power_w, statistics.energy_wh,
+            text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", sortie.number,
+                                to_string(span.phase), span.start.time_s, span.end.time_s, span.duration_s(),
+                                statistics.samples, statistics.mean_power_w, statistics.energy_wh,
                                 optional_cell(statistics.counter_energy_wh), statistics.gaps,
                                 statistics.longest_gap_s, span.complete, edge_cells(span.start),
                                 edge_cells(span.end));

@@ -16,7 +16,7 @@ struct PhaseStatistics {
     double mean_power_w = 0.0;                ///< of these samples; 0 without any
     double energy_wh = 0.0;                   ///< integral of the power, linear between samples
     std::optional<double> counter_energy_wh;  ///< what the on-board counter counted meanwhile
-    std::size_t gaps = 0;  ///< stretches without a sample, longer than three usual intervals
+    std::size_t gaps = 0;                     ///< times without a sample, longer than three usual intervals
     double longest_gap_s = 0.0;
 };
 
@@ -31,10 +31,10 @@ double integrated(const std::vector<double>& time_s, const std::vector<double>& 
                   double end_s);
 
 /// A longer interval without a power sample is a gap: three usual ones [s].
-double gap_threshold_s(const FlightSeries& series);
+double gap_threshold_s(const std::vector<double>& time_s);
 
 /// Median interval of the power samples [s].
-double usual_interval_s(const FlightSeries& series);
+double usual_interval_s(const std::vector<double>& time_s);
 
 /// The phases CSV: sortie, phase, start_s, end_s, duration_s, samples, mean_power_w, energy_wh, ... and the
 /// evidence at both edges; a witness that is absent leaves its cell empty.

@@ -1,8 +1,10 @@
 #include "flight/power_check.h"
 
 #include "base/units.h"
+#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation/flight_grid.h"
+#include "flight/sources/power_source.h"
 #include "flight/track.h"
 
 #include <algorithm>
@@ -14,12 +16,37 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double absurd_idle_current_a = 5.0;
-constexpr double absurd_power_difference = 0.10;
+constexpr double faulty_idle_current_a = 5.0;
+constexpr double faulty_power_difference = 0.10;
 constexpr double compared_power_w = 1.0;  // below, rounding and offsets rule
-constexpr double absurd_counter_return = 0.05;
-constexpr double absurd_rest_part = 0.10;  // of the samples at rest
-constexpr double absurd_closure_percent = 10.0;
+constexpr double faulty_counter_return = 0.05;
+constexpr double faulty_rest_part = 0.10;  // of the samples at rest
+constexpr double faulty_closure_percent = 10.0;
+
+/// What the power's sensor and counters say, on the clock of the power samples; empty where not logged.
+struct PowerRecord {
+    std::vector<double> time_s;
+    std::vector<double> power_w;
+    std::vector<double> voltage_v;
+    std::vector<double> current_a;
+    std::vector<double> charge_ah;
+    std::vector<double> energy_wh;
+    std::vector<double> throttle_percent;
+};
+
+PowerRecord record_of(const FlightSeries& series) {
+    auto power = power_track(series);
+    const auto on_clock = [&](const char* name) { return chosen_at(series, name, power.time_s); };
+    PowerRecord record;
+    record.voltage_v = on_clock("voltage_v");
+    record.current_a = on_clock("current_a");
+    record.charge_ah = on_clock("charge_ah");
+    record.energy_wh = on_clock("energy_wh");
+    record.throttle_percent = on_clock("throttle_percent");
+    record.time_s = std::move(power.time_s);
+    record.power_w = std::move(power.value);
+    return record;
+}
 
 bool is_in_flight(const FlightPhases& phases, double time_s) {
     return std::any_of(phases.sorties.begin(), phases.sorties.end(), [&](const Sortie& sortie) {
@@ -34,17 +61,18 @@ double median_of(std::vector<double> values) {
 }
 
 /// Indices of the power samples at rest with the motor off.
-std::vector<std::size_t> resting_samples(const FlightSeries& series, const SegmentationOptions& options) {
+std::vector<std::size_t> resting_samples(const FlightSeries& series, const PowerRecord& record,
+                                         const SegmentationOptions& options) {
     std::vector<std::size_t> indices;
-    if (series.throttle_percent.empty()) return indices;
+    if (record.throttle_percent.empty()) return indices;
     const auto grid = make_grid(series);
     const auto rests = find_rests(grid, options);
-    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-        const auto at = static_cast<std::size_t>((series.time_s[i] - grid.begin_s) / grid.step_s);
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+        const auto at = static_cast<std::size_t>((record.time_s[i] - grid.start_s) / grid.step_s);
         const bool resting = std::any_of(rests.begin(), rests.end(), [&](const GridSpan& rest) {
             return at >= rest.begin && at < rest.end;
         });
-        if (resting && series.throttle_percent[i] <= options.idle_throttle_percent) indices.push_back(i);
+        if (resting && record.throttle_percent[i] <= options.idle_throttle_percent) indices.push_back(i);
     }
     return indices;
 }
@@ -92,24 +120,24 @@ double counter_return(const std::vector<double>& time_s, const std::vector<doubl
 
 /// Median of |power - voltage * current| over the product, where that is large enough; 0 if it cannot be
 /// compared.
-double power_difference(const FlightSeries& series) {
-    if (series.voltage_v.empty() || series.current_a.empty()) return 0.0;
+double power_difference(const PowerRecord& record) {
+    if (record.voltage_v.empty() || record.current_a.empty()) return 0.0;
     std::vector<double> differences;
-    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-        const double product = series.voltage_v[i] * series.current_a[i];
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+        const double product = record.voltage_v[i] * record.current_a[i];
         if (std::abs(product) < compared_power_w) continue;
-        differences.push_back(std::abs(series.power_w[i] - product) / std::abs(product));
+        differences.push_back(std::abs(record.power_w[i] - product) / std::abs(product));
     }
     return differences.empty() ? 0.0 : median_of(std::move(differences));
 }
 
-bool is_constant_in_flight(const FlightSeries& series, const FlightPhases& phases) {
+bool is_constant_in_flight(const PowerRecord& record, const FlightPhases& phases) {
     for (const auto& sortie : phases.sorties) {
         std::vector<double> flown;
-        for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-            const bool inside = series.time_s[i] >= sortie.phases.front().start.time_s &&
-                                series.time_s[i] <= sortie.phases.back().end.time_s;
-            if (inside) flown.push_back(series.power_w[i]);
+        for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+            const bool inside = record.time_s[i] >= sortie.phases.front().start.time_s &&
+                                record.time_s[i] <= sortie.phases.back().end.time_s;
+            if (inside) flown.push_back(record.power_w[i]);
         }
         const bool varies =
             std::any_of(flown.begin(), flown.end(), [&](double w) { return w != flown.front(); });
@@ -119,61 +147,61 @@ bool is_constant_in_flight(const FlightSeries& series, const FlightPhases& phase
 }
 
 /// What part of the samples at rest has a current that only a running motor draws.
-double loaded_rest_part(const FlightSeries& series, const std::vector<std::size_t>& resting) {
-    if (series.current_a.empty() || resting.empty()) return 0.0;
+double loaded_rest_part(const PowerRecord& record, const std::vector<std::size_t>& resting) {
+    if (record.current_a.empty() || resting.empty()) return 0.0;
     const auto loaded = std::count_if(resting.begin(), resting.end(), [&](std::size_t i) {
-        return std::abs(series.current_a[i]) > absurd_idle_current_a;
+        return std::abs(record.current_a[i]) > faulty_idle_current_a;
     });
     constexpr std::ptrdiff_t enough = 10;
     return loaded < enough ? 0.0 : static_cast<double>(loaded) / static_cast<double>(resting.size());
 }
 
-double mean_power_in_flight_w(const FlightSeries& series, const FlightPhases& phases) {
+double mean_power_in_flight_w(const PowerRecord& record, const FlightPhases& phases) {
     double sum_w = 0.0;
     std::size_t count = 0;
-    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-        if (!is_in_flight(phases, series.time_s[i])) continue;
-        sum_w += series.power_w[i];
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+        if (!is_in_flight(phases, record.time_s[i])) continue;
+        sum_w += record.power_w[i];
         ++count;
     }
     return count > 0 ? sum_w / static_cast<double>(count) : 0.0;
 }
 
-void find_absurdities(const FlightSeries& series, const FlightPhases& phases,
-                      const std::vector<std::size_t>& resting, PowerReport& report) {
-    const auto add = [&](std::string text) { report.absurdities.push_back(std::move(text)); };
-    if (const double part = loaded_rest_part(series, resting); part > absurd_rest_part) {
+void find_power_faults(const PowerRecord& record, const FlightPhases& phases,
+                       const std::vector<std::size_t>& resting, PowerReport& report) {
+    const auto add = [&](std::string text) { report.power_faults.push_back(std::move(text)); };
+    if (const double part = loaded_rest_part(record, resting); part > faulty_rest_part) {
         add(fmt::format("more than {:.0f} A in {:.0f} % of the samples on the ground with the motor off",
-                        absurd_idle_current_a, part * units::percent_per_whole));
+                        faulty_idle_current_a, part * units::percent_per_whole));
     }
-    if (const double apart = power_difference(series); apart > absurd_power_difference) {
+    if (const double apart = power_difference(record); apart > faulty_power_difference) {
         add(fmt::format("power is {:.0f} % away from voltage times current",
                         apart * units::percent_per_whole));
     }
     for (const auto& [name, counter] :
-         {std::pair{"energy", &series.energy_wh}, std::pair{"charge", &series.charge_ah}}) {
-        if (const double part = counter_return(series.time_s, *counter, phases);
-            part > absurd_counter_return) {
+         {std::pair{"energy", &record.energy_wh}, std::pair{"charge", &record.charge_ah}}) {
+        if (const double part = counter_return(record.time_s, *counter, phases);
+            part > faulty_counter_return) {
             add(fmt::format("the {} counter ran back by {:.0f} % of what it counted in flight", name,
                             part * units::percent_per_whole));
         }
     }
     for (const auto& [name, closure] : {std::pair{"energy", report.energy_closure_percent},
                                         std::pair{"charge", report.charge_closure_percent}}) {
-        if (closure && std::abs(*closure) > absurd_closure_percent) {
+        if (closure && std::abs(*closure) > faulty_closure_percent) {
             add(fmt::format("what was measured is {:+.0f} % away from the on-board {} counter", *closure,
                             name));
         }
     }
-    if (mean_power_in_flight_w(series, phases) < 0.0) add("power is negative on average in flight");
-    if (is_constant_in_flight(series, phases)) add("power does not change in flight");
+    if (mean_power_in_flight_w(record, phases) < 0.0) add("power is negative on average in flight");
+    if (is_constant_in_flight(record, phases)) add("power does not change in flight");
 }
 
 /// Integral over counter, less 100 %, over all sorties; absent without a counter that counted.
 std::optional<double> closure_percent(const std::vector<double>& time_s, const std::vector<double>& rate,
                                       const std::vector<double>& counter, const FlightPhases& phases) {
     if (rate.empty() || counter.empty()) return std::nullopt;
-    const Track counted{time_s, counter};
+    const Track counted{.time_s = time_s, .value = counter};
     double integral = 0.0;
     double difference = 0.0;
     for (const auto& sortie : phases.sorties) {
@@ -188,42 +216,59 @@ std::optional<double> closure_percent(const std::vector<double>& time_s, const s
 
 }  // namespace
 
-PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases) {
+PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
+                               const SegmentationOptions& options) {
     PowerReport report;
     report.origin = series.current_origin;
-    const auto resting = resting_samples(series, {});
-    report.idle = idle_current(series.current_a, resting);
-    report.energy_closure_percent = closure_percent(series.time_s, series.power_w, series.energy_wh, phases);
-    report.charge_closure_percent =
-        closure_percent(series.time_s, series.current_a, series.charge_ah, phases);
-    const double gap_s = gap_threshold_s(series);
+    const auto record = record_of(series);
+    const auto& time_s = record.time_s;
+    const auto resting = resting_samples(series, record, options);
+    report.idle = idle_current(record.current_a, resting);
+    report.energy_closure_percent = closure_percent(time_s, record.power_w, record.energy_wh, phases);
+    report.charge_closure_percent = closure_percent(time_s, record.current_a, record.charge_ah, phases);
+    const double gap_s = gap_threshold_s(time_s);
     for (const auto& sortie : phases.sorties) {
-        for (std::size_t i = 1; i < series.time_s.size(); ++i) {
-            const double interval_s = series.time_s[i] - series.time_s[i - 1];
-            const bool inside = series.time_s[i - 1] >= sortie.phases.front().start.time_s &&
-                                series.time_s[i] <= sortie.phases.back().end.time_s;
-            if (inside && interval_s > gap_s) report.gaps.push_back({series.time_s[i - 1], interval_s});
+        for (std::size_t i = 1; i < time_s.size(); ++i) {
+            const double interval_s = time_s[i] - time_s[i - 1];
+            const bool inside = time_s[i - 1] >= sortie.phases.front().start.time_s &&
+                                time_s[i] <= sortie.phases.back().end.time_s;
+            if (inside && interval_s > gap_s) report.gaps.push_back({time_s[i - 1], interval_s});
         }
     }
-    find_absurdities(series, phases, resting, report);
+    find_power_faults(record, phases, resting, report);
     return report;
 }
 
-std::string describe_absurdities(const std::vector<std::string>& absurdities) {
-    return fmt::format("absurd power record: {}; --keep overrules this", fmt::join(absurdities, ", "));
+std::string describe_power_faults(const std::vector<std::string>& power_faults) {
+    return fmt::format("power faults: {}; --keep overrides this", fmt::join(power_faults, ", "));
 }
 
 void correct_idle_offset(FlightSeries& series, const std::optional<IdleCurrent>& idle) {
     if (!idle) return;
-    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-        const double voltage_v = !series.voltage_v.empty()    ? series.voltage_v[i]
-                                 : series.current_a[i] != 0.0 ? series.power_w[i] / series.current_a[i]
-                                                              : 0.0;
-        series.power_w[i] -= idle->mean_a * voltage_v;
-        series.current_a[i] -= idle->mean_a;
+    auto power = power_track(series);
+    auto current = chosen_track(series, "current_a");
+    const auto voltage_v = chosen_at(series, "voltage_v", power.time_s);
+    const auto current_a = resample(current, power.time_s);
+    for (std::size_t i = 0; i < power.time_s.size(); ++i) {
+        const double volts = !voltage_v.empty()    ? voltage_v[i]
+                             : current_a[i] != 0.0 ? power.value[i] / current_a[i]
+                                                   : 0.0;
+        power.value[i] -= idle->mean_a * volts;
     }
-    series.warnings.push_back(fmt::format("the idle current of {:.4f} A ({} samples at rest) was taken out",
-                                          idle->mean_a, idle->samples));
+    current.time_s = power.time_s;
+    current.value = current_a;
+    for (auto& value : current.value) value -= idle->mean_a;
+    // What was not chosen goes, since its offset is not known; what was said of the choice stays.
+    const auto before = warnings_of(series);
+    if (energy_and_power_are_exchanged(series)) replace_track(series, chosen_track(series, "charge_ah"));
+    replace_track(series, std::move(power));
+    replace_track(series, std::move(current));
+    const auto after = warnings_of(series);
+    for (const auto& warning : before) {
+        if (std::find(after.begin(), after.end(), warning) == after.end()) series.notes.push_back(warning);
+    }
+    series.notes.push_back(fmt::format("the idle current of {:.4f} A ({} samples at rest) was taken out",
+                                       idle->mean_a, idle->samples));
 }
 
 }  // namespace flightwatt::flight

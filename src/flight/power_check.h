@@ -17,32 +17,33 @@ struct IdleCurrent {
     std::size_t samples = 0;
 };
 
-/// A stretch without a power sample, longer than three usual intervals.
+/// A time without a power sample, longer than three usual intervals.
 struct PowerGap {
     double start_s = 0.0;
     double duration_s = 0.0;
 };
 
-/// What a power record is worth.
+/// How far a power record can be trusted.
 struct PowerReport {
-    std::string origin;  ///< "measured by a sensor", "computed from throttle" or "unknown"
+    CurrentOrigin origin = CurrentOrigin::unknown;
     std::optional<IdleCurrent> idle;
     std::optional<double> energy_closure_percent;  ///< in flight: integral of power over counter, less 100 %
     std::optional<double> charge_closure_percent;  ///< the same of current and the charge counter
     std::vector<PowerGap> gaps;                    ///< within the sorties
-    std::vector<std::string> absurdities;          ///< what cannot be: such a record is not fitted
+    std::vector<std::string> power_faults;         ///< what cannot be: such a record is not fitted
 };
 
-/// Examines a power record. The closure is over the sorties, lift-off to touchdown (that of a phase stands in
-/// its statistics); the idle current over the rests with the motor off. Absurd are: more than 5 A in a tenth
+/// Checks a power record. The closure is over the sorties, lift-off to touchdown (that of a phase stands in
+/// its statistics); the idle current over the rests with the motor off. Power faults are: more than 5 A in a tenth
 /// of the samples at rest with the motor off; power that is not voltage times current (more than 10 % apart,
 /// median, above 1 W); a counter that runs back in flight by more than 5 % of what it counted; an integral
 /// more than 10 % away from the counter; power that is negative on average, or does not change at all, in
 /// flight.
-PowerReport examine_power(const FlightSeries& series, const FlightPhases& phases);
+PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
+                               const SegmentationOptions& options = {});
 
-/// The absurdities as the reason why a flight is not fitted, and how to overrule that.
-std::string describe_absurdities(const std::vector<std::string>& absurdities);
+/// The faults as the reason why a flight is not fitted, and how to overrule that.
+std::string describe_power_faults(const std::vector<std::string>& power_faults);
 
 /// Takes the idle current out of current and power (with the voltage measured at the same time; without one,
 /// the idle power out of the power). Counters stay as they are. Does nothing where no idle current is known.

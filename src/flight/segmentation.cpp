@@ -1,6 +1,7 @@
 #include "flight/segmentation.h"
 
 #include "base/error.h"
+#include "flight/chosen_track.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/track.h"
 
@@ -223,22 +224,33 @@ double gap_around_s(const std::vector<double>& sample_s, double time_s) {
     return after == sample_s.begin() || after == sample_s.end() ? 0.0 : *after - *(after - 1);
 }
 
-PhaseEdge describe_edge(const FlightSeries& series, const FlightGrid& grid, double exact_s) {
+/// What is noted beside an edge.
+struct Witnesses {
+    Track altitude;
+    Track mode;
+    Track block;
+    Track takeoff;
+};
+
+Witnesses witnesses_of(const FlightSeries& series) {
+    return {chosen_track(series, "altitude_m"), chosen_track(series, "mode"), chosen_track(series, "block"),
+            chosen_track(series, "takeoff")};
+}
+
+PhaseEdge describe_edge(const Witnesses& witnesses, const FlightGrid& grid, double exact_s) {
     PhaseEdge edge;
     const double time_s = to_millisecond(exact_s);
     edge.time_s = time_s;
     const auto nearest = [&](const std::vector<double>& channel) {
-        const auto index = std::lround((time_s - grid.begin_s) / grid.step_s);
+        const auto index = std::lround((time_s - grid.start_s) / grid.step_s);
         return channel[std::min(static_cast<std::size_t>(std::max(index, 0L)), channel.size() - 1)];
     };
     edge.altitude_m = nearest(grid.altitude_m);
-    edge.gap_s =
-        gap_around_s(series.altitude_track.empty() ? series.time_s : series.altitude_track.time_s, time_s);
+    edge.gap_s = gap_around_s(witnesses.altitude.time_s, time_s);
     if (!grid.throttle_percent.empty()) edge.throttle_percent = nearest(grid.throttle_percent);
-    const auto& witnesses = series.witnesses;
     if (!witnesses.mode.empty()) edge.mode = static_cast<int>(state_at(witnesses.mode, time_s));
     if (!witnesses.block.empty()) edge.block = static_cast<int>(state_at(witnesses.block, time_s));
-    for (const double takeoff : witnesses.takeoff_s) {
+    for (const double takeoff : witnesses.takeoff.time_s) {
         const double after = takeoff - time_s;
         if (!edge.takeoff_after_s || std::abs(after) < std::abs(*edge.takeoff_after_s))
             edge.takeoff_after_s = after;
@@ -246,7 +258,7 @@ PhaseEdge describe_edge(const FlightSeries& series, const FlightGrid& grid, doub
     return edge;
 }
 
-Sortie make_sortie(const FlightSeries& series, const FlightGrid& grid, const Activity& activity,
+Sortie make_sortie(const Witnesses& witnesses, const FlightGrid& grid, const Activity& activity,
                    const Heights& heights, const SegmentationOptions& options) {
     const auto edges = find_edges(grid, activity, heights, options);
     const double first_s = edges.lift_off_s.value_or(grid.time_s(activity.span.begin));
@@ -256,10 +268,10 @@ Sortie make_sortie(const FlightSeries& series, const FlightGrid& grid, const Act
     Sortie sortie;
     sortie.ground_altitude_m = heights.ground_m;
     sortie.height_m = heights.top_m;
-    const auto add = [&](Phase phase, double from_s, double to_s, bool complete) {
-        if (to_s <= from_s) return;
-        sortie.phases.push_back(
-            {phase, describe_edge(series, grid, from_s), describe_edge(series, grid, to_s), complete});
+    const auto add = [&](Phase phase, double start_s, double end_s, bool complete) {
+        if (end_s <= start_s) return;
+        sortie.phases.push_back({phase, describe_edge(witnesses, grid, start_s),
+                                 describe_edge(witnesses, grid, end_s), complete});
     };
     if (edges.takeoff_end_s) add(Phase::takeoff, first_s, cruise_from, edges.lift_off_s.has_value());
     add(Phase::cruise, cruise_from, cruise_to,
@@ -290,16 +302,18 @@ void validate(const SegmentationOptions& options) {
 FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options) {
     validate(options);
     const auto grid = make_grid(series);
+    const auto witnesses = witnesses_of(series);
+    const auto ground_m = ground_altitude_m(series);
     FlightPhases phases;
     if (grid.throttle_percent.empty())
         phases.warnings.emplace_back("no throttle: segmented by altitude alone");
     for (const auto& activity : find_activities(grid, find_rests(grid, options), options)) {
         bool disagree = false;
-        const auto grounds = grounds_of(grid, activity, series.ground_altitude_m, disagree);
+        const auto grounds = grounds_of(grid, activity, ground_m, disagree);
         const auto heights = heights_of(grid, activity, grounds);
         auto why = why_no_flight(grid, activity, heights, options);
         if (!why.empty()) {
-            phases.others.push_back(
+            phases.ground_events.push_back(
                 {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1), std::move(why)});
             continue;
         }
@@ -309,7 +323,8 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
                 "latter counts",
                 grid.time_s(activity.moving.begin), *activity.ground_before_m, *activity.ground_after_m));
         }
-        phases.sorties.push_back(make_sortie(series, grid, activity, heights, options));
+        phases.sorties.push_back(make_sortie(witnesses, grid, activity, heights, options));
+        phases.sorties.back().number = phases.sorties.size();
     }
     return phases;
 }
@@ -317,17 +332,17 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
 void require_sortie(const FlightSeries& series, const FlightPhases& phases, const std::string& file) {
     if (!phases.sorties.empty()) return;
     std::string seen = "it stood still throughout";
-    if (!phases.others.empty()) {
+    if (!phases.ground_events.empty()) {
         seen = "seen instead: ";
-        for (std::size_t i = 0; i < std::min<std::size_t>(phases.others.size(), 3); ++i) {
-            const auto& other = phases.others[i];
+        for (std::size_t i = 0; i < std::min<std::size_t>(phases.ground_events.size(), 3); ++i) {
+            const auto& other = phases.ground_events[i];
             seen += fmt::format("{}{} ({:.0f} to {:.0f} s)", i > 0 ? "; " : "", other.what, other.start_s,
                                 other.end_s);
         }
     }
-    throw InputError({file},
-                     fmt::format("holds no flight in {:.0f} s", series.time_s.back() - series.time_s.front()),
-                     seen);
+    const auto power = power_track(series);
+    throw InputError(
+        {file}, fmt::format("holds no flight in {:.0f} s", power.time_s.back() - power.time_s.front()), seen);
 }
 
 }  // namespace flightwatt::flight

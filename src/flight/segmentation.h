@@ -46,13 +46,14 @@ struct PhaseSpan {
 
 /// From lift-off to touchdown.
 struct Sortie {
+    std::size_t number = 1;         ///< its place among those of the log
     std::vector<PhaseSpan> phases;  ///< in order; a log that begins or ends in the air lacks some
     double ground_altitude_m = 0.0;
     double height_m = 0.0;  ///< median height above the ground while in the upper half of it
 };
 
-/// Something that moved or ran and is not a flight.
-struct NonFlight {
+/// Something that moved or ran on the ground and is no flight.
+struct GroundEvent {
     double start_s = 0.0;
     double end_s = 0.0;
     std::string what;  ///< "run-up: throttle to 65 %, height 0.4 m"
@@ -60,7 +61,7 @@ struct NonFlight {
 
 struct FlightPhases {
     std::vector<Sortie> sorties;
-    std::vector<NonFlight> others;
+    std::vector<GroundEvent> ground_events;
     std::vector<std::string> warnings;
 };
 

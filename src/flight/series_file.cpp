@@ -1,11 +1,17 @@
 #include "flight/series_file.h"
 
+#include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/toml_reader.h"
+#include "flight/chosen_track.h"
+#include "flight/series_file/front_matter.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,95 +19,136 @@
 namespace flightwatt::flight {
 namespace {
 
-/// Where each column of the file goes; time_s is a channel here too.
-std::vector<std::vector<double> FlightSeries::*> bind_columns(const CsvTable& table) {
-    std::vector<std::vector<double> FlightSeries::*> targets;
-    std::vector<std::string> known{"time_s"};
-    for (const auto& channel : series_channels()) known.emplace_back(channel.name);
-    for (auto column_at = table.columns.begin(); column_at != table.columns.end(); ++column_at) {
-        const auto& column = *column_at;
-        if (std::find(table.columns.begin(), column_at, column) != column_at) {
-            throw InputError({table.file, 1}, fmt::format("column '{}' stands there twice", column),
-                             "keep one of them");
+std::vector<double> all_times(const std::vector<Track>& tracks) {
+    std::vector<double> time_s;
+    for (const auto& track : tracks) time_s.insert(time_s.end(), track.time_s.begin(), track.time_s.end());
+    std::sort(time_s.begin(), time_s.end());
+    time_s.erase(std::unique(time_s.begin(), time_s.end()), time_s.end());
+    return time_s;
+}
+
+/// Reads the table behind the front matter row by row.
+class TableReader {
+  public:
+    TableReader(FrontMatter matter, std::string file) : matter_(std::move(matter)), file_(std::move(file)) {}
+
+    void read_row(const CsvTable::Row& row) {
+        if (columns_.empty()) return bind(row);
+        const double time_s = number(row, time_column_);
+        if (!(time_s > last_s_)) {
+            throw InputError({file_, row.line, row.cells[time_column_].column},
+                             fmt::format("time_s = {} does not rise from {}", time_s, last_s_),
+                             "sort the rows by time and keep one of each");
         }
-        if (column == "time_s") {
-            targets.push_back(&FlightSeries::time_s);
-            continue;
+        last_s_ = time_s;
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            if (i == time_column_ || row.cells[i].text.empty()) continue;
+            auto& track = matter_.series.tracks[track_of_[i]];
+            track.time_s.push_back(time_s);
+            track.value.push_back(number(row, i));
         }
-        const auto& channels = series_channels();
-        const auto found = std::find_if(channels.begin(), channels.end(),
-                                        [&](const SeriesChannel& channel) { return channel.name == column; });
-        if (found == channels.end()) {
+    }
+
+    /// The series; the tracks are those that have a column.
+    FlightSeries take() {
+        auto series = std::move(matter_.series);
+        std::vector<Track> tracks;
+        for (std::size_t i = 0; i < series.tracks.size(); ++i) {
+            if (is_bound_[i]) tracks.push_back(std::move(series.tracks[i]));
+        }
+        series.tracks = std::move(tracks);
+        return series;
+    }
+
+  private:
+    double number(const CsvTable::Row& row, std::size_t column) const {
+        const auto& cell = row.cells[column];
+        if (const auto value = parse_number(cell.text)) return *value;
+        throw InputError({file_, row.line, cell.column},
+                         fmt::format("{} is not a finite number: '{}'", columns_[column], cell.text));
+    }
+
+    void bind(const CsvTable::Row& header) {
+        CsvTable table{file_, {}, {}};
+        for (const auto& cell : header.cells) table.columns.push_back(cell.text);
+        columns_ = table.columns;
+        time_column_ = column_index(table, "time_s");
+        column_index(table, "power_w");
+        is_bound_.assign(matter_.columns.size(), false);
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            const auto here = columns_.begin() + static_cast<std::ptrdiff_t>(i);
+            if (std::find(columns_.begin(), here, *here) != here) {
+                throw InputError({file_, header.line}, fmt::format("column '{}' stands there twice", *here),
+                                 "keep one of them");
+            }
+            track_of_.push_back(i == time_column_ ? 0 : find_track(header.line, *here));
+        }
+    }
+
+    /// The track that the column holds; one that no front matter knows is made.
+    std::size_t find_track(std::size_t line, const std::string& column) {
+        const auto listed = std::find(matter_.columns.begin(), matter_.columns.end(), column);
+        if (listed != matter_.columns.end()) {
+            const auto index = static_cast<std::size_t>(listed - matter_.columns.begin());
+            is_bound_[index] = true;
+            return index;
+        }
+        std::vector<std::string> known{"time_s"};
+        known.insert(known.end(), track_names().begin(), track_names().end());
+        if (std::find(known.begin(), known.end(), column) == known.end()) {
             const auto near = nearest_word(column, known);
-            throw InputError({table.file, 1}, fmt::format("unknown column '{}'", column),
+            throw InputError({file_, line}, fmt::format("unknown column '{}'", column),
                              near.empty() ? fmt::format("a series has {}", fmt::join(known, ", "))
                                           : fmt::format("did you mean '{}'?", near));
         }
-        targets.push_back(found->values);
+        matter_.columns.push_back(column);
+        matter_.series.tracks.push_back({.name = column, .source = plain_source});
+        is_bound_.push_back(true);
+        return matter_.columns.size() - 1;
     }
-    return targets;
-}
+
+    FrontMatter matter_;
+    std::string file_;
+    std::vector<std::string> columns_;
+    std::vector<std::size_t> track_of_;  ///< of each column
+    std::vector<bool> is_bound_;         ///< of each track
+    std::size_t time_column_ = 0;
+    double last_s_ = -std::numeric_limits<double>::infinity();
+};
 
 }  // namespace
 
-const std::vector<SeriesChannel>& series_channels() {
-    static const std::vector<SeriesChannel> channels{
-        {"altitude_m", &FlightSeries::altitude_m},
-        {"throttle_percent", &FlightSeries::throttle_percent},
-        {"voltage_v", &FlightSeries::voltage_v},
-        {"current_a", &FlightSeries::current_a},
-        {"power_w", &FlightSeries::power_w},
-        {"charge_ah", &FlightSeries::charge_ah},
-        {"energy_wh", &FlightSeries::energy_wh},
-        {"east_m", &FlightSeries::east_m},
-        {"north_m", &FlightSeries::north_m},
-        {"ground_speed_m_per_s", &FlightSeries::ground_speed_m_per_s},
-    };
-    return channels;
-}
-
 std::string to_csv(const FlightSeries& series) {
-    std::vector<const std::vector<double>*> columns{&series.time_s};
     fmt::memory_buffer text;
-    fmt::format_to(std::back_inserter(text), "time_s");
-    for (const auto& channel : series_channels()) {
-        if ((series.*channel.values).empty()) continue;
-        columns.push_back(&(series.*channel.values));
-        fmt::format_to(std::back_inserter(text), ",{}", channel.name);
-    }
-    for (std::size_t row = 0; row < series.time_s.size(); ++row) {
-        for (std::size_t column = 0; column < columns.size(); ++column) {
-            fmt::format_to(std::back_inserter(text), "{}{}", column == 0 ? '\n' : ',',
-                           (*columns[column])[row]);
+    text.append(front_matter(series));
+    const auto names = column_names(series.tracks);
+    fmt::format_to(std::back_inserter(text), "time_s,{}", fmt::join(names, ","));
+    std::vector<std::size_t> next(series.tracks.size(), 0);
+    for (const double time_s : all_times(series.tracks)) {
+        fmt::format_to(std::back_inserter(text), "\n{}", time_s);
+        for (std::size_t i = 0; i < series.tracks.size(); ++i) {
+            const auto& track = series.tracks[i];
+            text.push_back(',');
+            if (next[i] == track.time_s.size() || track.time_s[next[i]] != time_s) continue;
+            fmt::format_to(std::back_inserter(text), "{}", track.value[next[i]++]);
         }
     }
     text.push_back('\n');
     return fmt::to_string(text);
 }
 
-FlightSeries read_series_csv(const std::filesystem::path& path) {
-    const auto table = read_csv(path);
-    const auto time_column = column_index(table, "time_s");
-    column_index(table, "power_w");
-    const auto targets = bind_columns(table);
-    if (table.rows.size() < 2) throw InputError({table.file}, "has fewer than two samples");
-    FlightSeries series;
-    series.flight = telemetry::flight_name(path);
-    series.file = path.string();
-    series.power_source = "series CSV";
-    for (const auto& column : table.columns) series.sources[column] = "series CSV";
-    for (const auto& row : table.rows) {
-        const double time_s = cell_number(table, row, time_column);
-        if (!series.time_s.empty() && time_s <= series.time_s.back()) {
-            throw InputError({table.file, row.line, row.cells[time_column].column},
-                             fmt::format("time_s = {} does not rise from {}", time_s, series.time_s.back()),
-                             "sort the rows by time and keep one of each");
-        }
-        for (std::size_t i = 0; i < targets.size(); ++i) {
-            (series.*targets[i]).push_back(cell_number(table, row, i));
-        }
-    }
+FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file) {
+    TableReader reader(read_front_matter(text, file.string()), file.string());
+    for_each_csv_row(text, file.string(), [&](const CsvTable::Row& row) { reader.read_row(row); });
+    auto series = reader.take();
+    series.file = file.string();
+    if (series.flight.empty()) series.flight = telemetry::flight_name(file);
+    if (power_track(series).time_s.size() < 2) throw InputError({series.file}, "has fewer than two samples");
     return series;
+}
+
+FlightSeries read_series_csv(const std::filesystem::path& path) {
+    return parse_series_csv(read_file(path), path);
 }
 
 }  // namespace flightwatt::flight

@@ -11,12 +11,11 @@ namespace flightwatt::flight {
 /// The messages and fields that a FlightSeries is made of.
 std::vector<telemetry::MessageRequest> flight_messages();
 
-/// The ids of the aircraft that flew in the log: the segmentation finds a sortie in their altitude and
-/// throttle. If none flew, those that sent such messages.
-std::vector<std::string> flown_aircraft(const telemetry::TelemetryLog& log);
+/// The senders of telemetry, in the order of the log: those that sent more than single events.
+std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log);
 
-/// The channels of one aircraft on the clock of its power samples. Throws InputError where it measured no
-/// power, naming what was looked at and what the log holds.
+/// What the log tells of one aircraft; of one that sent nothing, no tracks. Judges nothing: see
+/// require_power.
 FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id);
 
 }  // namespace flightwatt::flight

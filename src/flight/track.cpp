@@ -15,16 +15,29 @@ double interpolate(const Track& track, std::size_t after, double time_s) {
     return std::lerp(track.value[after - 1], track.value[after], part);
 }
 
+/// Most messages come in the order of their times, each a time of its own.
+bool is_track(const std::vector<double>& time_s, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (!std::isfinite(values[i]) || (i > 0 && time_s[i] <= time_s[i - 1])) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 Track make_track(const std::vector<double>& time_s, const std::vector<double>& values, Merge merge) {
+    Track track;
+    if (is_track(time_s, values)) {
+        track.time_s = time_s;
+        track.value = values;
+        return track;
+    }
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (std::isfinite(values[i])) order.push_back(i);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
-    Track track;
     std::size_t merged = 0;  // how many rows the last point is made of
     for (const auto i : order) {
         if (!track.empty() && track.time_s.back() == time_s[i]) {

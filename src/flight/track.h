@@ -13,7 +13,7 @@ enum class Merge {
     latest  ///< counters and states: the one that stands last in the log
 };
 
-/// A track from raw rows: values that are not finite are dropped, times sorted, equal times merged.
+/// A track, without a name, from raw rows: values that are not finite are dropped, times sorted, equal times merged.
 /// `time_s` and `values` are equally long.
 Track make_track(const std::vector<double>& time_s, const std::vector<double>& values, Merge merge);
 

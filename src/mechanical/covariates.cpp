@@ -1,6 +1,7 @@
 #include "mechanical/covariates.h"
 
 #include "flight/airspeed.h"
+#include "flight/chosen_track.h"
 
 #include <algorithm>
 #include <vector>
@@ -23,12 +24,15 @@ std::optional<double> early_mean(const flight::Track& track, double start_s) {
 
 std::optional<double> resting_voltage_v(const flight::FlightSeries& series, double lift_off_s) {
     constexpr double watched_s = 120.0;
-    if (series.voltage_v.empty() || series.throttle_percent.empty()) return std::nullopt;
+    const auto time_s = power_track(series).time_s;
+    const auto voltage_v = chosen_at(series, "voltage_v", time_s);
+    const auto throttle_percent = chosen_at(series, "throttle_percent", time_s);
+    if (voltage_v.empty() || throttle_percent.empty()) return std::nullopt;
     const double idle_percent = flight::SegmentationOptions{}.idle_throttle_percent;
     std::vector<double> voltages;
-    for (std::size_t i = 0; i < series.time_s.size() && series.time_s[i] < lift_off_s; ++i) {
-        if (series.time_s[i] < lift_off_s - watched_s || series.throttle_percent[i] > idle_percent) continue;
-        voltages.push_back(series.voltage_v[i]);
+    for (std::size_t i = 0; i < time_s.size() && time_s[i] < lift_off_s; ++i) {
+        if (time_s[i] < lift_off_s - watched_s || throttle_percent[i] > idle_percent) continue;
+        voltages.push_back(voltage_v[i]);
     }
     if (voltages.empty()) return std::nullopt;
     const auto middle = voltages.begin() + static_cast<std::ptrdiff_t>(voltages.size() / 2);
@@ -40,6 +44,7 @@ std::optional<double> resting_voltage_v(const flight::FlightSeries& series, doub
 
 Covariates covariates_of(const flight::FlightSeries& series, const flight::Sortie& sortie) {
     Covariates found;
+    const auto airspeed = chosen_track(series, "airspeed_m_per_s");
     found[Covariate::height] = sortie.height_m;
     for (const auto& span : sortie.phases) {
         if (span.phase == flight::Phase::takeoff && span.complete) {
@@ -51,11 +56,11 @@ Covariates covariates_of(const flight::FlightSeries& series, const flight::Sorti
             first.phase == flight::Phase::takeoff && first.complete) {
             found[Covariate::time_to_cruise] = start_s - first.start.time_s;
         }
-        found[Covariate::wind] = early_mean(series.wind_speed_track, start_s);
-        found[Covariate::airspeed] = early_mean(series.airspeed_track, start_s);
-        found[Covariate::ground_speed] = early_mean(series.ground_speed_track, start_s);
+        found[Covariate::wind] = early_mean(chosen_track(series, "wind_speed_m_per_s"), start_s);
+        found[Covariate::airspeed] = early_mean(airspeed, start_s);
+        found[Covariate::ground_speed] = early_mean(chosen_track(series, "ground_speed_m_per_s"), start_s);
         found[Covariate::airspeed_cubed] =
-            mean_cubed_airspeed_m3_per_s3(series.airspeed_track, start_s, start_s + early_s);
+            mean_cubed_airspeed_m3_per_s3(airspeed, start_s, start_s + early_s);
     }
     return found;
 }

@@ -11,22 +11,22 @@
 namespace flightwatt::mechanical {
 
 /// What is not fitted, and why.
-struct LeftOut {
+struct Exclusion {
     std::string flight;
     std::optional<flight::Phase> phase;  ///< absent: the whole flight
     std::string reason;
 };
 
-/// "NAME: landing is left out: REASON".
-std::string to_string(const LeftOut& left_out);
+/// "NAME: landing is excluded: REASON".
+std::string to_string(const Exclusion& exclusion);
 
 /// What a fit takes from one flight: the power samples of its complete phases, each on its own normalised
 /// time. Every sortie counts as a flight; from the second on it is called "NAME#2". Phases that are
 /// incomplete, have fewer than `needed_samples` samples, or begin or end in a gap longer than a quarter of
-/// them (so that their time is not known) are left out, and reported.
+/// them (so that their time is not known) are excluded, and reported.
 struct FlightSelection {
     std::vector<FlightSamples> flights;
-    std::vector<LeftOut> left_out;
+    std::vector<Exclusion> exclusions;
 };
 
 /// What a sortie is called in a fit: NAME, and NAME#2 from the second on.
@@ -35,7 +35,7 @@ std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie)
 FlightSelection select_samples(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                                std::size_t needed_samples);
 
-/// Leaves out every flight of the selection, for one reason.
-void leave_out_all(FlightSelection& selection, const std::string& flight, const std::string& reason);
+/// "7 samples, 8 are needed".
+std::string too_few_samples(std::size_t samples, std::size_t needed);
 
 }  // namespace flightwatt::mechanical

@@ -5,6 +5,7 @@
 #include "mechanical/phase_curve.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -38,16 +39,50 @@ std::string phase_curve_csv(const ModelFit& fit, flight::Phase phase, const Erro
 
 }  // namespace
 
-flight::PerPhase<PhaseErrorReport> add_errors(ModelFit& fit) {
-    flight::PerPhase<PhaseErrorReport> reports;
+flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit) {
+    flight::PerPhase<ErrorAnalysis> analyses;
     for (const auto phase : flight::all_phases) {
-        auto& report = reports[phase];
-        report.analysis = analyse_errors(fit.samples[phase], fit.fits[phase], fit.weights[phase]);
-        report.profile = frequency_profile(fit.samples[phase], fit.fits[phase], report.analysis);
-        fit.model.phases[phase].errors = report.analysis.errors;
+        analyses[phase] = analyse_errors(fit.samples[phase], fit.fits[phase], fit.weights[phase]);
+        fit.model.phases[phase].errors = analyses[phase].errors;
         fit.model.phases[phase].spread = flight_envelope(fit.fits[phase], fit.weights[phase]);
     }
+    return analyses;
+}
+
+flight::PerPhase<PhaseErrorReport> add_errors(ModelFit& fit) {
+    auto analyses = analyse_model(fit);
+    flight::PerPhase<PhaseErrorReport> reports;
+    for (const auto phase : flight::all_phases) {
+        reports[phase].profile = frequency_profile(fit.samples[phase], fit.fits[phase], analyses[phase]);
+        reports[phase].analysis = std::move(analyses[phase]);
+    }
     return reports;
+}
+
+flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit,
+                                        const flight::PerPhase<ErrorAnalysis>& analyses) {
+    constexpr std::size_t points = 101;
+    flight::PerPhase<CurveBand> bands;
+    for (const auto phase : flight::all_phases) {
+        const auto& fitted = fit.model.phases[phase];
+        const auto& analysis = analyses[phase];
+        const double wide = student_t_half_width(analysis.errors.degrees_of_freedom);
+        auto& band = bands[phase];
+        for (std::size_t i = 0; i < points; ++i) {
+            const double time_s =
+                fitted.duration_s * static_cast<double>(i) / static_cast<double>(points - 1);
+            const double power = power_w(fitted.fourier, time_s);
+            const double reach = wide * curve_standard_error_w(analysis, time_s / fitted.duration_s);
+            band.time_s.push_back(time_s);
+            band.low_95_w.push_back(power - reach);
+            band.high_95_w.push_back(power + reach);
+        }
+        const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points);
+        if (!spread) continue;
+        band.flights_low_w = spread->low_w;
+        band.flights_high_w = spread->high_w;
+    }
+    return bands;
 }
 
 std::string curves_csv(const ModelFit& fit, const flight::PerPhase<PhaseErrorReport>& reports) {

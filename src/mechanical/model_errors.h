@@ -5,6 +5,7 @@
 #include "mechanical/uncertainty/frequency_profile.h"
 
 #include <string>
+#include <vector>
 
 namespace flightwatt::mechanical {
 
@@ -15,7 +16,22 @@ struct PhaseErrorReport {
 };
 
 /// Analyses every phase of a fit and puts errors and spread into its model; nothing else of it changes.
+flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit);
+
+/// The same with the profile of each phase's frequency, which costs a fit for each of its points.
 flight::PerPhase<PhaseErrorReport> add_errors(ModelFit& fit);
+
+/// What is known of a model's curve over one phase, at evenly spread times.
+struct CurveBand {
+    std::vector<double> time_s;
+    std::vector<double> low_95_w;  ///< of the weighted mean of these flights
+    std::vector<double> high_95_w;
+    std::vector<double> flights_low_w;  ///< envelope of the flights' own curves; empty of a single flight
+    std::vector<double> flights_high_w;
+};
+
+/// The bands of a fit that was analysed, at 101 times a phase.
+flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis>& analyses);
 
 /// Every phase's curve with what surrounds it, as CSV: two different questions side by side. Columns: phase,
 /// tau, time_s, power_w; standard_error_w, low_95_w, high_95_w: the weighted mean of these flights, given

@@ -52,7 +52,7 @@ Expectation expect_level(const PhaseForecast& cruise, double flown_s, double rem
     return expected;
 }
 
-Expectation expect_by_airspeed(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s) {
+Expectation expect_by_airspeed(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s) {
     if (!cruise.model.airspeed_law) {
         throw NoAnswerError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
     }
@@ -61,7 +61,8 @@ Expectation expect_by_airspeed(const PhaseForecast& cruise, const FlownSoFar& fl
                         level_at(*cruise.model.airspeed_law, *flown.airspeed_cubed_m3_per_s3));
 }
 
-Expectation expect_by_covariate(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s) {
+Expectation expect_by_covariate(const PhaseForecast& cruise, const FlightProgress& flown,
+                                double remaining_s) {
     if (!cruise.model.level_law) {
         throw NoAnswerError("the model has no level law: it was fitted without --level-covariate");
     }
@@ -74,7 +75,7 @@ Expectation expect_by_covariate(const PhaseForecast& cruise, const FlownSoFar& f
     return expect_level(cruise, flown.cruise_s(), remaining_s, level_at(law, *value));
 }
 
-Expectation expect(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s,
+Expectation expect(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
                    LevelSource source) {
     switch (source) {
         case LevelSource::curve:
@@ -164,7 +165,7 @@ EnergyEstimate predict_rest_before_flight(const PhaseForecast& phase, double flo
     return estimate_of(phase, units::wh_from_joule(rest_j), remaining_s);
 }
 
-RestPrediction predict_rest(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s,
+RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
                             LevelSource source) {
     if (!cruise.model.level_spread) {
         throw NoAnswerError("the model does not say how flights differ: fit two flights or more");

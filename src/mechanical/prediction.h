@@ -58,7 +58,7 @@ struct RestPrediction {
 /// flights that difference is mostly noise and often 0, and then the interval would be far too narrow. Throws
 /// NoAnswerError if the model has no spread or, for LevelSource::airspeed and covariate, no law, or the
 /// flight did not measure what it asks for.
-RestPrediction predict_rest(const PhaseForecast& cruise, const FlownSoFar& flown, double remaining_s,
+RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
                             LevelSource source);
 
 }  // namespace flightwatt::mechanical

@@ -97,7 +97,7 @@ Estimates predict_landing_in_flight(const Fold& fold, const ModelFitOptions& opt
     return estimates;
 }
 
-Estimates predict_cruise_in_flight(const Fold& fold, const FlownSoFar& flown, double remaining_s,
+Estimates predict_cruise_in_flight(const Fold& fold, const FlightProgress& flown, double remaining_s,
                                    const ModelFitOptions& options) {
     const auto forecast = forecast_of_others(fold, options);
     const double known_wh = flown.cruise_energy_wh;

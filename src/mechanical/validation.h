@@ -16,7 +16,7 @@ struct MeasuredFlight {
     FlightSamples samples;
     flight::PerPhase<std::optional<double>> energy_wh;          ///< integral of the measured power
     flight::PerPhase<std::optional<double>> counter_energy_wh;  ///< what the on-board counter said
-    std::optional<FlownSoFar> flown;                            ///< only for a validation in flight
+    std::optional<FlightProgress> flown;                        ///< only for a validation in flight
 };
 
 /// What one model says of a flight that it has not seen.

@@ -13,7 +13,6 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
     Section section{id, "Mechanical model: " + valid_utf8(model.model.name), "", {}};
     section.html += paragraph(model.origin, "soft");
     if (!model.model.description.empty()) section.html += paragraph(model.model.description);
-    for (const auto& note : model.notes) section.html += paragraph(note, "warning");
     add_figure(section, model_figure(model.model, model.bands, published, id + "-curves"));
     if (model.table_one) {
         section.html += "<h3>Table I</h3>\n";

@@ -14,10 +14,9 @@ namespace flightwatt::report {
 /// A mechanical model and what is known of it.
 struct ReportModel {
     mechanical::MechanicalModel model;
-    std::string origin;                      ///< "fitted to these flights", or the file it was read from
-    flight::PerPhase<CurveBand> bands = {};  ///< without times: not known
+    std::string origin;  ///< "fitted to these flights", or the file it was read from
+    flight::PerPhase<mechanical::CurveBand> bands = {};  ///< without times: not known
     std::optional<TextTable> table_one = {};
-    std::vector<std::string> notes = {};  ///< what a reader should know of it
 };
 
 /// The model as Fig. 2 with Table I. `id` tells several apart.

@@ -51,21 +51,21 @@ Layouts all_layouts() {
     all["ESTIMATOR"] = {layout("ESTIMATOR", "2 fields", {"z:m", "z_dot:m/s"})};
     all["GPS"] = {
         layout("GPS", "before 2011 (10 fields)",
-               {"mode:-", "utm_east:cm", "utm_north:cm", "course:-", "alt:cm", "speed:cm/s", "climb:cm/s",
-                "itow:ms", "utm_zone:-", "gps_nb_err:-"}),
+               {"mode:-", "utm_east:cm", "utm_north:cm", "course:decideg", "alt:cm", "speed:cm/s",
+                "climb:cm/s", "itow:ms", "utm_zone:-", "gps_nb_err:-"}),
         layout("GPS", "since 2011 (11 fields)",
-               {"mode:-", "utm_east:cm", "utm_north:cm", "course:-", "alt:mm", "speed:cm/s", "climb:cm/s",
-                "week:-", "itow:ms", "utm_zone:-", "gps_nb_err:-"}),
+               {"mode:-", "utm_east:cm", "utm_north:cm", "course:decideg", "alt:mm", "speed:cm/s",
+                "climb:cm/s", "week:-", "itow:ms", "utm_zone:-", "gps_nb_err:-"}),
     };
     all["GPS_INT"] = {
-        layout(
-            "GPS_INT", "16 fields",
-            {"ecef_x:cm", "ecef_y:cm", "ecef_z:cm", "lat:-", "lon:-", "alt:mm", "hmsl:mm", "ecef_xd:cm/s",
-             "ecef_yd:cm/s", "ecef_zd:cm/s", "pacc:cm", "sacc:cm/s", "tow:-", "pdop:-", "numsv:-", "fix:-"}),
+        layout("GPS_INT", "16 fields",
+               {"ecef_x:cm", "ecef_y:cm", "ecef_z:cm", "lat:1e7deg", "lon:1e7deg", "alt:mm", "hmsl:mm",
+                "ecef_xd:cm/s", "ecef_yd:cm/s", "ecef_zd:cm/s", "pacc:cm", "sacc:cm/s", "tow:-", "pdop:-",
+                "numsv:-", "fix:-"}),
         layout("GPS_INT", "17 fields",
-               {"ecef_x:cm", "ecef_y:cm", "ecef_z:cm", "lat:-", "lon:-", "alt:mm", "hmsl:mm", "ecef_xd:cm/s",
-                "ecef_yd:cm/s", "ecef_zd:cm/s", "pacc:cm", "sacc:cm/s", "tow:-", "pdop:-", "numsv:-", "fix:-",
-                "comp_id:-"}),
+               {"ecef_x:cm", "ecef_y:cm", "ecef_z:cm", "lat:1e7deg", "lon:1e7deg", "alt:mm", "hmsl:mm",
+                "ecef_xd:cm/s", "ecef_yd:cm/s", "ecef_zd:cm/s", "pacc:cm", "sacc:cm/s", "tow:-", "pdop:-",
+                "numsv:-", "fix:-", "comp_id:-"}),
     };
     all["AIR_DATA"] = {
         layout("AIR_DATA", "6 fields",
@@ -83,7 +83,8 @@ Layouts all_layouts() {
         std::vector<std::string> fields;
         for (const auto* name : {"east", "north", "up"})
             fields.push_back(std::string(name) + ":" + fixed_point);
-        for (const auto* name : {"veast:-", "vnorth:-", "vup:-", "phi:-", "theta:-", "psi:-"})
+        for (const auto* name :
+             {"veast:-", "vnorth:-", "vup:0.0000019m/s", "phi:0.0139882deg", "theta:-", "psi:0.0139882deg"})
             fields.emplace_back(name);
         for (const auto* name :
              {"carrot_east:-", "carrot_north:-", "carrot_up:-", "carrot_psi:-", "thrust:-"}) {
@@ -92,6 +93,10 @@ Layouts all_layouts() {
         if (version == std::string_view("15 fields")) fields.emplace_back("flight_time:s");
         all["ROTORCRAFT_FP"].push_back(layout("ROTORCRAFT_FP", version, fields));
     }
+    all["ATTITUDE"] = {layout("ATTITUDE", "3 fields", {"phi:rad", "psi:rad", "theta:rad"})};
+    all["GPS_LLA"] = {layout("GPS_LLA", "11 fields",
+                             {"lat:1e7deg", "lon:1e7deg", "alt:mm", "hmsl:mm", "course:decideg", "speed:cm/s",
+                              "climb:cm/s", "week:-", "itow:ms", "mode:-", "gps_nb_err:-"})};
     all["TAKEOFF"] = {layout("TAKEOFF", "1 field", {"cpu_time:s"})};
     all["PPRZ_MODE"] = {
         layout(

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -25,6 +26,23 @@ const MessageTable* SenderLog::table(std::string_view message) const {
     return found == tables.end() ? nullptr : &*found;
 }
 
+std::size_t SkippedLines::count() const {
+    return std::accumulate(lines.begin(), lines.end(), std::size_t{0},
+                           [](std::size_t sum, const AtTime& at) { return sum + at.count; });
+}
+
+std::size_t SkippedLines::first_line() const {
+    const auto first = std::min_element(lines.begin(), lines.end(), [](const AtTime& a, const AtTime& b) {
+        return a.first_line < b.first_line;
+    });
+    return first == lines.end() ? 0 : first->first_line;
+}
+
+std::string describe(const SkippedLines& skipped) {
+    return fmt::format("{}: {} line{}, first at line {}", skipped.reason, skipped.count(),
+                       skipped.count() == 1 ? "" : "s", skipped.first_line());
+}
+
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
                              std::optional<LogConfiguration> configuration,
                              const std::vector<MessageRequest>& wanted) {
@@ -32,7 +50,7 @@ TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path&
     log.data_file = data_file;
     log.flight = flight_name(data_file);
     log.configuration = std::move(configuration);
-    LogReader reader(log, wanted, text.size());
+    LogReader reader(log, wanted, text);
     const auto lines = scan_lines(
         text, [&](const ScannedLine& line) { reader.read_line(line); }, [&] { reader.read_waiting(); });
     reader.finish(lines, text.ends_with('\n'));
@@ -44,8 +62,14 @@ TelemetryLog read_telemetry(const std::filesystem::path& data_file,
     const DataFile data(data_file);
     std::optional<LogConfiguration> configuration;
     if (const auto log_file = find_log_file(data_file)) configuration = read_log_configuration(*log_file);
-    auto log = parse_telemetry(data.text(), data_file, std::move(configuration), wanted);
-    if (log.senders.empty() && census_of_messages(data.text()).empty()) {
+    return read_telemetry(data.text(), data_file, std::move(configuration), wanted);
+}
+
+TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
+                            std::optional<LogConfiguration> configuration,
+                            const std::vector<MessageRequest>& wanted) {
+    auto log = parse_telemetry(text, data_file, std::move(configuration), wanted);
+    if (log.senders.empty() && census_of_messages(text).empty()) {
         throw InputError({data_file.string(), 1},
                          fmt::format("holds no telemetry in its {} lines", log.lines),
                          "expected lines such as '335.149 20 ENERGY 69 11.7 3.1 36.6 0.03 0.31'");

@@ -45,11 +45,31 @@ struct SenderLog {
     const MessageTable* table(std::string_view message) const;
 };
 
-/// Lines or values that could not be used, by reason.
+/// Lines or values that could not be used, by reason and time. A line that has no time counts to the next one
+/// that has: what stands behind the last message of a log has an infinite time.
 struct SkippedLines {
+    struct AtTime {
+        double time_s = 0.0;
+        std::size_t count = 0;
+        std::size_t first_line = 0;
+        bool operator==(const AtTime&) const = default;
+    };
     std::string reason;
-    std::size_t count = 0;
-    std::size_t first_line = 0;
+    std::vector<AtTime> lines;  ///< by time, which rises strictly
+
+    std::size_t count() const;
+    std::size_t first_line() const;  ///< 0 without any
+    bool operator==(const SkippedLines&) const = default;
+};
+
+/// "ENERGY: another number of fields than the .log defines: 3 lines, first at line 17".
+std::string describe(const SkippedLines& skipped);
+
+/// A message layout that was assumed, for want of a .log, and since when it was needed.
+struct AssumedDefinition {
+    std::string text;  ///< "ENERGY: 2018 (6 fields)"
+    double since_s = 0.0;
+    bool operator==(const AssumedDefinition&) const = default;
 };
 
 struct TelemetryLog {
@@ -58,7 +78,7 @@ struct TelemetryLog {
     std::optional<LogConfiguration> configuration;  ///< absent without a .log
     std::vector<SenderLog> senders;                 ///< in the order of their first wanted line
     std::vector<SkippedLines> skipped;
-    std::vector<std::string> assumed_definitions;  ///< "ENERGY: 2018 (6 fields)", where there was no .log
+    std::vector<AssumedDefinition> assumed_definitions;  ///< where there was no .log
     std::size_t lines = 0;
 };
 
@@ -67,7 +87,12 @@ struct TelemetryLog {
 TelemetryLog read_telemetry(const std::filesystem::path& data_file,
                             const std::vector<MessageRequest>& wanted);
 
-/// The same for text in memory; `configuration` as in TelemetryLog.
+/// The same for a file whose text is in memory.
+TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
+                            std::optional<LogConfiguration> configuration,
+                            const std::vector<MessageRequest>& wanted);
+
+/// The same for any text, which need not hold telemetry; `configuration` as in TelemetryLog.
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
                              std::optional<LogConfiguration> configuration,
                              const std::vector<MessageRequest>& wanted);

@@ -20,11 +20,12 @@ TEST(Units, ReadsTheUnitsOfPaparazzi) {
     expect_unit("mAh", Quantity::ampere_hour, 0.001);
     expect_unit("cm/s", Quantity::metre_per_second, 0.01);
     expect_unit("mm", Quantity::metre, 0.001);
+    expect_unit("decideg", Quantity::degree, 0.1);
     expect_unit("pprz", Quantity::percent, 100.0 / 9600.0);
 }
 
 TEST(Units, KnowsNoOthers) {
-    for (const auto* text : {"", "rad", "byte_mask", "bool", "furlong", "1e-1"}) {
+    for (const auto* text : {"", "rpm", "byte_mask", "bool", "furlong", "1e-1"}) {
         EXPECT_FALSE(parse_unit(text).has_value()) << text;
     }
 }

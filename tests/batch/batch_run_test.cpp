@@ -75,8 +75,8 @@ TEST_F(BatchOfTwo, RemembersWhatAFitTakes) {
     ASSERT_EQ(remembered.size(), 2U);
     for (std::size_t i = 0; i < remembered.size(); ++i) {
         ASSERT_EQ(remembered[i].selection.flights.size(), 1U);
-        const auto& a = anew[i].selection.flights[0];
-        const auto& b = remembered[i].selection.flights[0];
+        const auto& a = anew[i].selection.flights[0].samples;
+        const auto& b = remembered[i].selection.flights[0].samples;
         EXPECT_EQ(a.flight, b.flight);
         for (const auto phase : flight::all_phases) {
             EXPECT_EQ(a.phases[phase]->duration_s, b.phases[phase]->duration_s);
@@ -215,8 +215,8 @@ TEST(Batch, KeepsFlightsOfOneNameApart) {
     copy_sample(2, folder / "in" / "tuesday", "flight");
     const auto flights = batch(folder / "in", folder / "out");
     ASSERT_EQ(flights.size(), 2U);
-    EXPECT_EQ(flights[0].selection.flights.at(0).flight, "flight");
-    EXPECT_EQ(flights[1].selection.flights.at(0).flight, "flight_2");
+    EXPECT_EQ(flights[0].selection.flights.at(0).samples.flight, "flight");
+    EXPECT_EQ(flights[1].selection.flights.at(0).samples.flight, "flight_2");
     const auto written = folder / "out" / "flights";
     EXPECT_NE(read_file(written / "flight.series.csv"), read_file(written / "flight_2.series.csv"));
     EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), IsEmpty());

@@ -1,6 +1,6 @@
 #include "batch/flight_record.h"
 
-#include "flight/flight_reader.h"
+#include "flight/load_flight.h"
 #include "helpers/sample_logs.h"
 
 #include <string>
@@ -90,33 +90,29 @@ TEST(FlightRecord, HoldsNamesThatAreNotUtf8) {
     EXPECT_EQ(read->flight, "caf\xEF\xBF\xBD");
 }
 
-TEST(FlightRecord, GivesThePhasesBack) {
-    const auto series = flight::read_flight(test::sample(1));
-    const auto phases = flight::segment(series);
-    const auto record = record_of(series, phases);
+TEST(FlightRecord, HoldsWhatAFitTakes) {
+    const auto loaded = flight::load_flight(test::sample(1));
+    const auto record = record_of(loaded);
     EXPECT_TRUE(record.accepted);
     EXPECT_EQ(record.flight, "opterra_synthetic_01");
     EXPECT_EQ(record.aircraft_id, "7");
-    const auto back = phases_of(record);
-    ASSERT_EQ(back.sorties.size(), phases.sorties.size());
-    ASSERT_EQ(back.sorties[0].phases.size(), 3U);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto& a = phases.sorties[0].phases[i];
-        const auto& b = back.sorties[0].phases[i];
-        EXPECT_EQ(a.phase, b.phase);
-        EXPECT_EQ(a.start.time_s, b.start.time_s);
-        EXPECT_EQ(a.end.time_s, b.end.time_s);
-        EXPECT_EQ(a.start.gap_s, b.start.gap_s);
-        EXPECT_EQ(a.end.gap_s, b.end.gap_s);
-        EXPECT_EQ(a.complete, b.complete);
+    const auto measured = mechanical::measure_flights(loaded, 8);
+    const auto back = record_from_json(to_json_text(record)).value().measured;
+    ASSERT_EQ(back.flights.size(), 1U);
+    EXPECT_EQ(back.sorties, measured.sorties);
+    for (const auto phase : flight::all_phases) {
+        const auto& a = measured.flights[0].samples.phases[phase].value();
+        const auto& b = back.flights[0].samples.phases[phase].value();
+        EXPECT_EQ(a.flight, b.flight);
+        EXPECT_EQ(a.duration_s, b.duration_s);
+        EXPECT_EQ(a.start_s, b.start_s);
+        EXPECT_EQ(a.tau, b.tau);
+        EXPECT_EQ(a.power_w, b.power_w);
+        EXPECT_EQ(a.airspeed_cubed_m3_per_s3, b.airspeed_cubed_m3_per_s3);
+        EXPECT_EQ(a.covariates.values, b.covariates.values);
+        EXPECT_EQ(measured.flights[0].energy_wh[phase], back.flights[0].energy_wh[phase]);
+        EXPECT_EQ(measured.flights[0].counter_energy_wh[phase], back.flights[0].counter_energy_wh[phase]);
     }
-}
-
-TEST(FlightRecord, KeepsSortiesApart) {
-    const auto phases = phases_of(full_record());
-    ASSERT_EQ(phases.sorties.size(), 2U);
-    EXPECT_EQ(phases.sorties[0].phases[0].phase, flight::Phase::takeoff);
-    EXPECT_EQ(phases.sorties[1].phases[0].phase, flight::Phase::landing);
 }
 
 }  // namespace

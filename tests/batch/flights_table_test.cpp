@@ -30,10 +30,12 @@ BatchFlight two_sorties() {
                             phase(2, flight::Phase::landing, 400, 450)};
     flight.record.phases[2].complete = false;
     flight.record.phases[2].statistics.counter_energy_wh.reset();
-    mechanical::FlightSamples first{flight.record.flight, {}};
-    first.phases[flight::Phase::takeoff] = mechanical::PhaseSamples{};
-    mechanical::FlightSamples second{flight.record.flight + "#2", {}};
-    second.phases[flight::Phase::cruise] = mechanical::PhaseSamples{};
+    mechanical::MeasuredFlight first;
+    first.samples.flight = flight.record.flight;
+    first.samples.phases[flight::Phase::takeoff] = mechanical::PhaseSamples{};
+    mechanical::MeasuredFlight second;
+    second.samples.flight = flight.record.flight + "#2";
+    second.samples.phases[flight::Phase::cruise] = mechanical::PhaseSamples{};
     flight.selection.flights = {first, second};
     return flight;
 }

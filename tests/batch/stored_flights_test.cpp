@@ -25,7 +25,7 @@ TEST(StoredFlights, AreWhatTheBatchLeft) {
     EXPECT_EQ(stored[1].record.flight, "opterra_synthetic_01");
     EXPECT_FALSE(stored[2].record.accepted);
     EXPECT_THAT(stored[2].record.error, HasSubstr("rubbish.data"));
-    EXPECT_EQ(stored[1].series.current_origin, "measured by a sensor");
+    EXPECT_EQ(stored[1].series.current_origin, flight::CurrentOrigin::sensor);
     ASSERT_EQ(stored[1].record.verdicts.size(), 4U);
     EXPECT_THAT(stored[1].record.verdicts[0].text, HasSubstr("agrees with TAKEOFF"));
     const auto files = test::contents(scratch / "out");

@@ -3,7 +3,7 @@
 #include "battery/identification.h"
 
 #include "base/error.h"
-#include "flight/flight_reader.h"
+#include "flight/load_flight.h"
 #include "helpers/rejected.h"
 #include "helpers/synthetic_discharge.h"
 
@@ -94,7 +94,8 @@ TEST(Identification, FindsItselfWithoutNoise) {
     EXPECT_EQ(found.battery.name, "clean");
     EXPECT_EQ(found.battery.capacity_ah, 2.4);
     // What is written is read again as the same battery.
-    const auto again = battery_from(parse_toml(to_toml(found.battery), "b.toml"));
+    const auto file = test::write_text(test::scratch_dir() / "b.toml", to_toml(found.battery));
+    const auto again = read_battery(file);
     EXPECT_EQ(to_toml(again), to_toml(found.battery));
 }
 

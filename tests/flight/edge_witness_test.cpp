@@ -1,6 +1,6 @@
 #include "flight/edge_witness.h"
 
-#include "flight/flight_reader.h"
+#include "flight/load_flight.h"
 #include "helpers/test_paths.h"
 
 #include <gmock/gmock.h>
@@ -23,6 +23,11 @@ Sortie sortie_at(double lift_off_s, double takeoff_end_s, double landing_start_s
     return sortie;
 }
 
+Track takeoff_at(std::vector<double> time_s) {
+    const std::vector<double> ones(time_s.size(), 1.0);
+    return {.name = "takeoff", .time_s = std::move(time_s), .value = ones};
+}
+
 std::vector<std::string> verdicts(const FlightSeries& series, const Sortie& sortie) {
     std::vector<std::string> texts;
     for (const auto& edge : explain_edges(series, sortie)) texts.push_back(edge.verdict);
@@ -31,10 +36,10 @@ std::vector<std::string> verdicts(const FlightSeries& series, const Sortie& sort
 
 TEST(EdgeWitness, GivesAVerdictOnEveryEdge) {
     FlightSeries series;
-    series.witnesses.takeoff_s = {20.0, 98.0};  // a false one, and the true one
-    series.witnesses.block = {{0, 120, 700}, {3, 4, 6}};
-    series.witnesses.block_names = {{3, "Take-off"}, {4, "Standby"}, {6, "Land Right"}};
-    series.witnesses.mode = {{0, 110, 703}, {0, 2, 1}};
+    series.tracks = {takeoff_at({20.0, 98.0}),  // a false one, and the true one
+                     {.name = "block", .time_s = {0, 120, 700}, .value = {3, 4, 6}},
+                     {.name = "mode", .time_s = {0, 110, 703}, .value = {0, 2, 1}}};
+    series.block_names = {{3, "Take-off"}, {4, "Standby"}, {6, "Land Right"}};
     const auto sortie = sortie_at(100, 130, 702, 760);
     EXPECT_THAT(verdicts(series, sortie),
                 testing::ElementsAre("agrees", "no witness", "agrees", "no witness"));
@@ -50,8 +55,7 @@ TEST(EdgeWitness, GivesAVerdictOnEveryEdge) {
 
 TEST(EdgeWitness, SaysHowFarApartTheyAre) {
     FlightSeries series;
-    series.witnesses.takeoff_s = {80.0};
-    series.witnesses.mode = {{0, 110, 720}, {0, 2, 1}};
+    series.tracks = {takeoff_at({80.0}), {.name = "mode", .time_s = {0, 110, 720}, .value = {0, 2, 1}}};
     EXPECT_THAT(verdicts(series, sortie_at(100, 130, 702, 760)),
                 testing::ElementsAre("differs by 20 s", "no witness", "differs by 18 s", "no witness"));
 }

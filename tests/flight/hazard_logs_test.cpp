@@ -1,7 +1,7 @@
 // The committed logs of logs/hazards/ against the phases that were flown (NAME.truth.csv).
 
 #include "base/csv.h"
-#include "flight/flight_reader.h"
+#include "flight/load_flight.h"
 #include "flight/segmentation.h"
 #include "helpers/test_paths.h"
 #include "synthetic/synthetic_flight.h"
@@ -48,7 +48,7 @@ void expect_as_flown(const std::filesystem::path& data, const CsvTable& truth) {
     }
     // Every flight's motor is tried beforehand, so a log that begins on the ground shows a run-up a sortie.
     const bool from_the_ground = truth.rows.front().cells[column_index(truth, "phase")].text == "takeoff";
-    EXPECT_EQ(phases.others.size(), from_the_ground ? phases.sorties.size() : 0U);
+    EXPECT_EQ(phases.ground_events.size(), from_the_ground ? phases.sorties.size() : 0U);
 }
 
 TEST(HazardLogs, AreSegmentedAsTheyWereFlown) {

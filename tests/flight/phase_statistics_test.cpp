@@ -1,7 +1,8 @@
 #include "flight/phase_statistics.h"
 
 #include "base/units.h"
-#include "flight/flight_reader.h"
+#include "flight/load_flight.h"
+#include "helpers/sample_columns.h"
 #include "helpers/test_paths.h"
 
 #include <gtest/gtest.h>
@@ -10,13 +11,13 @@ namespace flightwatt::flight {
 namespace {
 
 FlightSeries ramp() {
-    FlightSeries series;
+    test::SampleColumns series;
     for (int i = 0; i <= 100; ++i) {
         if (i > 40 && i < 50) continue;  // a gap
         series.time_s.push_back(i);
         series.power_w.push_back(2.0 * i);
     }
-    return series;
+    return test::series_of(series);
 }
 
 TEST(PhaseStatistics, IntegratesLinearlyBetweenSamplesAndEdges) {
@@ -36,7 +37,7 @@ TEST(PhaseStatistics, CountsSamplesAndGaps) {
     EXPECT_EQ(statistics.gaps, 1u);
     EXPECT_EQ(statistics.longest_gap_s, 10.0);
     EXPECT_FALSE(statistics.counter_energy_wh.has_value());
-    EXPECT_EQ(usual_interval_s(ramp()), 1.0);
+    EXPECT_EQ(usual_interval_s(power_track(ramp()).time_s), 1.0);
     EXPECT_EQ(phase_statistics(ramp(), 43, 45).samples, 0u);
 }
 

@@ -1,7 +1,7 @@
 #include "flight/phases_file.h"
 
 #include "base/atomic_file.h"
-#include "flight/flight_reader.h"
+#include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"

@@ -1,7 +1,8 @@
 #include "flight/power_check.h"
 
-#include "flight/flight_reader.h"
+#include "flight/load_flight.h"
 #include "flight/telemetry_series.h"
+#include "helpers/sample_columns.h"
 #include "helpers/test_paths.h"
 #include "synthetic/synthetic_log.h"
 
@@ -31,8 +32,8 @@ FlightSeries sound_flight() {
 
 TEST(PowerReport, FindsASoundRecordSound) {
     const auto series = sound_flight();
-    const auto report = examine_power(series, segment(series));
-    EXPECT_EQ(report.origin, "measured by a sensor");
+    const auto report = check_power_record(series, segment(series));
+    EXPECT_EQ(report.origin, CurrentOrigin::sensor);
     ASSERT_TRUE(report.idle.has_value());
     EXPECT_NEAR(report.idle->mean_a, synthetic::SyntheticSensors{}.idle_current_a, 0.001);
     EXPECT_NEAR(report.idle->deviation_a, synthetic::SyntheticSensors{}.current_noise_a, 0.0005);
@@ -40,33 +41,33 @@ TEST(PowerReport, FindsASoundRecordSound) {
     EXPECT_NEAR(*report.energy_closure_percent, 0.0, 0.2);
     EXPECT_NEAR(*report.charge_closure_percent, 0.0, 0.2);
     EXPECT_FALSE(report.gaps.empty()) << "the made-up link has bursts";
-    EXPECT_THAT(report.absurdities, IsEmpty());
+    EXPECT_THAT(report.power_faults, IsEmpty());
 }
 
-std::vector<std::string> absurdities_after(const std::function<void(FlightSeries&)>& spoil) {
-    auto series = sound_flight();
-    const auto phases = segment(series);
-    spoil(series);
-    return examine_power(series, phases).absurdities;
+std::vector<std::string> faults_after(const std::function<void(test::SampleColumns&)>& spoil) {
+    const auto series = sound_flight();
+    auto columns = test::columns_of(series);
+    spoil(columns);
+    return check_power_record(test::series_of(columns), segment(series)).power_faults;
 }
 
 TEST(PowerReport, NamesWhatCannotBe) {
-    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+    EXPECT_THAT(faults_after([](test::SampleColumns& s) {
                     for (std::size_t i = 0; i < s.time_s.size(); ++i) {
                         s.current_a[i] += 30.0;
                         s.power_w[i] = s.voltage_v[i] * s.current_a[i];
                     }
                 }),
                 Contains(HasSubstr("more than 5 A in 100 % of the samples on the ground")));
-    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+    EXPECT_THAT(faults_after([](test::SampleColumns& s) {
                     for (auto& power : s.power_w) power *= 1.5;
                 }),
                 Contains("power is 50 % away from voltage times current"));
-    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+    EXPECT_THAT(faults_after([](test::SampleColumns& s) {
                     for (std::size_t i = s.time_s.size() / 2; i < s.time_s.size(); ++i) s.energy_wh[i] = 0.0;
                 }),
                 Contains(HasSubstr("the energy counter ran back by")));
-    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+    EXPECT_THAT(faults_after([](test::SampleColumns& s) {
                     for (auto* channel : {&s.power_w, &s.current_a})
                         std::fill(channel->begin(), channel->end(), 2.0);
                     s.voltage_v.clear();
@@ -75,18 +76,18 @@ TEST(PowerReport, NamesWhatCannotBe) {
 }
 
 TEST(PowerReport, JudgesAgainstTheCounterInFlightAlone) {
-    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+    EXPECT_THAT(faults_after([](test::SampleColumns& s) {
                     for (std::size_t i = 0; i < s.time_s.size(); i += 50)
                         s.power_w[i] = s.current_a[i] = 4000.0;
                     s.voltage_v.clear();
                 }),
                 Contains(HasSubstr("away from the on-board energy counter")));
-    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+    EXPECT_THAT(faults_after([](test::SampleColumns& s) {
                     for (auto& power : s.power_w) power = -power;
                 }),
                 Contains("power is negative on average in flight"));
     // A pack that is changed on the ground before lift-off takes the counters with it.
-    EXPECT_THAT(absurdities_after([](FlightSeries& s) {
+    EXPECT_THAT(faults_after([](test::SampleColumns& s) {
                     for (std::size_t i = 0; i < 10; ++i) s.energy_wh[i] = s.charge_ah[i] = 30.0;
                 }),
                 IsEmpty());
@@ -95,15 +96,20 @@ TEST(PowerReport, JudgesAgainstTheCounterInFlightAlone) {
 TEST(PowerReport, TakesTheIdleCurrentOutOnlyWhenAsked) {
     auto series = sound_flight();
     const auto before = series;
-    const auto report = examine_power(series, segment(series));
+    const auto report = check_power_record(series, segment(series));
     correct_idle_offset(series, std::nullopt);
-    EXPECT_EQ(series.power_w, before.power_w);
+    EXPECT_EQ(series, before);
     correct_idle_offset(series, report.idle);
-    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-        EXPECT_NEAR(series.current_a[i], before.current_a[i] - report.idle->mean_a, 1e-12);
-        EXPECT_NEAR(series.power_w[i], before.power_w[i] - report.idle->mean_a * before.voltage_v[i], 1e-9);
+    const auto measured = test::columns_of(before);
+    const auto corrected = test::columns_of(series);
+    ASSERT_EQ(corrected.time_s, measured.time_s);
+    for (std::size_t i = 0; i < measured.time_s.size(); ++i) {
+        EXPECT_NEAR(corrected.current_a[i], measured.current_a[i] - report.idle->mean_a, 1e-12);
+        EXPECT_NEAR(corrected.power_w[i], measured.power_w[i] - report.idle->mean_a * measured.voltage_v[i],
+                    1e-9);
     }
-    EXPECT_THAT(series.warnings, Contains(HasSubstr("was taken out")));
+    EXPECT_THAT(warnings_of(series), Contains(HasSubstr("was taken out")));
+    EXPECT_EQ(power_track(series).source, power_track(before).source);
 }
 
 TEST(PowerReport, ClosesOnTheRealFlights) {
@@ -111,9 +117,9 @@ TEST(PowerReport, ClosesOnTheRealFlights) {
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
         SCOPED_TRACE(name);
         const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
-        const auto report = examine_power(series, segment(series));
-        EXPECT_EQ(report.origin, "measured by a sensor");
-        EXPECT_THAT(report.absurdities, IsEmpty());
+        const auto report = check_power_record(series, segment(series));
+        EXPECT_EQ(report.origin, CurrentOrigin::sensor);
+        EXPECT_THAT(report.power_faults, IsEmpty());
         ASSERT_TRUE(report.energy_closure_percent.has_value());
         EXPECT_LT(std::abs(*report.energy_closure_percent), 0.5);
         ASSERT_TRUE(report.idle.has_value());

@@ -1,7 +1,8 @@
 #include "flight/segmentation.h"
 
 #include "base/error.h"
-#include "flight/flight_reader.h"
+#include "flight/load_flight.h"
+#include "helpers/sample_columns.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
@@ -22,9 +23,8 @@ struct Point {
     double throttle_percent;
 };
 
-FlightSeries series_of(const std::vector<Point>& points, double interval_s = 1.1) {
-    FlightSeries series;
-    series.flight = "made-up";
+test::SampleColumns columns_of(const std::vector<Point>& points, double interval_s = 1.1) {
+    test::SampleColumns series;
     std::size_t next = 1;
     for (double t = points.front().time_s; t <= points.back().time_s; t += interval_s) {
         while (points[next].time_s < t) ++next;
@@ -38,6 +38,8 @@ FlightSeries series_of(const std::vector<Point>& points, double interval_s = 1.1
     }
     return series;
 }
+
+FlightSeries series_of(const std::vector<Point>& points) { return test::series_of(columns_of(points)); }
 
 /// Ground, take-off at `begin_s`, 300 s at 100 m, landing.
 std::vector<Point> sortie(double begin_s, double ground_m = 0.0) {
@@ -70,18 +72,18 @@ TEST(Segmentation, FindsThePhasesOfAPlainFlight) {
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
     EXPECT_NEAR(phases.sorties[0].height_m, 100.0, 1.0);
-    EXPECT_TRUE(phases.others.empty());
+    EXPECT_TRUE(phases.ground_events.empty());
 }
 
 TEST(Segmentation, DoesNotDependOnTheUnitOfHeightOrTheHourOfTheLog) {
-    auto series = series_of(sortie(100));
-    const auto before = segment(series);
+    auto series = columns_of(sortie(100));
+    const auto before = segment(test::series_of(series));
     for (auto& t : series.time_s) t += 36000.0;
     for (auto& z : series.altitude_m) z = 5.0 * z + 1000.0;
     SegmentationOptions options;
     options.rest_height_m *= 5.0;
     options.flight_height_m *= 5.0;
-    const auto after = segment(series, options);
+    const auto after = segment(test::series_of(series), options);
     ASSERT_EQ(after.sorties.size(), 1u);
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(after.sorties[0].phases[i].start.time_s - 36000.0,
@@ -129,13 +131,13 @@ TEST(Segmentation, NamesRunUpsAndIgnoresPowerAfterLanding) {
     points.push_back({535, 0, 70});
     points.push_back({536, 0, 0});
     points.push_back({560, 0, 0});
-    auto series = series_of(points);
+    auto series = columns_of(points);
     std::fill(series.power_w.end() - 5, series.power_w.end(), 80.0);
-    const auto phases = segment(series);
+    const auto phases = segment(test::series_of(series));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
-    ASSERT_EQ(phases.others.size(), 2u);
-    EXPECT_THAT(phases.others[0].what, HasSubstr("run-up"));
+    ASSERT_EQ(phases.ground_events.size(), 2u);
+    EXPECT_THAT(phases.ground_events[0].what, HasSubstr("run-up"));
 }
 
 TEST(Segmentation, IsNotFooledByAThrottleBurstBeforeTouchdown) {
@@ -209,19 +211,19 @@ TEST(Segmentation, NeedsLittleGroundAtTheEndsOfTheLog) {
 }
 
 TEST(Segmentation, KnowsAnArmedIdleByTheSpeed) {
-    auto series = series_of(sortie(100));
+    auto series = columns_of(sortie(100));
     for (auto& throttle : series.throttle_percent) throttle = std::max(throttle, 12.0);
     series.ground_speed_m_per_s.assign(series.time_s.size(), 0.3);
     for (std::size_t i = 0; i < series.time_s.size(); ++i) {
         if (series.time_s[i] > 100 && series.time_s[i] < 470) series.ground_speed_m_per_s[i] = 13.0;
     }
-    const auto phases = segment(series);
+    const auto phases = segment(test::series_of(series));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
 }
 
 TEST(Segmentation, WorksThroughGapsAndSpikes) {
-    auto series = series_of(sortie(100));
+    auto series = columns_of(sortie(100));
     const auto drop = [&](double from, double to) {
         for (std::size_t i = series.time_s.size(); i-- > 0;) {
             if (series.time_s[i] < from || series.time_s[i] > to) continue;
@@ -233,9 +235,8 @@ TEST(Segmentation, WorksThroughGapsAndSpikes) {
     };
     drop(200, 222);
     drop(300, 310);
-    series.altitude_track = {series.time_s, series.altitude_m};
-    series.altitude_track.value[150] = 900.0;
-    const auto phases = segment(series);
+    series.altitude_m[150] = 900.0;
+    const auto phases = segment(test::series_of(series));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
 }
@@ -259,12 +260,12 @@ TEST(Segmentation, SaysWhatItSawWhereNothingFlew) {
 }
 
 TEST(Segmentation, RefusesWhatCannotBeSegmented) {
-    auto series = series_of(sortie(100));
+    auto series = columns_of(sortie(100));
     series.altitude_m.clear();
-    EXPECT_THROW(segment(series), InputError);
-    auto slow = series_of(sortie(100));
+    EXPECT_THROW(segment(test::series_of(series)), InputError);
+    auto slow = columns_of(sortie(100));
     for (auto& t : slow.time_s) t *= 1e9;
-    EXPECT_THROW(segment(slow), InputError);
+    EXPECT_THROW(segment(test::series_of(slow)), InputError);
     SegmentationOptions options;
     options.cruise_fraction = 1.5;
     EXPECT_THROW(segment(series_of(sortie(100)), options), UsageError);

@@ -21,7 +21,7 @@ TEST(Track, IsSortedFiniteAndWithoutDuplicates) {
 }
 
 TEST(Track, IsLinearBetweenItsPointsAndConstantBeyond) {
-    const Track track{{1, 2, 4}, {10, 20, 0}};
+    const Track track{.time_s = {1, 2, 4}, .value = {10, 20, 0}};
     EXPECT_EQ(value_at(track, 0), 10);
     EXPECT_EQ(value_at(track, 1.5), 15);
     EXPECT_EQ(value_at(track, 2), 20);

@@ -26,7 +26,7 @@ inline mechanical::MeasuredFlight measured(const std::string& name,
         flight.energy_wh[phase] = units::wh_from_joule(energy_j(curve.fourier, curve.duration_s));
     }
     if (until_s) {
-        flight.flown = mechanical::FlownSoFar{};
+        flight.flown = mechanical::FlightProgress{};
         flight.flown->until_s = *until_s;
         flight.flown->cruise_energy_wh =
             units::wh_from_joule(energy_j(truth[flight::Phase::cruise].fourier, *until_s));

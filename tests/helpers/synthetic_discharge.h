@@ -1,7 +1,7 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "flight/flight_series.h"
+#include "helpers/sample_columns.h"
 
 #include <cmath>
 #include <cstdint>
@@ -27,13 +27,12 @@ struct SyntheticDischarge {
 
 /// Rest, run-up, take-off at 8 A, a cruise in gusts, a descent with the motor off, and rest; the battery is
 /// stepped every 0.1 s through exact solutions for constant current.
-inline flight::FlightSeries synthetic_discharge(const battery::Battery& battery,
-                                                const SyntheticDischarge& settings, std::uint64_t seed) {
+inline SampleColumns discharge_columns(const battery::Battery& battery, const SyntheticDischarge& settings,
+                                       std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform;
-    flight::FlightSeries series;
-    series.file = series.flight = "synthetic_" + std::to_string(seed);
+    SampleColumns series;
     constexpr double step_s = 0.1;
     constexpr double as_per_ah = 3600.0;
     const auto& circuit = battery.thevenin.value();
@@ -73,6 +72,12 @@ inline flight::FlightSeries synthetic_discharge(const battery::Battery& battery,
         rc_v = rc_v * decay + circuit.rc_resistance_ohm * current_a * (1.0 - decay);
     }
     return series;
+}
+
+/// The same as a series "synthetic_SEED".
+inline flight::FlightSeries synthetic_discharge(const battery::Battery& battery,
+                                                const SyntheticDischarge& settings, std::uint64_t seed) {
+    return series_of(discharge_columns(battery, settings, seed), "synthetic_" + std::to_string(seed));
 }
 
 /// A pack of three cells, smoothly curved as LiPo is: knots every 2 %.

@@ -1,5 +1,7 @@
 #include "mechanical/flight_samples.h"
 
+#include "helpers/sample_columns.h"
+
 #include <string>
 
 #include <gmock/gmock.h>
@@ -16,13 +18,12 @@ constexpr std::size_t needed = 8;
 
 /// A sample a second from 0 to 300 s; the power tells the time.
 flight::FlightSeries series_of_300_s() {
-    flight::FlightSeries series;
-    series.flight = "flight";
+    test::SampleColumns series;
     for (int second = 0; second <= 300; ++second) {
         series.time_s.push_back(second);
         series.power_w.push_back(1000.0 + second);
     }
-    return series;
+    return test::series_of(series);
 }
 
 flight::PhaseSpan span(flight::Phase phase, double start_s, double end_s) {
@@ -44,12 +45,13 @@ flight::Sortie whole_sortie(double start_s) {
 FlightSelection select(const std::vector<flight::Sortie>& sorties) {
     flight::FlightPhases phases;
     phases.sorties = sorties;
+    for (std::size_t s = 0; s < sorties.size(); ++s) phases.sorties[s].number = s + 1;
     return select_samples(series_of_300_s(), phases, needed);
 }
 
 TEST(FlightSamples, AreThePowerOfEachPhaseOnItsOwnTime) {
     const auto selection = select({whole_sortie(10)});
-    EXPECT_THAT(selection.left_out, IsEmpty());
+    EXPECT_THAT(selection.exclusions, IsEmpty());
     ASSERT_EQ(selection.flights.size(), 1U);
     EXPECT_EQ(selection.flights[0].flight, "flight");
     const auto& takeoff = selection.flights[0].phases[flight::Phase::takeoff].value();
@@ -89,20 +91,20 @@ TEST(FlightSamples, CountEverySortieAsAFlight) {
     EXPECT_EQ(selection.flights[1].phases[flight::Phase::takeoff]->power_w.front(), 1150.0);
 }
 
-TEST(FlightSamples, LeaveOutWhatTheLogCuts) {
+TEST(FlightSamples, ExcludeWhatTheLogCuts) {
     auto sortie = whole_sortie(10);
     sortie.phases[2].complete = false;
     const auto selection = select({sortie});
-    ASSERT_EQ(selection.left_out.size(), 1U);
-    EXPECT_EQ(selection.left_out[0].flight, "flight");
-    EXPECT_EQ(selection.left_out[0].phase, flight::Phase::landing);
-    EXPECT_EQ(selection.left_out[0].reason, "the log begins or ends inside of it");
+    ASSERT_EQ(selection.exclusions.size(), 1U);
+    EXPECT_EQ(selection.exclusions[0].flight, "flight");
+    EXPECT_EQ(selection.exclusions[0].phase, flight::Phase::landing);
+    EXPECT_EQ(selection.exclusions[0].reason, "the log begins or ends inside of it");
     ASSERT_EQ(selection.flights.size(), 1U);
     EXPECT_TRUE(selection.flights[0].phases[flight::Phase::cruise].has_value());
     EXPECT_FALSE(selection.flights[0].phases[flight::Phase::landing].has_value());
 }
 
-TEST(FlightSamples, LeaveOutWhatBeginsOrEndsInALongGap) {
+TEST(FlightSamples, ExcludeWhatBeginsOrEndsInALongGap) {
     auto sortie = whole_sortie(10);
     sortie.phases[0].start.gap_s = 5.0;   // a quarter of its 20 s: just short enough
     sortie.phases[1].end.gap_s = 15.01;   // of 60 s
@@ -110,27 +112,27 @@ TEST(FlightSamples, LeaveOutWhatBeginsOrEndsInALongGap) {
     sortie.phases[2].end.gap_s = 6.0;
     const auto selection = select({sortie});
     std::vector<std::string> reasons;
-    for (const auto& left_out : selection.left_out) reasons.push_back(left_out.reason);
+    for (const auto& exclusion : selection.exclusions) reasons.push_back(exclusion.reason);
     EXPECT_THAT(reasons, ElementsAre("its end lies in a gap of 15.0 s", "its start lies in a gap of 12.0 s"));
     ASSERT_EQ(selection.flights.size(), 1U);
     EXPECT_TRUE(selection.flights[0].phases[flight::Phase::takeoff].has_value());
 }
 
-TEST(FlightSamples, LeaveOutWhatHasTooFew) {
+TEST(FlightSamples, ExcludeWhatHasTooFew) {
     flight::Sortie sortie;
     sortie.phases = {span(flight::Phase::takeoff, 10, 17), span(flight::Phase::cruise, 17, 23)};
     const auto selection = select({sortie});
     EXPECT_EQ(selection.flights.at(0).phases[flight::Phase::takeoff]->tau.size(), needed);
-    ASSERT_EQ(selection.left_out.size(), 1U);
-    EXPECT_EQ(selection.left_out[0].phase, flight::Phase::cruise);
-    EXPECT_EQ(selection.left_out[0].reason, "7 samples, 8 are needed");
+    ASSERT_EQ(selection.exclusions.size(), 1U);
+    EXPECT_EQ(selection.exclusions[0].phase, flight::Phase::cruise);
+    EXPECT_EQ(selection.exclusions[0].reason, "7 samples, 8 are needed");
 }
 
 TEST(FlightSamples, AreNoneWhereNothingIsLeft) {
     auto first = whole_sortie(10);
     for (auto& phase : first.phases) phase.complete = false;
     const auto selection = select({first, whole_sortie(150)});
-    EXPECT_EQ(selection.left_out.size(), 3U);
+    EXPECT_EQ(selection.exclusions.size(), 3U);
     ASSERT_EQ(selection.flights.size(), 1U);
     EXPECT_EQ(selection.flights[0].flight, "flight#2");  // the name tells the sortie, not the order
     EXPECT_THAT(select({}).flights, IsEmpty());

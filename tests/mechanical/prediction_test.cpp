@@ -18,8 +18,8 @@ PhaseForecast forecast(const LevelSpread& spread) {
     return cruise;
 }
 
-FlownSoFar flown(double seconds, double mean_w) {
-    FlownSoFar flight;
+FlightProgress flown(double seconds, double mean_w) {
+    FlightProgress flight;
     flight.cruise_start_s = 100.0;
     flight.until_s = 100.0 + seconds;
     flight.cruise_energy_wh = units::wh_from_joule(mean_w * seconds);

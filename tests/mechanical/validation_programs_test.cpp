@@ -72,7 +72,7 @@ TEST(Validate, RefusesOneFlightAndMomentsThatAreNone) {
     EXPECT_EQ(run(folder, "validate --until -5" + samples()).code, 2);
     const auto late = run(folder, "validate --until 5000" + samples());
     EXPECT_EQ(late.code, 4);
-    EXPECT_THAT(late.err, HasSubstr("opterra_synthetic_01 is left out"));
+    EXPECT_THAT(late.err, HasSubstr("opterra_synthetic_01 is excluded"));
 }
 
 TEST(Validate, InFlightBeatsBeforeFlightOnRealFlights) {

@@ -185,7 +185,9 @@ TEST(Compare, StopsAtABadMission) {
     const auto result = run(folder, "compare", "good.toml bad.toml");
     EXPECT_EQ(result.code, 3);
     EXPECT_EQ(result.out, "");
-    EXPECT_EQ(result.err, "flightwatt-compare: bad.toml:3:13: error: voltage_v = 0, expected more than 0 and at most 1000000\n");
+    EXPECT_EQ(
+        result.err,
+        "flightwatt-compare: bad.toml:3:13: error: voltage_v = 0, expected more than 0 and at most 1000000\n");
 }
 
 TEST(Compare, ReproducesThePaper) {

@@ -64,9 +64,9 @@ TEST(BatterySection, LimitsTheFlightsAndSaysSo) {
 TEST(BatterySection, SaysWhyThereIsNone) {
     const auto pack = test::known_pack();
     auto computed = flight_on(pack, 1);
-    computed.series.current_origin = "computed from throttle";
+    computed.series.current_origin = flight::CurrentOrigin::throttle;
     auto voltless = flight_on(pack, 2);
-    voltless.series.voltage_v.clear();
+    std::erase_if(voltless.series.tracks, [](const auto& track) { return track.name == "voltage_v"; });
     auto absurd = flight_on(pack, 3);
     absurd.unusable_power = "its power record is <absurd>";
     ReportFlight rejected;

@@ -1,6 +1,6 @@
 #include "report/flights_section.h"
 
-#include "flight/flight_reader.h"
+#include "flight/load_flight.h"
 #include "helpers/test_paths.h"
 
 #include <gmock/gmock.h>

@@ -14,14 +14,12 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(ModelSection, ShowsCurvesTableAndNotes) {
+TEST(ModelSection, ShowsCurvesAndTable) {
     ReportModel model{test::published_model(), "Read from a file."};
-    model.notes = {"It is <old>."};
     const auto without = model_section(model, {}, "model");
     ASSERT_EQ(without.figures.size(), 1U);
     EXPECT_EQ(without.figures[0].id, "model-curves");
     EXPECT_THAT(without.html, HasSubstr("Read from a file."));
-    EXPECT_THAT(without.html, HasSubstr("It is &lt;old&gt;."));
     EXPECT_THAT(without.html, Not(HasSubstr("<h3>Table I</h3>")));
     model.table_one = table_one(model.model);
     const auto with = model_section(model, {}, "model");

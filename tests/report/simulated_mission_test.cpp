@@ -9,16 +9,14 @@
 namespace flightwatt::report {
 namespace {
 
-using test::paper_mission;
-
 TEST(SimulateForReport, TellsMissionsOfOneNameApart) {
-    const auto missions = simulate_for_report({paper_mission("phased"), paper_mission("phased")});
+    const auto missions = simulate_for_report({test::paper_mission("phased"), test::paper_mission("phased")});
     EXPECT_EQ(missions[0].title, "phased");
     EXPECT_EQ(missions[1].title, "phased (2)");
 }
 
 TEST(SimulateForReport, EndsTheCurveWhereTheBatteryCannotDeliver) {
-    auto weak = paper_mission("phased");
+    auto weak = test::paper_mission("phased");
     weak.battery.resistance_ohm = 1.0;
     const auto missions = simulate_for_report({weak});
     const auto& [mission, simulation, title, planned] = missions.front();
@@ -28,12 +26,12 @@ TEST(SimulateForReport, EndsTheCurveWhereTheBatteryCannotDeliver) {
 }
 
 TEST(SimulateForReport, HasAsManyRowsAsAScreenShows) {
-    const auto missions = simulate_for_report({paper_mission("phased")});
+    const auto missions = simulate_for_report({test::paper_mission("phased")});
     EXPECT_NEAR(static_cast<double>(missions.front().simulation.curve.rows.size()), 300.0, 30.0);
 }
 
 TEST(Describe, NamesWhatRuns) {
-    const auto mission = paper_mission("invariant-10fps-240bit");
+    const auto mission = test::paper_mission("invariant-10fps-240bit");
     EXPECT_EQ(describe(mission.compute, mission.schedule.front().run),
               "detection fps 10, encryption key_bits 240");
     EXPECT_EQ(describe(mission.compute, {}), "nothing");

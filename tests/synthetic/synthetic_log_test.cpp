@@ -1,5 +1,6 @@
 #include "synthetic/synthetic_log.h"
 
+#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
 #include "flight/telemetry_series.h"
 
@@ -27,7 +28,7 @@ TEST(SyntheticLog, IsReadAndSegmentedAsItWasFlown) {
         const auto flight = flight_at(27.0);
         const auto series =
             read_back(make_synthetic_log(plain_scenario(flight), {}, "x", "Made by a test.", seed));
-        EXPECT_TRUE(series.warnings.empty());
+        EXPECT_TRUE(warnings_of(series).empty());
         const auto phases = segment(series);
         ASSERT_EQ(phases.sorties.size(), 1u) << "seed " << seed;
         ASSERT_EQ(phases.sorties[0].phases.size(), 3u);
@@ -35,7 +36,7 @@ TEST(SyntheticLog, IsReadAndSegmentedAsItWasFlown) {
             EXPECT_NEAR(span.start.time_s, flight.start_s(span.phase), 3.0) << "seed " << seed;
             EXPECT_NEAR(span.end.time_s, flight.end_s(span.phase), 3.0) << "seed " << seed;
         }
-        EXPECT_EQ(phases.others.size(), 1u) << "the run-up";
+        EXPECT_EQ(phases.ground_events.size(), 1u) << "the run-up";
     }
 }
 
@@ -83,10 +84,11 @@ TEST(SyntheticLog, MeasuresThePowerThatWasFlown) {
     sensors.current_noise_a = 0.0;
     const auto flight = flight_at(27.0);
     const auto series = read_back(make_synthetic_log(plain_scenario(flight), sensors, "x", "", 1));
-    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-        if (series.time_s[i] < flight.lift_off_s || series.time_s[i] > flight.end_s(flight::Phase::landing))
+    const auto power = power_track(series);
+    for (std::size_t i = 0; i < power.time_s.size(); ++i) {
+        if (power.time_s[i] < flight.lift_off_s || power.time_s[i] > flight.end_s(flight::Phase::landing))
             continue;
-        EXPECT_NEAR(series.power_w[i], 27.0, 0.04);
+        EXPECT_NEAR(power.value[i], 27.0, 0.04);
     }
 }
 

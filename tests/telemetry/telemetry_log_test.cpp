@@ -20,8 +20,8 @@ const std::vector<MessageRequest> energy{{"ENERGY", {"voltage", "power"}}, {"PON
 std::vector<std::string> reasons(const TelemetryLog& log) {
     std::vector<std::string> texts;
     for (const auto& skip : log.skipped) {
-        texts.push_back(skip.reason + " x" + std::to_string(skip.count) + " from " +
-                        std::to_string(skip.first_line));
+        texts.push_back(skip.reason + " x" + std::to_string(skip.count()) + " from " +
+                        std::to_string(skip.first_line()));
     }
     return texts;
 }
@@ -33,7 +33,9 @@ TelemetryLog parse(std::string_view text, std::optional<LogConfiguration> config
 TEST(TelemetryLog, BindsByTheBuiltInLayoutOfThatManyFields) {
     const auto six = parse("1.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n");
     EXPECT_THAT(six.senders[0].table("ENERGY")->column("power")->values, ElementsAre(34.5));
-    EXPECT_THAT(six.assumed_definitions, ElementsAre("ENERGY: 2018 (6 fields)"));
+    ASSERT_EQ(six.assumed_definitions.size(), 1u);
+    EXPECT_EQ(six.assumed_definitions[0].text, "ENERGY: 2018 (6 fields)");
+    EXPECT_EQ(six.assumed_definitions[0].since_s, 1.5);
     const auto seven = parse("1.5 20 ENERGY 69 11.5 3. 34.5 30. 0.1 0.2\n");
     EXPECT_THAT(seven.senders[0].table("ENERGY")->column("power")->values, ElementsAre(34.5));
     const auto four = parse("1.5 20 ENERGY 11.4 2. 7 22.8\n");

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 
 #include <algorithm>
@@ -21,40 +22,59 @@ constexpr double idle_current_a = 1.0;   // more than electronics draw
 constexpr double fine_counter_a = 0.05;  // error of a mean current by the counter's resolution
 constexpr std::size_t least_samples = 50;
 
-void require_channels(const flight::FlightSeries& series) {
+/// What the record is made of, on the clock of the power samples; empty where not logged.
+struct Channels {
+    std::vector<double> time_s;
+    std::vector<double> voltage_v;
+    std::vector<double> current_a;
+    std::vector<double> charge_ah;
+    std::vector<double> throttle_percent;
+};
+
+Channels channels_of(const flight::FlightSeries& series) {
+    Channels channels;
+    channels.time_s = power_track(series).time_s;
+    channels.voltage_v = chosen_at(series, "voltage_v", channels.time_s);
+    channels.current_a = chosen_at(series, "current_a", channels.time_s);
+    channels.charge_ah = chosen_at(series, "charge_ah", channels.time_s);
+    channels.throttle_percent = chosen_at(series, "throttle_percent", channels.time_s);
+    return channels;
+}
+
+void require_channels(const flight::FlightSeries& series, const Channels& channels) {
     const auto refuse = [&](const std::string& reason, const std::string& hint) {
         throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason), hint);
     };
     constexpr auto needed = "a battery is identified from measured voltage and current";
-    if (series.current_origin == "computed from throttle") {
+    if (series.current_origin == flight::CurrentOrigin::throttle) {
         refuse(
             "its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), not measured: it says "
             "nothing of the battery",
             "use flights with a current sensor");
     }
-    if (series.voltage_v.empty()) refuse("has no voltage", needed);
-    if (series.current_a.empty()) refuse("has no current", needed);
-    if (series.time_s.size() < least_samples) {
-        refuse(fmt::format("has {} samples, expected at least {}", series.time_s.size(), least_samples),
+    if (channels.voltage_v.empty()) refuse("has no voltage", needed);
+    if (channels.current_a.empty()) refuse("has no current", needed);
+    if (channels.time_s.size() < least_samples) {
+        refuse(fmt::format("has {} samples, expected at least {}", channels.time_s.size(), least_samples),
                needed);
     }
     for (const auto& [name, values] :
-         {std::pair{"voltage", &series.voltage_v}, {"current", &series.current_a}}) {
+         {std::pair{"voltage", &channels.voltage_v}, {"current", &channels.current_a}}) {
         const auto [low, high] = std::minmax_element(values->begin(), values->end());
         if (*low == *high) refuse(fmt::format("its {} is {} throughout", name, *low), needed);
     }
-    if (*std::min_element(series.voltage_v.begin(), series.voltage_v.end()) <= 0.0) {
+    if (*std::min_element(channels.voltage_v.begin(), channels.voltage_v.end()) <= 0.0) {
         refuse("its voltage is not positive throughout", needed);
     }
 }
 
 /// Charge drawn by the trapezoids of the current [Ah].
-std::vector<double> integrated_charge_ah(const flight::FlightSeries& series) {
-    std::vector<double> charge(series.time_s.size(), 0.0);
+std::vector<double> integrated_charge_ah(const Channels& channels) {
+    std::vector<double> charge(channels.time_s.size(), 0.0);
     for (std::size_t i = 1; i < charge.size(); ++i) {
-        const double mean_a = (series.current_a[i - 1] + series.current_a[i]) / 2.0;
+        const double mean_a = (channels.current_a[i - 1] + channels.current_a[i]) / 2.0;
         charge[i] =
-            charge[i - 1] + units::ah_from_coulomb(mean_a * (series.time_s[i] - series.time_s[i - 1]));
+            charge[i - 1] + units::ah_from_coulomb(mean_a * (channels.time_s[i] - channels.time_s[i - 1]));
     }
     return charge;
 }
@@ -71,38 +91,38 @@ double least_difference(std::vector<double> values) {
     return least;
 }
 
-bool has_counter(const flight::FlightSeries& series) {
-    return !series.charge_ah.empty() && series.charge_ah.back() > series.charge_ah.front();
+bool has_counter(const Channels& channels) {
+    return !channels.charge_ah.empty() && channels.charge_ah.back() > channels.charge_ah.front();
 }
 
-void add_charge(const flight::FlightSeries& series, DischargeRecord& record) {
-    const bool counted = has_counter(series);
-    record.charge_ah = counted ? series.charge_ah : integrated_charge_ah(series);
-    for (auto& charge : record.charge_ah) charge -= counted ? series.charge_ah.front() : 0.0;
+void add_charge(const Channels& channels, DischargeRecord& record) {
+    const bool counted = has_counter(channels);
+    record.charge_ah = counted ? channels.charge_ah : integrated_charge_ah(channels);
+    for (auto& charge : record.charge_ah) charge -= counted ? channels.charge_ah.front() : 0.0;
     // A counter in whole mAh says little of a single interval, but bridges gaps.
-    const bool fine = counted && units::coulomb_from_ah(least_difference(series.charge_ah)) <
-                                     fine_counter_a * usual_interval_s(series);
-    const double counted_from_s = fine ? 0.0 : gap_threshold_s(series);
-    record.mean_current_a = series.current_a;
-    for (std::size_t i = 1; i < series.time_s.size(); ++i) {
-        const double interval_s = series.time_s[i] - series.time_s[i - 1];
+    const bool fine = counted && units::coulomb_from_ah(least_difference(channels.charge_ah)) <
+                                     fine_counter_a * flight::usual_interval_s(channels.time_s);
+    const double counted_from_s = fine ? 0.0 : flight::gap_threshold_s(channels.time_s);
+    record.mean_current_a = channels.current_a;
+    for (std::size_t i = 1; i < channels.time_s.size(); ++i) {
+        const double interval_s = channels.time_s[i] - channels.time_s[i - 1];
         const double charge_ah = record.charge_ah[i] - record.charge_ah[i - 1];
         record.mean_current_a[i] = counted && interval_s > counted_from_s
                                        ? units::coulomb_from_ah(charge_ah) / interval_s
-                                       : (series.current_a[i - 1] + series.current_a[i]) / 2.0;
+                                       : (channels.current_a[i - 1] + channels.current_a[i]) / 2.0;
     }
 }
 
 /// Bursts of current that the motor did not draw.
-void mark_used(const flight::FlightSeries& series, DischargeRecord& record) {
-    record.used.assign(series.time_s.size(), true);
-    const auto& throttle = series.throttle_percent;
+void mark_used(const Channels& channels, DischargeRecord& record) {
+    record.used.assign(channels.time_s.size(), true);
+    const auto& throttle = channels.throttle_percent;
     if (throttle.empty() || *std::max_element(throttle.begin(), throttle.end()) < flight_throttle_percent) {
         return;
     }
     for (std::size_t i = 0; i < throttle.size(); ++i) {
         record.used[i] =
-            throttle[i] > idle_throttle_percent || std::abs(series.current_a[i]) <= idle_current_a;
+            throttle[i] > idle_throttle_percent || std::abs(channels.current_a[i]) <= idle_current_a;
     }
 }
 
@@ -142,16 +162,17 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
 }  // namespace
 
 DischargeRecord discharge_record(const flight::FlightSeries& series) {
-    require_channels(series);
+    const auto channels = channels_of(series);
+    require_channels(series, channels);
     DischargeRecord record;
     record.flight = series.flight;
-    record.time_s = series.time_s;
-    record.voltage_v = series.voltage_v;
-    record.current_a = series.current_a;
-    add_charge(series, record);
-    mark_used(series, record);
+    record.time_s = channels.time_s;
+    record.voltage_v = channels.voltage_v;
+    record.current_a = channels.current_a;
+    add_charge(channels, record);
+    mark_used(channels, record);
     add_rest(series, record);
-    record.resolution_v = least_difference(series.voltage_v);
+    record.resolution_v = least_difference(channels.voltage_v);
     return record;
 }
 

@@ -38,21 +38,6 @@ inline void add_fit_options(boost::program_options::options_description& options
         "most periods in a phase; the sampling may allow fewer");
 }
 
-/// Overrules that flights with an absurd power record are left out.
-inline void add_keep_option(boost::program_options::options_description& options) {
-    namespace po = boost::program_options;
-    options.add_options()(
-        "keep", po::value<std::vector<std::string>>()->value_name("FLIGHT")->composing(),
-        "use this flight though it would be left out (absurd power record, not-fitted.txt)");
-}
-
-/// What becomes of doubtful power records.
-inline void add_power_options(boost::program_options::options_description& options) {
-    add_keep_option(options);
-    options.add_options()("correct-idle-offset",
-                          "take out of the power what the current sensor reads on the ground");
-}
-
 /// "FLIGHT=0.4" or "FLIGHT:cruise=0.4".
 inline mechanical::HandWeight parse_hand_weight(const std::string& text) {
     const auto equals = text.rfind('=');

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/text_table.h"
+#include "flight/chosen_track.h"
 #include "flight/edge_witness.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
@@ -43,9 +44,10 @@ inline TextTable edges_table(const flight::FlightSeries& series, const flight::F
     return table;
 }
 
-/// What the power record is worth, a line each.
+/// How far the power record can be trusted, a line each.
 inline std::string power_text(const flight::FlightSeries& series, const flight::PowerReport& power) {
-    std::string text = fmt::format("power: {}, current {}\n", series.power_source, power.origin);
+    std::string text =
+        fmt::format("power: {}, current {}\n", power_track(series).source, to_string(power.origin));
     if (power.idle) {
         text += fmt::format("idle current on the ground: {:.4f} A, standard deviation {:.4f} A, {} samples\n",
                             power.idle->mean_a, power.idle->deviation_a, power.idle->samples);
@@ -61,14 +63,14 @@ inline std::string power_text(const flight::FlightSeries& series, const flight::
     double longest_s = 0.0;
     for (const auto& gap : power.gaps) longest_s = std::max(longest_s, gap.duration_s);
     text += fmt::format("gaps in flight: {}, the longest {:.1f} s\n", power.gaps.size(), longest_s);
-    for (const auto& absurdity : power.absurdities) text += fmt::format("absurd: {}\n", absurdity);
+    for (const auto& fault : power.power_faults) text += fmt::format("power fault: {}\n", fault);
     return text;
 }
 
 inline std::string explanation(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                                const flight::PowerReport& power) {
     std::string text = to_text(edges_table(series, phases));
-    for (const auto& other : phases.others) {
+    for (const auto& other : phases.ground_events) {
         text +=
             fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
     }

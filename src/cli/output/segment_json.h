@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/output/json_text.h"
+#include "flight/chosen_track.h"
 #include "flight/edge_witness.h"
 #include "flight/phase_statistics.h"
 #include "flight/power_check.h"
@@ -73,27 +74,25 @@ inline Json to_json(const flight::PowerReport& report) {
                 {"deviation_a", report.idle->deviation_a},
                 {"samples", report.idle->samples}};
     }
-    return {{"current_origin", report.origin},
+    return {{"current_origin", to_string(report.origin)},
             {"idle_current", idle},
             {"energy_closure_percent", optional_json(report.energy_closure_percent)},
             {"charge_closure_percent", optional_json(report.charge_closure_percent)},
             {"gaps", gaps},
-            {"absurdities", report.absurdities}};
+            {"power_faults", report.power_faults}};
 }
 
 inline Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases,
-                    const flight::PowerReport& power) {
+                    const flight::PowerReport& power, const std::vector<std::string>& warnings) {
     Json sorties = Json::array();
     for (const auto& sortie : phases.sorties) sorties.push_back(to_json(series, sortie));
     Json others = Json::array();
-    for (const auto& other : phases.others) {
+    for (const auto& other : phases.ground_events) {
         others.push_back({{"start_s", other.start_s}, {"end_s", other.end_s}, {"what", other.what}});
     }
-    auto warnings = series.warnings;
-    warnings.insert(warnings.end(), phases.warnings.begin(), phases.warnings.end());
     return {{"flight", series.flight},
             {"aircraft_id", series.aircraft_id},
-            {"power_source", series.power_source},
+            {"power_source", power_track(series).source},
             {"sorties", sorties},
             {"not_flights", others},
             {"power", to_json(power)},

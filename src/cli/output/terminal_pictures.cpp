@@ -1,6 +1,7 @@
 #include "cli/output/terminal_pictures.h"
 
 #include "cli/terminal.h"
+#include "flight/chosen_track.h"
 
 #include <algorithm>
 #include <vector>
@@ -33,13 +34,15 @@ TerminalLine soc_line(const mission::SocCurve& curve, std::size_t rank) {
 
 std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series,
                              const flight::FlightPhases& phases) {
-    if (series.altitude_m.empty()) return "";
-    const auto [low, high] = std::minmax_element(series.altitude_m.begin(), series.altitude_m.end());
+    const auto time_s = power_track(series).time_s;
+    const auto altitude_m = chosen_at(series, "altitude_m", time_s);
+    if (altitude_m.empty()) return "";
+    const auto [low, high] = std::minmax_element(altitude_m.begin(), altitude_m.end());
     if (*high - *low < 1.0) return "";
     plot.rows = 7;
     plot.y_low = *low;
     plot.y_high = *high;
-    auto text = draw(plot, std::vector<TerminalLine>{{series.time_s, series.altitude_m, ""}});
+    auto text = draw(plot, std::vector<TerminalLine>{{time_s, altitude_m, ""}});
     for (const auto& sortie : phases.sorties) {
         for (const auto& span : sortie.phases) {
             text += fmt::format("       {} {:.0f} to {:.0f} s\n", to_string(span.phase), span.start.time_s,

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "flight/chosen_track.h"
 #include "flight/track.h"
 
 #include <algorithm>
@@ -29,10 +30,6 @@ std::vector<double> without_spikes(const std::vector<double>& values) {
     return smooth;
 }
 
-Track series_track(const FlightSeries& series, const std::vector<double>& channel) {
-    return channel.empty() ? Track{} : Track{series.time_s, channel};
-}
-
 /// What counts as idle: some airframes never report less than a trimmed or armed idle. Where the speed tells
 /// rest from flight too, the least throttle of the log is taken for that.
 double idle_throttle_percent(const FlightGrid& grid, const SegmentationOptions& options) {
@@ -45,18 +42,19 @@ double idle_throttle_percent(const FlightGrid& grid, const SegmentationOptions& 
 }  // namespace
 
 FlightGrid make_grid(const FlightSeries& series) {
-    auto altitude =
-        series.altitude_track.empty() ? series_track(series, series.altitude_m) : series.altitude_track;
+    auto altitude = chosen_track(series, "altitude_m");
     if (altitude.empty()) {
+        const auto warnings = warnings_of(series);
         throw InputError(
             {series.flight}, "has no altitude, so its phases cannot be told apart",
             fmt::format(
                 "expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",
-                series.warnings.empty() ? "" : "; ", fmt::join(series.warnings, "; ")));
+                warnings.empty() ? "" : "; ", fmt::join(warnings, "; ")));
     }
     FlightGrid grid;
-    grid.begin_s = series.time_s.front();
-    const double span_s = series.time_s.back() - grid.begin_s;
+    const auto power = power_track(series);
+    grid.start_s = power.time_s.front();
+    const double span_s = power.time_s.back() - grid.start_s;
     constexpr double longest_s = 30.0 * 24.0 * units::seconds_per_hour;
     if (!(span_s <= longest_s)) {
         throw InputError({series.file}, fmt::format("lasts {:.4g} s, more than a month", span_s),
@@ -68,12 +66,12 @@ FlightGrid make_grid(const FlightSeries& series) {
     altitude.value =
         without_spikes<3>(altitude.value);  // on its own clock, before it is spread over the grid
     grid.altitude_m = without_spikes<5>(resample(altitude, time_s));
-    if (const auto throttle = series_track(series, series.throttle_percent); !throttle.empty()) {
-        grid.throttle_percent = resample(throttle, time_s);
+    // As it was when power was sampled: the clock that throttle is asked for on everywhere.
+    if (const auto throttle = chosen_at(series, "throttle_percent", power.time_s); !throttle.empty()) {
+        grid.throttle_percent = resample(Track{.time_s = power.time_s, .value = throttle}, time_s);
     }
-    const auto speed = series.ground_speed_track.empty() ? series_track(series, series.ground_speed_m_per_s)
-                                                         : series.ground_speed_track;
-    if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes<5>(resample(speed, time_s));
+    const auto speed = chosen_at(series, "ground_speed_m_per_s", time_s);
+    if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes<5>(speed);
     return grid;
 }
 

@@ -10,14 +10,14 @@ namespace flightwatt::flight {
 
 /// A flight on an even clock, for the segmentation: spikes of single samples are gone.
 struct FlightGrid {
-    double begin_s = 0.0;
+    double start_s = 0.0;
     double step_s = 0.5;
     std::vector<double> altitude_m;
     std::vector<double> throttle_percent;      ///< empty if unknown
     std::vector<double> ground_speed_m_per_s;  ///< empty if unknown
 
     std::size_t size() const { return altitude_m.size(); }
-    double time_s(std::size_t index) const { return begin_s + step_s * static_cast<double>(index); }
+    double time_s(std::size_t index) const { return start_s + step_s * static_cast<double>(index); }
     /// How many steps make up `duration_s`.
     std::size_t steps(double duration_s) const { return static_cast<std::size_t>(duration_s / step_s); }
 };
@@ -25,16 +25,16 @@ struct FlightGrid {
 /// Throws InputError where the series has no altitude.
 FlightGrid make_grid(const FlightSeries& series);
 
-/// A stretch [begin, end) of the grid.
+/// The grid points [begin, end).
 struct GridSpan {
     std::size_t begin;
     std::size_t end;
 };
 
-/// The stretches in which the aircraft is at rest: see SegmentationOptions.
+/// The spans in which the aircraft is at rest: see SegmentationOptions.
 std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptions& options);
 
-/// Median of grid.altitude_m over a stretch that is not empty.
+/// Median of grid.altitude_m over a span that is not empty.
 double median_altitude_m(const FlightGrid& grid, GridSpan span);
 
 }  // namespace flightwatt::flight

@@ -4,114 +4,66 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 
 namespace flightwatt::flight {
 namespace {
 
-/// The first of `fields` that the table has with the given quantity; nullptr if it has none.
-const telemetry::Column* first_column(const telemetry::MessageTable& table,
-                                      std::initializer_list<const char*> fields, units::Quantity quantity) {
-    for (const auto* field : fields) {
-        const auto* column = table.column(field);
-        if (column != nullptr && column->quantity == quantity) return column;
+const Track* find_source(const FlightSeries& series, std::string_view name, std::string_view source) {
+    const auto found = std::find_if(series.tracks.begin(), series.tracks.end(), [&](const Track& track) {
+        return track.name == name && track.source == source;
+    });
+    return found == series.tracks.end() ? nullptr : &*found;
+}
+
+/// Voltage times current of one message; nullptr if it lacks one of them.
+const Track* find_product(const FlightSeries& series, std::string_view message) {
+    const auto found = std::find_if(series.tracks.begin(), series.tracks.end(), [&](const Track& track) {
+        return track.name == "power_w" && track.source.starts_with(message) &&
+               track.source.find(" * ") != std::string::npos && track.device.empty();
+    });
+    return found == series.tracks.end() ? nullptr : &*found;
+}
+
+bool has_message(const FlightSeries& series, std::string_view message) {
+    return std::any_of(series.tracks.begin(), series.tracks.end(), [&](const Track& track) {
+        return track.source.starts_with(message) && track.source.substr(message.size()).starts_with(".");
+    });
+}
+
+/// Calls visit(a, b) for the values of both tracks at the times that they share.
+template <typename Visit>
+void for_each_pair(const Track& a, const Track& b, Visit&& visit) {
+    for (std::size_t i = 0, j = 0; i < a.time_s.size(); ++i) {
+        while (j < b.time_s.size() && b.time_s[j] < a.time_s[i]) ++j;
+        if (j < b.time_s.size() && b.time_s[j] == a.time_s[i]) visit(a.value[i], b.value[j]);
     }
-    return nullptr;
 }
 
-std::vector<double> products(const std::vector<double>& a, const std::vector<double>& b) {
-    std::vector<double> result(a.size());
-    std::transform(a.begin(), a.end(), b.begin(), result.begin(), std::multiplies<>());
-    return result;
-}
-
-struct VoltageAndCurrent {
-    const telemetry::Column* voltage = nullptr;
-    const telemetry::Column* current = nullptr;
-    bool known() const { return voltage != nullptr && current != nullptr; }
-};
-
-VoltageAndCurrent voltage_and_current(const telemetry::MessageTable& table) {
-    return {first_column(table, {"voltage", "bat", "bat_volts"}, units::Quantity::volt),
-            first_column(table, {"current", "amp", "amps"}, units::Quantity::ampere)};
-}
-
-MeasuredPower product_power(const telemetry::MessageTable& table) {
-    const auto [voltage, current] = voltage_and_current(table);
-    if (voltage == nullptr || current == nullptr) return {};
-    return {make_track(table.time_s, products(voltage->values, current->values), Merge::mean),
-            fmt::format("{0}.{1} * {0}.{2}", table.message, voltage->field, current->field)};
-}
-
-/// True if most samples of ENERGY.power are nowhere near voltage times current: another layout of the message
-/// than was assumed.
-bool contradicts_product(const telemetry::MessageTable& table, const telemetry::Column& power) {
-    const auto [voltage, current] = voltage_and_current(table);
-    if (voltage == nullptr || current == nullptr) return false;
+/// True if most samples are nowhere near voltage times current: another layout of the message than was
+/// assumed.
+bool contradicts(const Track& power, const Track& product) {
     std::size_t compared = 0;
     std::size_t apart = 0;
-    for (std::size_t i = 0; i < power.values.size(); ++i) {
-        const double product = voltage->values[i] * current->values[i];
-        if (!(std::abs(product) > 1.0) || !std::isfinite(power.values[i])) continue;
+    for_each_pair(power, product, [&](double power_w, double product_w) {
+        if (std::abs(product_w) <= 1.0) return;
         ++compared;
-        if (std::abs(power.values[i] - product) > 0.2 * std::abs(product)) ++apart;
-    }
+        if (std::abs(power_w - product_w) > 0.2 * std::abs(product_w)) ++apart;
+    });
     return compared >= 10 && 2 * apart > compared;
 }
 
-/// A quantity summed over devices.
-struct DeviceSum {
-    Track track;
-    std::size_t devices = 0;
-};
-
-/// Sum over the devices (motors, circuits) that a message reports one at a time, on the clock of the device
-/// that reports most, as long as all of them report.
-DeviceSum sum_over_devices(const telemetry::MessageTable& table, std::initializer_list<const char*> id_fields,
-                           const std::vector<double>& column_values) {
-    std::map<std::vector<double>, std::pair<std::vector<double>, std::vector<double>>> rows;
-    for (std::size_t i = 0; i < column_values.size(); ++i) {
-        std::vector<double> id;
-        for (const auto* field : id_fields) {
-            if (const auto* column = table.column(field)) id.push_back(column->values[i]);
-        }
-        auto& [times, values] = rows[id];
-        times.push_back(table.time_s[i]);
-        values.push_back(column_values[i]);
-    }
-    std::vector<Track> devices;
-    for (const auto& [id, row] : rows) {
-        auto track = make_track(row.first, row.second, Merge::mean);
-        if (!track.empty()) devices.push_back(std::move(track));
-    }
-    if (devices.empty()) return {};
-    std::stable_sort(devices.begin(), devices.end(),
-                     [](const Track& a, const Track& b) { return a.time_s.size() > b.time_s.size(); });
-    DeviceSum sum{devices.front(), devices.size()};
-    for (std::size_t d = 1; d < devices.size(); ++d) {
-        const auto more = resample(devices[d], sum.track.time_s);
-        for (std::size_t i = 0; i < more.size(); ++i) sum.track.value[i] += more[i];
-    }
-    return sum;
+/// How many samples of `power` are near to voltage times current.
+std::size_t samples_near(const Track& power, const Track& product) {
+    std::size_t near = 0;
+    for_each_pair(power, product, [&](double power_w, double product_w) {
+        if (std::abs(product_w) <= 1.0) return;
+        const double tolerance_w = 0.05 * std::abs(product_w) + 1.0;  // power may be a whole number
+        if (std::abs(power_w - product_w) <= tolerance_w) ++near;
+    });
+    return near;
 }
-
-MeasuredPower summed_power(const telemetry::MessageTable& table,
-                           std::initializer_list<const char*> id_fields) {
-    const auto* power = first_column(table, {"power"}, units::Quantity::watt);
-    const auto [voltage, current] = voltage_and_current(table);
-    if (power == nullptr && (voltage == nullptr || current == nullptr)) return {};
-    auto sum = sum_over_devices(
-        table, id_fields, power != nullptr ? power->values : products(voltage->values, current->values));
-    if (sum.devices == 0) return {};
-    return {std::move(sum.track), fmt::format("{}, summed over {} devices", table.message, sum.devices)};
-}
-
-constexpr std::initializer_list<const char*> esc_ids{"node_id", "motor_id"};
-constexpr std::initializer_list<const char*> power_device_ids{"node_id", "circuit"};
 
 bool measures_something(const Track& power) {
     return power.time_s.size() >= 2 &&
@@ -119,59 +71,91 @@ bool measures_something(const Track& power) {
 }
 
 /// Takes a candidate if it measures something, or says why not.
-bool take(MeasuredPower candidate, MeasuredPower& chosen, std::vector<std::string>& passed_over) {
-    if (candidate.source.empty()) return false;
-    if (measures_something(candidate.power_w)) {
-        chosen = std::move(candidate);
+bool take(const Track& candidate, PowerChoice& choice) {
+    if (measures_something(candidate)) {
+        choice.power_w = candidate;
         return true;
     }
-    passed_over.push_back(candidate.source + (candidate.power_w.time_s.size() < 2
-                                                  ? " has no two finite values"
-                                                  : " is 0 throughout"));
+    choice.passed_over.push_back(
+        candidate.source + (candidate.time_s.size() < 2 ? " has no two finite values" : " is 0 throughout"));
     return false;
+}
+
+/// The field ENERGY.power, wherever it stands in the message.
+Track energy_power(const FlightSeries& series) {
+    if (energy_and_power_are_exchanged(series)) {
+        auto track = *find_source(series, "power_w", energy_read_as_power);
+        track.source = "ENERGY.power";
+        return track;
+    }
+    const auto* track = find_source(series, "power_w", "ENERGY.power");
+    return track == nullptr ? Track{} : *track;
+}
+
+/// A track that no message of a log names: a user's CSV, which is believed.
+const Track* plain_power(const FlightSeries& series) {
+    const auto found = std::find_if(series.tracks.begin(), series.tracks.end(), [](const Track& track) {
+        return track.name == "power_w" && track.device.empty() && track.source.find('.') == std::string::npos;
+    });
+    return found == series.tracks.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-MeasuredPower choose_power(const telemetry::SenderLog& sender, std::vector<std::string>& passed_over) {
-    MeasuredPower chosen;
-    if (const auto* energy = sender.table("ENERGY")) {
-        if (const auto* power = first_column(*energy, {"power"}, units::Quantity::watt)) {
-            if (contradicts_product(*energy, *power)) {
-                passed_over.emplace_back("ENERGY.power is not voltage times current");
-            } else if (take({make_track(energy->time_s, power->values, Merge::mean), "ENERGY.power"}, chosen,
-                            passed_over)) {
-                return chosen;
-            }
-        }
-        if (take(product_power(*energy), chosen, passed_over)) return chosen;
-    }
-    if (const auto* bat = sender.table("BAT")) {
-        if (take(product_power(*bat), chosen, passed_over)) return chosen;
-        if (!voltage_and_current(*bat).known()) passed_over.emplace_back("BAT has no current");
-    }
-    if (const auto* esc = sender.table("ESC")) {
-        if (take(summed_power(*esc, esc_ids), chosen, passed_over)) return chosen;
-    }
-    if (const auto* device = sender.table("POWER_DEVICE")) {
-        if (take(summed_power(*device, power_device_ids), chosen, passed_over)) return chosen;
-    }
-    return {};
+bool energy_and_power_are_exchanged(const FlightSeries& series) {
+    const auto* as_read = find_source(series, "power_w", "ENERGY.power");
+    const auto* other = find_source(series, "power_w", energy_read_as_power);
+    const auto* product = find_product(series, "ENERGY.");
+    if (as_read == nullptr || other == nullptr || product == nullptr) return false;
+    const auto exchanged = samples_near(*other, *product);
+    return exchanged >= 10 && exchanged > 2 * samples_near(*as_read, *product);
 }
 
-MeasuredCurrent summed_current(const telemetry::SenderLog& sender) {
-    const auto sum_of = [](const telemetry::MessageTable* table,
-                           std::initializer_list<const char*> id_fields) {
-        const auto* current = table == nullptr ? nullptr : voltage_and_current(*table).current;
-        if (current == nullptr) return MeasuredCurrent{};
-        auto sum = sum_over_devices(*table, id_fields, current->values);
-        if (sum.devices == 0) return MeasuredCurrent{};
-        return MeasuredCurrent{
-            std::move(sum.track),
-            fmt::format("{}.{}, summed over {} devices", table->message, current->field, sum.devices)};
-    };
-    auto current = sum_of(sender.table("ESC"), esc_ids);
-    return current.source.empty() ? sum_of(sender.table("POWER_DEVICE"), power_device_ids) : current;
+Track summed_over_devices(const FlightSeries& series, std::string_view name, std::string_view message) {
+    std::vector<const Track*> devices;
+    for (const auto& track : series.tracks) {
+        const bool is_device = track.name == name && !track.device.empty() && !track.empty() &&
+                               track.source.substr(0, track.source.find('.')) == message;
+        if (is_device) devices.push_back(&track);
+    }
+    if (devices.empty()) return {};
+    std::stable_sort(devices.begin(), devices.end(),
+                     [](const Track* a, const Track* b) { return a->time_s.size() > b->time_s.size(); });
+    Track sum = *devices.front();
+    for (std::size_t d = 1; d < devices.size(); ++d) {
+        const auto more = resample(*devices[d], sum.time_s);
+        for (std::size_t i = 0; i < more.size(); ++i) sum.value[i] += more[i];
+    }
+    sum.device.clear();
+    sum.source = fmt::format("{}, summed over {} devices", sum.source, devices.size());
+    return sum;
+}
+
+PowerChoice choose_power(const FlightSeries& series) {
+    PowerChoice choice;
+    if (const auto* plain = plain_power(series)) {
+        choice.power_w = *plain;
+        return choice;
+    }
+    const auto* product = find_product(series, "ENERGY.");
+    if (const auto power = energy_power(series); !power.source.empty()) {
+        if (product != nullptr && contradicts(power, *product)) {
+            choice.passed_over.emplace_back("ENERGY.power is not voltage times current");
+        } else if (take(power, choice)) {
+            return choice;
+        }
+    }
+    if (product != nullptr && take(*product, choice)) return choice;
+    if (has_message(series, "BAT")) {
+        const auto* bat = find_product(series, "BAT.");
+        if (bat == nullptr) choice.passed_over.emplace_back("BAT has no current");
+        if (bat != nullptr && take(*bat, choice)) return choice;
+    }
+    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
+        const auto sum = summed_over_devices(series, "power_w", message);
+        if (!sum.source.empty() && take(sum, choice)) return choice;
+    }
+    return choice;
 }
 
 }  // namespace flightwatt::flight

@@ -1,32 +1,33 @@
 #pragma once
 
 #include "flight/flight_series.h"
-#include "telemetry/telemetry_log.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::flight {
 
-/// Measured electrical power over time, and where it came from.
-struct MeasuredPower {
-    Track power_w;
-    std::string source;  ///< "ENERGY.power"
+/// Which of the series' power tracks is taken, and why not another.
+struct PowerChoice {
+    Track power_w;                         ///< empty if there is none
+    std::vector<std::string> passed_over;  ///< "ENERGY.power is 0 throughout"
 };
 
-/// The power of one aircraft: ENERGY.power, else voltage times current (ENERGY, then BAT), else the ESCs' or
-/// power devices' sum. A source that reads 0 throughout measures nothing and is passed over. Returns an empty
-/// track if there is none; `passed_over` says what was looked at and why it was not taken.
-MeasuredPower choose_power(const telemetry::SenderLog& sender, std::vector<std::string>& passed_over);
+/// ENERGY.power, else voltage times current (ENERGY, then BAT), else the ESCs' or power devices' sum. A
+/// source that reads 0 throughout measures nothing and is passed over, one that voltage times current
+/// contradicts has another layout than was assumed.
+PowerChoice choose_power(const FlightSeries& series);
 
-/// Measured current over time, and where it came from.
-struct MeasuredCurrent {
-    Track current_a;
-    std::string source;
-};
+/// Sum over the devices of `message` that report `name` one at a time, on the clock of the one that reports
+/// most; empty if none does. `source` says of how many.
+Track summed_over_devices(const FlightSeries& series, std::string_view name, std::string_view message);
 
-/// The current of an aircraft whose ESCs or else power devices report it one at a time: their sum. Empty if
-/// neither does.
-MeasuredCurrent summed_current(const telemetry::SenderLog& sender);
+/// The 4-field ENERGY without a .log, so that the order of its last two fields was assumed: whether they fit
+/// the other way round (power is voltage times current). Its tracks are then those of source
+/// power_read_as_energy and energy_read_as_power.
+bool energy_and_power_are_exchanged(const FlightSeries& series);
+inline constexpr auto energy_read_as_power = "ENERGY.energy read as power";
+inline constexpr auto power_read_as_energy = "ENERGY.power read as energy";
 
 }  // namespace flightwatt::flight

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/flight_series.h"
+#include "flight/segmentation.h"
 #include "mechanical/covariate.h"
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 namespace flightwatt::mechanical {
 
 /// A flight in the air, at one moment of its cruise; all times are the log's own seconds.
-struct FlownSoFar {
+struct FlightProgress {
     double lift_off_s = 0.0;
     double cruise_start_s = 0.0;
     double until_s = 0.0;
@@ -20,16 +21,17 @@ struct FlownSoFar {
     double cruise_s() const { return until_s - cruise_start_s; }
 };
 
-/// The moment that is asked for: since lift-off or, if not given, on the log's clock.
-struct Moment {
-    std::optional<double> since_lift_off_s;
-    double log_time_s = 0.0;
-};
+/// The log's time so many seconds after a lift-off that is itself found in what lies before: waits, like a
+/// ground station, until the lift-off that is seen is that long ago. Never looks beyond the answer. `sortie`
+/// counts from 0. Throws NoAnswerError where the log ends more than 60 s before.
+double time_since_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie = 0,
+                           const flight::SegmentationOptions& options = {});
 
-/// What a ground station knew at the moment: lift-off, too, is found in what came before it alone, so the
-/// answer is the same whether the log goes on or ends there. `sortie` counts from 0. Throws NoAnswerError
-/// where by then the aircraft has not taken off, has not held its height for 30 s, or has landed, or the
-/// log ends more than 60 s before; what segment throws.
-FlownSoFar flown_so_far(const flight::FlightSeries& series, const Moment& moment, std::size_t sortie = 0);
+/// What a ground station knew at a time of the log, from the lines until then alone: the answer is the same
+/// whether the log goes on or ends there. `sortie` counts from 0. Throws NoAnswerError where by then the
+/// aircraft has not taken off, has not held its height for hold_s, or has landed, or where nothing was logged
+/// for more than 60 s before; what segment throws.
+FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie = 0,
+                           const flight::SegmentationOptions& options = {});
 
 }  // namespace flightwatt::mechanical

@@ -1,5 +1,6 @@
 #include "report/figures/flight_figure.h"
 
+#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "report/figures/decimation.h"
 #include "report/sections/flight_edges.h"
@@ -42,9 +43,9 @@ FigureData edge_rows(const ReportFlight& flight) {
 /// Measured power, and the model's curve of every phase of the flight.
 FigureData power_rows(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model) {
     FigureData data({"time_s", "power_w"}, {"curve"});
-    const auto& series = flight.series;
-    for (const auto i : visible_rows(series.time_s, series.power_w, screen_columns)) {
-        data.add({series.time_s[i], series.power_w[i]}, {"measured"});
+    const auto power = power_track(flight.series);
+    for (const auto i : visible_rows(power.time_s, power.value, screen_columns)) {
+        data.add({power.time_s[i], power.value[i]}, {"measured"});
     }
     if (!model) return data;
     constexpr int points = 60;
@@ -63,11 +64,11 @@ FigureData power_rows(const ReportFlight& flight, const std::optional<mechanical
     return data;
 }
 
-FigureData channel_rows(const flight::FlightSeries& series, const std::vector<double>& values,
+FigureData channel_rows(const std::vector<double>& time_s, const std::vector<double>& values,
                         const std::string& column) {
     FigureData data({"time_s", column});
-    for (const auto i : visible_rows(series.time_s, values, screen_columns)) {
-        data.add({series.time_s[i], values[i]});
+    for (const auto i : visible_rows(time_s, values, screen_columns)) {
+        data.add({time_s[i], values[i]});
     }
     return data;
 }
@@ -179,8 +180,9 @@ std::string caption_of(const ReportFlight& flight, bool has_model) {
     std::string text =
         "Phases are shaded and end at the dashed lines; those tell their evidence when pointed at.";
     if (has_model) text += " The model is each phase's curve, stretched to the time flown.";
-    const auto samples = flight.series.time_s.size();
-    const auto drawn = visible_rows(flight.series.time_s, flight.series.power_w, screen_columns).size();
+    const auto power = power_track(flight.series);
+    const auto samples = power.time_s.size();
+    const auto drawn = visible_rows(power.time_s, power.value, screen_columns).size();
     if (drawn < samples) {
         text += fmt::format(" Drawn with {} of {} samples: the extremes of each column of the screen.", drawn,
                             samples);
@@ -195,17 +197,17 @@ Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical:
     Figure figure{id, caption_of(flight, model.has_value()), description_of(flight), "zoom_time_s", "x", {}};
     const auto phases = phase_rows(flight.phases);
     const auto edges = edge_rows(flight);
-    const auto& series = flight.series;
+    const auto time_s = power_track(flight.series).time_s;
     VegaJson panels = VegaJson::array();
-    const auto add_channel = [&](const std::vector<double>& values, const std::string& column,
-                                 const std::string& title, int height) {
+    const auto add_channel = [&](const std::string& column, const std::string& title, int height) {
+        const auto values = chosen_at(flight.series, column, time_s);
         if (values.empty()) return;
         auto layers = phase_layers(phases, edges, panels.empty());
-        layers.push_back(line_layer(channel_rows(series, values, column), column, title, title));
+        layers.push_back(line_layer(channel_rows(time_s, values, column), column, title, title));
         panels.push_back(panel(layers, height, false));
     };
-    add_channel(series.altitude_m, "altitude_m", "altitude [m]", 110);
-    add_channel(series.throttle_percent, "throttle_percent", "throttle [%]", 80);
+    add_channel("altitude_m", "altitude [m]", 110);
+    add_channel("throttle_percent", "throttle [%]", 80);
     auto layers = phase_layers(phases, edges, panels.empty());
     layers.push_back(power_layer(power_rows(flight, model)));
     panels.push_back(panel(layers, 190, true));

@@ -1,7 +1,5 @@
 #include "report/figures/model_figure.h"
 
-#include "base/statistics.h"
-#include "mechanical/flight_envelope.h"
 #include "report/sections/phase_words.h"
 
 #include <algorithm>
@@ -50,7 +48,7 @@ VegaJson area_layer(const FigureData& data, std::string_view low, std::string_vi
               {"color", color}}}};
 }
 
-VegaJson band_layers(const CurveBand& band, const VegaJson& shown) {
+VegaJson band_layers(const mechanical::CurveBand& band, const VegaJson& shown) {
     VegaJson layers = VegaJson::array();
     if (!band.flights_low_w.empty()) {
         FigureData envelope({"time_s", "low_w", "high_w"});
@@ -147,32 +145,9 @@ std::string caption_of(const mechanical::MechanicalModel& model, const Published
 
 }  // namespace
 
-flight::PerPhase<CurveBand> curve_bands(const mechanical::ModelFit& fit,
-                                        const flight::PerPhase<mechanical::PhaseErrorReport>& reports) {
-    flight::PerPhase<CurveBand> bands;
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = fit.model.phases[phase];
-        const auto& analysis = reports[phase].analysis;
-        const double wide = student_t_half_width(analysis.errors.degrees_of_freedom);
-        auto& band = bands[phase];
-        for (std::size_t i = 0; i < points; ++i) {
-            const double time_s = time_at(i, fitted.duration_s);
-            const double power = power_w(fitted.fourier, time_s);
-            const double reach = wide * curve_standard_error_w(analysis, time_s / fitted.duration_s);
-            band.time_s.push_back(time_s);
-            band.low_95_w.push_back(power - reach);
-            band.high_95_w.push_back(power + reach);
-        }
-        const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points);
-        if (!spread) continue;
-        band.flights_low_w = spread->low_w;
-        band.flights_high_w = spread->high_w;
-    }
-    return bands;
-}
-
-Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerPhase<CurveBand>& bands,
-                    const PublishedFigures& published, const std::string& id) {
+Figure model_figure(const mechanical::MechanicalModel& model,
+                    const flight::PerPhase<mechanical::CurveBand>& bands, const PublishedFigures& published,
+                    const std::string& id) {
     Figure figure;
     figure.id = id;
     figure.caption = caption_of(model, published);

@@ -1,5 +1,6 @@
 #include "report/figures/track_figure.h"
 
+#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "report/sections/phase_words.h"
 
@@ -27,6 +28,18 @@ using Line = bg::model::linestring<Point>;
 
 constexpr int side = 380;  // [px]
 
+/// Where the aircraft was, on the clock of the power samples.
+struct GroundTrack {
+    std::vector<double> time_s;
+    std::vector<double> east_m;
+    std::vector<double> north_m;
+};
+
+GroundTrack ground_track(const flight::FlightSeries& series) {
+    const auto time_s = power_track(series).time_s;
+    return {time_s, chosen_at(series, "east_m", time_s), chosen_at(series, "north_m", time_s)};
+}
+
 /// A square around the track.
 struct Square {
     double east_m = 0.0;  ///< its middle
@@ -35,17 +48,16 @@ struct Square {
 };
 
 /// Around the flight alone: on the ground, before its first fix, an aircraft may seem to be anywhere.
-Square square_around(const ReportFlight& flight) {
+Square square_around(const ReportFlight& flight, const GroundTrack& track) {
     bg::model::box<Point> box;
     bg::assign_inverse(box);
-    const auto& series = flight.series;
     for (const auto& sortie : flight.phases.sorties) {
-        for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-            if (series.time_s[i] < sortie.phases.front().start.time_s ||
-                series.time_s[i] > sortie.phases.back().end.time_s) {
+        for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+            if (track.time_s[i] < sortie.phases.front().start.time_s ||
+                track.time_s[i] > sortie.phases.back().end.time_s) {
                 continue;
             }
-            bg::expand(box, Point(series.east_m[i], series.north_m[i]));
+            bg::expand(box, Point(track.east_m[i], track.north_m[i]));
         }
     }
     constexpr double margin = 1.05;
@@ -58,26 +70,26 @@ Square square_around(const ReportFlight& flight) {
 
 /// The track between two times in pieces: where power samples, whose clock it is on, are missing, nobody
 /// knows it.
-std::vector<Line> pieces(const flight::FlightSeries& series, double start_s, double end_s) {
-    const double gap_s = gap_threshold_s(series);
+std::vector<Line> pieces(const GroundTrack& track, double start_s, double end_s) {
+    const double gap_s = flight::gap_threshold_s(track.time_s);
     std::vector<Line> lines;
     double last_s = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-        if (series.time_s[i] < start_s || series.time_s[i] > end_s) continue;
-        if (series.time_s[i] - last_s > gap_s) lines.emplace_back();
-        bg::append(lines.back(), Point(series.east_m[i], series.north_m[i]));
-        last_s = series.time_s[i];
+    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+        if (track.time_s[i] < start_s || track.time_s[i] > end_s) continue;
+        if (track.time_s[i] - last_s > gap_s) lines.emplace_back();
+        bg::append(lines.back(), Point(track.east_m[i], track.north_m[i]));
+        last_s = track.time_s[i];
     }
     return lines;
 }
 
 /// What of the tracks a screen can show: no point is further than the tolerance from what is kept.
-FigureData track_rows(const ReportFlight& flight, double tolerance_m) {
+FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, double tolerance_m) {
     FigureData data({"east_m", "north_m", "order", "piece"}, {"phase", "word"});
     double piece = 0.0;
     for (const auto& sortie : flight.phases.sorties) {
         for (const auto& span : sortie.phases) {
-            for (const auto& line : pieces(flight.series, span.start.time_s, span.end.time_s)) {
+            for (const auto& line : pieces(track, span.start.time_s, span.end.time_s)) {
                 ++piece;
                 Line simple;
                 bg::simplify(line, simple, tolerance_m);
@@ -118,10 +130,10 @@ VegaJson encoding_of(const Square& square) {
 }  // namespace
 
 std::optional<Figure> track_figure(const ReportFlight& flight, const std::string& id) {
-    const auto& series = flight.series;
-    if (series.east_m.empty() || series.north_m.empty()) return std::nullopt;
-    const auto square = square_around(flight);
-    const auto data = track_rows(flight, square.half_m / side);
+    const auto track = ground_track(flight.series);
+    if (track.east_m.empty() || track.north_m.empty()) return std::nullopt;
+    const auto square = square_around(flight, track);
+    const auto data = track_rows(flight, track, square.half_m / side);
     if (data.empty()) return std::nullopt;
     Figure figure;
     figure.id = id;

@@ -4,6 +4,7 @@
 #include "telemetry/telemetry_log.h"
 #include "telemetry/text/line_scanner.h"
 #include "telemetry/text/row_storage.h"
+#include "telemetry/text/skip_counter.h"
 #include "telemetry/text/wanted_messages.h"
 
 #include <algorithm>
@@ -57,8 +58,8 @@ inline bool choose_definition(MessagePlan& plan, std::size_t field_count) {
 /// Reads the lines of one log into its tables: the only state of the hot loop. Part of parse_telemetry.
 class LogReader {
   public:
-    LogReader(TelemetryLog& log, const std::vector<MessageRequest>& wanted, std::size_t text_size)
-        : log_(log), wanted_(names_of(wanted)), text_size_(text_size) {
+    LogReader(TelemetryLog& log, const std::vector<MessageRequest>& wanted, std::string_view text)
+        : log_(log), wanted_(names_of(wanted)), text_(text), skips_(text) {
         for (const auto& request : wanted) {
             MessagePlan plan;
             plan.request = request;
@@ -78,7 +79,7 @@ class LogReader {
         bytes_read_ += static_cast<std::size_t>(line.end - line.begin) + 1;
         const auto name = third_word(line);
         if (name.data() == nullptr) {
-            if (line.end > line.begin) skip(Reason::not_a_message, 0, line.number);
+            if (line.end > line.begin) skips_.add_without_time({Reason::not_a_message, 0}, line);
             return;
         }
         const auto index = wanted_.find(name);
@@ -97,30 +98,22 @@ class LogReader {
     void finish(std::size_t lines, bool ends_with_break) {
         log_.lines = lines;
         order_senders();
-        std::sort(skips_.begin(), skips_.end(),
-                  [](const Skip& a, const Skip& b) { return a.first_line < b.first_line; });
-        for (const auto& skip : skips_) {
-            const bool cut_off = !ends_with_break && skip.count == 1 && skip.first_line == lines &&
-                                 skip.reason != Reason::not_a_number;
-            log_.skipped.push_back(
-                {cut_off ? "the last line is cut off" : describe(skip), skip.count, skip.first_line});
+        for (auto& [kind, skipped] : skips_.take()) {
+            const bool cut_off = !ends_with_break && skipped.count() == 1 && skipped.first_line() == lines &&
+                                 kind.reason != Reason::not_a_number;
+            skipped.reason = cut_off ? "the last line is cut off" : describe(kind);
+            log_.skipped.push_back(std::move(skipped));
         }
         for (const auto& plan : plans_) {
-            if (plan.definition != nullptr && !plan.from_log) {
-                log_.assumed_definitions.push_back(
-                    fmt::format("{}: {}", plan.request.message, plan.definition->origin));
-            }
+            if (plan.definition == nullptr || plan.from_log) continue;
+            log_.assumed_definitions.push_back(
+                {fmt::format("{}: {}", plan.request.message, plan.definition->origin),
+                 first_time_s(plan.request.message)});
         }
     }
 
   private:
-    enum class Reason { not_a_message, no_time, other_field_count, unknown_message, not_a_number };
-    struct Skip {
-        Reason reason;
-        std::size_t detail;  ///< plan, and field for not_a_number
-        std::size_t count;
-        std::size_t first_line;
-    };
+    using Reason = SkipReason;
 
     /// Lines of one wanted message. They are read in batches, so that the processor finds the same fields of
     /// the same shape again and again.
@@ -149,14 +142,15 @@ class LogReader {
         for (auto& [line, sender] : placed) log_.senders.push_back(std::move(sender));
     }
 
-    void skip(Reason reason, std::size_t detail, std::size_t line) {
-        for (auto& known : skips_) {
-            if (known.reason == reason && known.detail == detail) {
-                ++known.count;
-                return;
-            }
+    /// When any sender first sent the message.
+    double first_time_s(const std::string& message) const {
+        double first_s = std::numeric_limits<double>::infinity();
+        for (const auto& sender : log_.senders) {
+            const auto* table = sender.table(message);
+            if (table == nullptr) continue;
+            for (const double time_s : table->time_s) first_s = std::min(first_s, time_s);
         }
-        skips_.push_back({reason, detail, 1, line});
+        return first_s;
     }
 
     void read_waiting(std::size_t index) {
@@ -175,7 +169,7 @@ class LogReader {
         words.next(sender);
         words.next(name);
         const double time_s = number_or_nan(time);
-        if (std::isnan(time_s)) return skip(Reason::no_time, index, line.number);
+        if (std::isnan(time_s)) return skips_.add_without_time({Reason::no_time, index}, line);
         words.trim_return();
         // Where each field begins, as far as one is wanted; it ends a blank before the next begins.
         std::array<const char*, max_fields + 1> begins;  // NOLINT: filled as far as it is read
@@ -187,15 +181,15 @@ class LogReader {
         count = std::min(count + words.words_left(), max_fields);
         if (plan.definition == nullptr && !choose_definition(plan, count)) {
             const auto reason = plan.candidates.empty() ? Reason::unknown_message : Reason::other_field_count;
-            return skip(reason, index, line.number);
+            return skips_.add({reason, index}, time_s, line.number);
         }
         if (count != plan.definition->fields.size()) {
-            return skip(Reason::other_field_count, index, line.number);
+            return skips_.add({Reason::other_field_count, index}, time_s, line.number);
         }
         auto& table = table_of(sender, index, line.number);
         const auto rows = table.time_s.size();
         if (rows == table.time_s.capacity()) {
-            reserve_rows(table, rows_to_reserve(rows, bytes_read_, text_size_));
+            reserve_rows(table, rows_to_reserve(rows, bytes_read_, text_.size()));
         }
         table.time_s.push_back(time_s);
         for (std::size_t i = 0; i < plan.targets.size(); ++i) {
@@ -204,7 +198,7 @@ class LogReader {
             const auto size = static_cast<std::size_t>(begins[target.field + 1] - begin - 1);
             const double number = number_or_nan({begin, size});
             if (std::isnan(number)) {
-                skip(Reason::not_a_number, index * max_fields + target.field, line.number);
+                skips_.add({Reason::not_a_number, index * max_fields + target.field}, time_s, line.number);
             }
             table.columns[i].values.push_back(number * target.factor);
         }
@@ -237,7 +231,7 @@ class LogReader {
         return tables[slot];
     }
 
-    std::string describe(const Skip& skip) const {
+    std::string describe(const SkipKind& skip) const {
         const auto plan_index = skip.reason == Reason::not_a_number ? skip.detail / max_fields : skip.detail;
         const auto& plan = plans_[plan_index];
         switch (skip.reason) {
@@ -262,11 +256,11 @@ class LogReader {
 
     TelemetryLog& log_;
     WantedMessages wanted_;
-    std::size_t text_size_;
+    std::string_view text_;
     std::size_t bytes_read_ = 0;
     std::vector<MessagePlan> plans_;
     std::vector<WaitingLines> waiting_;  ///< by plan
-    std::vector<Skip> skips_;
+    SkipCounter skips_;
     std::vector<std::size_t> first_lines_;         ///< by sender, of its first wanted line
     std::vector<std::vector<std::size_t>> slots_;  ///< by sender and plan: index of the table
     std::size_t last_sender_ = no_table;

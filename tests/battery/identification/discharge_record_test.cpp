@@ -16,11 +16,15 @@ using test::known_pack;
 using test::rejected;
 using test::synthetic_discharge;
 
-flight::FlightSeries flight() { return synthetic_discharge(known_pack(), {}, 7); }
+test::SampleColumns flight() { return test::discharge_columns(known_pack(), {}, 7); }
+
+DischargeRecord record_of(const test::SampleColumns& columns) {
+    return discharge_record(test::series_of(columns, "synthetic_7"));
+}
 
 TEST(DischargeRecord, TakesWhatTheLogSays) {
     const auto series = flight();
-    const auto record = discharge_record(series);
+    const auto record = record_of(series);
     EXPECT_EQ(record.flight, "synthetic_7");
     EXPECT_EQ(record.voltage_v, series.voltage_v);
     EXPECT_EQ(record.charge_ah.front(), 0.0);
@@ -35,7 +39,7 @@ TEST(DischargeRecord, IntegratesTheCurrentWhereNothingCounts) {
     auto series = flight();
     const double counted_ah = series.charge_ah.back();
     series.charge_ah.clear();
-    const auto record = discharge_record(series);
+    const auto record = record_of(series);
     EXPECT_NEAR(record.charge_ah.back(), counted_ah, 0.02 * counted_ah);
     for (std::size_t i = 1; i < record.time_s.size(); ++i) {
         EXPECT_EQ(record.mean_current_a[i], (series.current_a[i - 1] + series.current_a[i]) / 2.0);
@@ -43,15 +47,14 @@ TEST(DischargeRecord, IntegratesTheCurrentWhereNothingCounts) {
 }
 
 TEST(DischargeRecord, BridgesGapsByTheCounter) {
-    flight::FlightSeries series;
-    series.flight = "gap";
+    test::SampleColumns series;
     for (int i = 0; i < 100; ++i) {
         series.time_s.push_back(i < 60 ? i : i + 100);
         series.voltage_v.push_back(12.0 - 0.001 * i);
         series.current_a.push_back(i < 20 ? 0.0 : 2.0);
         series.charge_ah.push_back(std::floor(series.time_s.back()) * 0.001);  // whole mAh
     }
-    const auto record = discharge_record(series);
+    const auto record = record_of(series);
     EXPECT_DOUBLE_EQ(record.mean_current_a[60], 0.101 * 3600.0 / 101.0);  // across the gap
     EXPECT_EQ(record.mean_current_a[30], 2.0);                            // too coarse for a single second
 }
@@ -61,12 +64,12 @@ TEST(DischargeRecord, PassesOverBurstsWithoutThrottle) {
     series.throttle_percent.assign(series.time_s.size(), 50.0);
     series.throttle_percent.back() = 0.0;
     series.current_a.back() = 3.5;
-    auto record = discharge_record(series);
+    auto record = record_of(series);
     EXPECT_FALSE(record.used.back());
     EXPECT_EQ(std::count(record.used.begin(), record.used.end(), false), 1);
     // A throttle that never moves tells nothing.
     std::fill(series.throttle_percent.begin(), series.throttle_percent.end(), 0.0);
-    record = discharge_record(series);
+    record = record_of(series);
     EXPECT_EQ(std::count(record.used.begin(), record.used.end(), false), 0);
 }
 
@@ -84,27 +87,35 @@ TEST(DischargeRecord, SettlesAsTheClosedFormDoes) {
 
 TEST(DischargeRecord, RefusesByNameAndReason) {
     const auto of = [](const auto& change) {
-        auto series = flight();
+        auto columns = flight();
+        change(columns);
+        auto series = test::series_of(columns, "synthetic_7");
         series.file = "f.data";
-        change(series);
         return rejected([&] { discharge_record(series); });
     };
     const std::string hint = "; a battery is identified from measured voltage and current";
-    EXPECT_EQ(of([](flight::FlightSeries&) {}), "");
-    EXPECT_EQ(of([](flight::FlightSeries& s) { s.current_origin = "computed from throttle"; }),
-              "f.data: synthetic_7: its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), not "
-              "measured: it says nothing of the battery; use flights with a current sensor");
-    EXPECT_EQ(of([](flight::FlightSeries& s) { s.voltage_v.clear(); }),
+    EXPECT_EQ(of([](test::SampleColumns&) {}), "");
+    auto computed = test::series_of(flight(), "synthetic_7");
+    computed.current_origin = flight::CurrentOrigin::throttle;
+    EXPECT_EQ(rejected([&] { discharge_record(computed); }),
+              "synthetic_7: synthetic_7: its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), "
+              "not measured: it says nothing of the battery; use flights with a current sensor");
+    EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v.clear(); }),
               "f.data: synthetic_7: has no voltage" + hint);
-    EXPECT_EQ(of([](flight::FlightSeries& s) { s.current_a.clear(); }),
+    EXPECT_EQ(of([](test::SampleColumns& s) { s.current_a.clear(); }),
               "f.data: synthetic_7: has no current" + hint);
-    EXPECT_EQ(of([](flight::FlightSeries& s) { std::fill(s.voltage_v.begin(), s.voltage_v.end(), 11.0); }),
+    EXPECT_EQ(of([](test::SampleColumns& s) { std::fill(s.voltage_v.begin(), s.voltage_v.end(), 11.0); }),
               "f.data: synthetic_7: its voltage is 11 throughout" + hint);
-    EXPECT_EQ(of([](flight::FlightSeries& s) { s.voltage_v[3] = 0.0; }),
+    EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v[3] = 0.0; }),
               "f.data: synthetic_7: its voltage is not positive throughout" + hint);
-    EXPECT_EQ(of([](flight::FlightSeries& s) { s.time_s.resize(20); }),
+    EXPECT_EQ(of([](test::SampleColumns& s) {
+                  for (auto* column : {&s.time_s, &s.power_w, &s.voltage_v, &s.current_a, &s.charge_ah,
+                                       &s.throttle_percent}) {
+                      column->resize(std::min<std::size_t>(column->size(), 20));
+                  }
+              }),
               "f.data: synthetic_7: has 20 samples, expected at least 50" + hint);
-    EXPECT_EQ(of([](flight::FlightSeries& s) { s.current_a.front() = 8.0; }),
+    EXPECT_EQ(of([](test::SampleColumns& s) { s.current_a.front() = 8.0; }),
               "f.data: synthetic_7: its log does not begin at rest, so that its initial charge is unknown; a "
               "log that begins before take-off is needed");
 }

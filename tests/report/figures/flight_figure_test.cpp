@@ -1,6 +1,7 @@
 #include "report/figures/flight_figure.h"
 
-#include "flight/flight_reader.h"
+#include "flight/chosen_track.h"
+#include "flight/load_flight.h"
 #include "helpers/test_paths.h"
 #include "report/figures/track_figure.h"
 #include "report/sections/flight_edges.h"
@@ -52,7 +53,7 @@ TEST(FlightFigure, SaysWhatTheAutopilotSaidOfEdgesAndWhereTheLogEnds) {
     auto& landing = flight.phases.sorties.front().phases.back();
     flight.verdicts = {{landing.start.time_s, "agrees with block Survey -> Land (+0.1 s)"}};
     landing.complete = false;
-    landing.end.time_s = flight.series.time_s.back();
+    landing.end.time_s = flight::power_track(flight.series).time_s.back();
     const auto table = edge_table(flight);
     ASSERT_EQ(table.rows.size(), 4U);
     EXPECT_EQ(table.rows[2].back(), "agrees with block Survey -> Land (+0.1 s)");
@@ -62,8 +63,9 @@ TEST(FlightFigure, SaysWhatTheAutopilotSaidOfEdgesAndWhereTheLogEnds) {
 
 TEST(FlightFigure, DrawsNoChannelThatTheLogLacks) {
     auto flight = sample_flight();
-    flight.series.throttle_percent.clear();
-    flight.series.east_m.clear();
+    std::erase_if(flight.series.tracks, [](const flight::Track& track) {
+        return track.name == "throttle_percent" || track.name == "east_m";
+    });
     EXPECT_EQ(flight_figure(flight, std::nullopt, "f").spec["vconcat"].size(), 2U);
     EXPECT_FALSE(track_figure(flight, "t"));
 }

@@ -1,0 +1,130 @@
+#include "batch/batch_fit.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/format_version.h"
+#include "batch/batch_files.h"
+
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace flightwatt::batch {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json band_json(const mechanical::CurveBand& band) {
+    return {{"time_s", band.time_s},
+            {"low_95_w", band.low_95_w},
+            {"high_95_w", band.high_95_w},
+            {"flights_low_w", band.flights_low_w},
+            {"flights_high_w", band.flights_high_w}};
+}
+
+mechanical::CurveBand band_from(const Json& json) {
+    const auto numbers = [&](const char* key) { return json.at(key).get<std::vector<double>>(); };
+    return {numbers("time_s"), numbers("low_95_w"), numbers("high_95_w"), numbers("flights_low_w"),
+            numbers("flights_high_w")};
+}
+
+Json options_json(const mechanical::ModelFitOptions& options) {
+    Json by_hand = Json::array();
+    for (const auto& [flight, phase, weight] : options.weights.by_hand) {
+        by_hand.push_back(
+            {{"flight", flight}, {"phase", phase ? Json(to_string(*phase)) : Json()}, {"weight", weight}});
+    }
+    return {{"order", options.phases.order},
+            {"least_omega_duration_rad", options.phases.low_rad},
+            {"most_periods", options.phases.high_periods},
+            {"weights", to_string(options.weights.weighting)},
+            {"weights_by_hand", by_hand}};
+}
+
+mechanical::ModelFitOptions options_from(const Json& json) {
+    mechanical::ModelFitOptions options;
+    options.phases.order = json.at("order");
+    options.phases.low_rad = json.at("least_omega_duration_rad");
+    options.phases.high_periods = json.at("most_periods");
+    options.weights.weighting = mechanical::weighting_from(json.at("weights").get<std::string>()).value();
+    for (const auto& entry : json.at("weights_by_hand")) {
+        mechanical::HandWeight weight{entry.at("flight"), std::nullopt, entry.at("weight")};
+        if (const auto& phase = entry.at("phase"); !phase.is_null()) {
+            weight.phase = flight::phase_from(phase.get<std::string>()).value();
+        }
+        options.weights.by_hand.push_back(std::move(weight));
+    }
+    return options;
+}
+
+void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
+    const std::string again = "run flightwatt batch again";
+    try {
+        const auto json = Json::parse(read_file(file));
+        if (json.at("format").get<double>() > format_version) {
+            throw InputError(
+                {file.string()},
+                fmt::format("its format is newer than this program, which reads formats up to {}",
+                            format_version),
+                "use a newer FlightWatt, or " + again);
+        }
+        fit.options = options_from(json.at("options"));
+        fit.excluded = json.at("exclude").get<std::set<std::string>>();
+        fit.keep = json.at("keep").get<std::set<std::string>>();
+        for (const auto phase : flight::all_phases) {
+            fit.bands[phase] = band_from(json.at("bands").at(std::string(to_string(phase))));
+        }
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception&) {
+        throw InputError({file.string()}, "this is no fit of a batch that this version writes", again);
+    }
+}
+
+}  // namespace
+
+BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights,
+                     const mechanical::ModelFitOptions& options) {
+    auto fitted = fit_model(flights, options);
+    const auto analyses = mechanical::analyse_model(fitted);
+    BatchFit fit{options, {}, {}, {}, curve_bands(fitted, analyses)};
+    fit.model = std::move(fitted.model);
+    return fit;
+}
+
+void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
+    Json bands = Json::object();
+    for (const auto phase : flight::all_phases) {
+        bands[std::string(to_string(phase))] = band_json(fit.bands[phase]);
+    }
+    const Json json{{"format", format_version},
+                    {"options", options_json(fit.options)},
+                    {"exclude", fit.excluded},
+                    {"keep", fit.keep},
+                    {"bands", bands}};
+    write_file_atomically(out / fit_name, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    write_file_atomically(out / model_errors_name, to_toml(fit.model));
+    auto plain = fit.model;
+    for (auto& phase : plain.phases.values) {
+        phase.errors.reset();
+        phase.spread.reset();
+    }
+    write_file_atomically(out / model_name, to_toml(plain));
+}
+
+std::optional<BatchFit> read_batch_fit(const std::filesystem::path& out) {
+    if (!std::filesystem::exists(out / model_name)) return std::nullopt;
+    for (const auto* name : {fit_name, model_errors_name}) {
+        if (std::filesystem::exists(out / name)) continue;
+        throw InputError({(out / name).string()}, "does not exist: the batch is of another version",
+                         "run flightwatt batch again");
+    }
+    BatchFit fit;
+    read_fit_json(out / fit_name, fit);
+    fit.model = mechanical::read_mechanical_model(out / model_errors_name);
+    return fit;
+}
+
+}  // namespace flightwatt::batch

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "mechanical/model_errors.h"
+#include "mechanical/model_fit.h"
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+
+namespace flightwatt::batch {
+
+/// The fit of a batch, with all that is shown of it: nobody has to fit again.
+struct BatchFit {
+    mechanical::ModelFitOptions options;
+    std::set<std::string> excluded;     ///< flights that were not to be used
+    std::set<std::string> keep;         ///< flights that were used in spite of what spoke against it
+    mechanical::MechanicalModel model;  ///< with its errors
+    flight::PerPhase<mechanical::CurveBand> bands;
+};
+
+/// Fits, analyses the errors and draws the bands. Throws what fit_model throws.
+BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights,
+                     const mechanical::ModelFitOptions& options);
+
+/// Writes OUT/model.toml (the model alone), OUT/model_errors.toml (with its errors) and OUT/fit.json (options
+/// and bands).
+void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out);
+
+/// What write_batch_fit wrote; std::nullopt where there is no model. Throws InputError where a file is
+/// missing, damaged or of a newer format.
+std::optional<BatchFit> read_batch_fit(const std::filesystem::path& out);
+
+}  // namespace flightwatt::batch

@@ -1,0 +1,123 @@
+#include "cli/output/flight_options.h"
+
+#include "base/error.h"
+#include "base/toml_reader.h"
+#include "cli/numeric_options.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace flightwatt::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+std::set<std::string> names_of(const StageCall& call, const std::string& option) {
+    const auto names = call.maybe<std::vector<std::string>>(option).value_or(std::vector<std::string>{});
+    return {names.begin(), names.end()};
+}
+
+void refuse_unknown(const std::set<std::string>& names, const std::string& option,
+                    const std::vector<std::string>& flights) {
+    for (const auto& name : names) {
+        if (std::find(flights.begin(), flights.end(), name) != flights.end()) continue;
+        const auto near = nearest_word(name, flights);
+        throw UsageError(fmt::format("--{} {}: there is no such flight{}", option, name,
+                                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+    }
+}
+
+}  // namespace
+
+void add_flight_options(po::options_description& options) {
+    const flight::SegmentationOptions defaults;
+    const auto number = [](const char* unit, double value, const char* shown) {
+        return po::value<double>()->value_name(unit)->default_value(value, shown);
+    };
+    po::options_description group("How flights are read");
+    group.add_options()("aircraft", po::value<std::string>()->value_name("ID"),
+                        "the aircraft to read, where several flew");
+    group.add_options()("sortie", po::value<std::string>()->value_name("N"),
+                        "this sortie of the log alone, counted from 1");
+    const auto names = [] {
+        return po::value<std::vector<std::string>>()->value_name("FLIGHT")->composing();
+    };
+    group.add_options()("exclude", names(), "do not use this flight");
+    group.add_options()("keep", names(),
+                        "use this flight though it would be excluded (power faults, not-fitted.txt)");
+    group.add_options()("correct-idle-offset",
+                        "take out of the power what the current sensor reads on the ground");
+    group.add_options()("rest", number("S", defaults.rest_s, "10"),
+                        "an aircraft that keeps its height so long [s] with its motor idling is at rest");
+    group.add_options()("hold", number("S", defaults.hold_s, "30"),
+                        "a height that grows by less than a tenth of the flight's in this time [s] is held");
+    group.add_options()("idle-throttle", number("P", defaults.idle_throttle_percent, "5"),
+                        "up to this throttle [%] the motor idles");
+    group.add_options()("cruise-fraction", number("X", defaults.cruise_fraction, "0.9"),
+                        "take-off ends and landing begins at this fraction of the height held");
+    group.add_options()("ground-fraction", number("X", defaults.ground_fraction, "0.025"),
+                        "below this fraction of the flight's height it is on the ground");
+    group.add_options()("flight-height", number("M", defaults.flight_height_m, "10"),
+                        "what stays below this height [m] is no flight");
+    options.add(group);
+}
+
+flight::LoadOptions read_flight_options(const StageCall& call) {
+    flight::LoadOptions options;
+    options.excluded = names_of(call, "exclude");
+    options.keep = names_of(call, "keep");
+    options.aircraft_id = call.maybe<std::string>("aircraft");
+    if (call.has("sortie")) options.sortie = count_option(call, "sortie", 1);
+    options.correct_idle_offset = call.has("correct-idle-offset");
+    auto& segmentation = options.segmentation;
+    segmentation.rest_s = call.get<double>("rest");
+    segmentation.hold_s = call.get<double>("hold");
+    segmentation.idle_throttle_percent = call.get<double>("idle-throttle");
+    segmentation.cruise_fraction = call.get<double>("cruise-fraction");
+    segmentation.ground_fraction = call.get<double>("ground-fraction");
+    segmentation.flight_height_m = call.get<double>("flight-height");
+    validate(segmentation);
+    return options;
+}
+
+void warn_of(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight) {
+    for (const auto& warning : flight.warnings) warn(call, fmt::format("{}: {}", file, warning));
+}
+
+flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
+                                 const flight::LoadOptions& options) {
+    auto loaded = flight::load_flight(std::filesystem::path(file), options);
+    refuse_unknown_flights(options, {loaded.series.flight});
+    if (options.excluded.contains(loaded.series.flight)) {
+        throw UsageError(fmt::format("--exclude {}: no other flight is given", loaded.series.flight));
+    }
+    warn_of(call, file, loaded);
+    return loaded;
+}
+
+void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
+                     const std::function<void(const std::string&, flight::LoadedFlight&)>& use) {
+    std::vector<std::string> flights;
+    for (const auto& file : call.inputs) {
+        auto loaded = flight::load_flight(std::filesystem::path(file), options);
+        const auto& name = loaded.series.flight;
+        if (std::find(flights.begin(), flights.end(), name) != flights.end()) {
+            throw UsageError(fmt::format("flight '{}' is given twice", name));
+        }
+        flights.push_back(name);
+        warn_of(call, file, loaded);
+        use(file, loaded);
+    }
+    refuse_unknown_flights(options, flights);
+}
+
+void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights) {
+    refuse_unknown(options.excluded, "exclude", flights);
+    refuse_unknown(options.keep, "keep", flights);
+}
+
+}  // namespace flightwatt::cli

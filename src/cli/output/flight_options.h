@@ -1,0 +1,33 @@
+#pragma once
+
+#include "cli/stage.h"
+#include "flight/load_flight.h"
+
+#include <functional>
+#include <string>
+
+namespace flightwatt::cli {
+
+/// The options of every stage that reads flights: --aircraft, --sortie, the thresholds of the segmentation,
+/// --correct-idle-offset, --exclude and --keep.
+void add_flight_options(boost::program_options::options_description& options);
+
+/// What the user gave of them. Throws UsageError for a value that makes no sense.
+flight::LoadOptions read_flight_options(const StageCall& call);
+
+/// Warns of what a user should know of a flight that was read from `file`.
+void warn_of(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight);
+
+/// load_flight, with its warnings.
+flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
+                                 const flight::LoadOptions& options);
+
+/// Loads the flights of all inputs, one at a time. Throws UsageError for a flight that is given twice (it
+/// would be counted twice, and predict itself), and for --exclude and --keep of a flight that is not there.
+void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
+                     const std::function<void(const std::string& file, flight::LoadedFlight& flight)>& use);
+
+/// Throws UsageError for --exclude and --keep of a flight that is none of `flights`.
+void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights);
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,147 @@
+#include "flight/chosen_track.h"
+
+#include "base/error.h"
+#include "flight/sources/power_source.h"
+#include "flight/track.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::flight {
+namespace {
+
+template <typename Accept>
+Track first_that_varies(const FlightSeries& series, std::string_view name, Accept&& accept) {
+    const Track* constant = nullptr;
+    for (const auto& track : series.tracks) {
+        if (track.name != name || track.empty() || !track.device.empty() || !accept(track)) continue;
+        if (!is_constant(track)) return track;
+        if (constant == nullptr) constant = &track;
+    }
+    return constant == nullptr ? Track{} : *constant;
+}
+
+Track first_that_varies(const FlightSeries& series, std::string_view name) {
+    return first_that_varies(series, name, [](const Track&) { return true; });
+}
+
+Track first_of(const FlightSeries& series, std::string_view name) {
+    for (const auto& track : series.tracks) {
+        if (track.name == name && !track.empty()) return track;
+    }
+    return {};
+}
+
+Track throttle(const FlightSeries& series) {
+    const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
+    auto found =
+        first_that_varies(series, "throttle_percent", [&](const Track& track) { return !is_thrust(track); });
+    return found.empty() ? first_that_varies(series, "throttle_percent", is_thrust) : found;
+}
+
+/// The pack's current, or else the sum of what its consumers report.
+Track current(const FlightSeries& series) {
+    auto found = first_that_varies(series, "current_a");
+    if (found.empty()) found = summed_over_devices(series, "current_a", "ESC");
+    return found.empty() ? summed_over_devices(series, "current_a", "POWER_DEVICE") : found;
+}
+
+Track charge(const FlightSeries& series) {
+    const bool exchanged = energy_and_power_are_exchanged(series);
+    auto found = first_that_varies(series, "charge_ah", [&](const Track& track) {
+        return exchanged ? track.source != "ENERGY.energy" : track.source != power_read_as_energy;
+    });
+    if (found.source == power_read_as_energy) found.source = "ENERGY.energy";
+    return found;
+}
+
+}  // namespace
+
+Track chosen_track(const FlightSeries& series, std::string_view name) {
+    if (name == "power_w") return choose_power(series).power_w;
+    if (name == "current_a") return current(series);
+    if (name == "charge_ah") return charge(series);
+    if (name == "throttle_percent") return throttle(series);
+    if (name == "ground_speed_m_per_s") return first_of(series, name);
+    auto found = first_that_varies(series, name);
+    if (name == "airspeed_m_per_s" && is_constant(found)) return {};
+    return found;
+}
+
+std::vector<double> chosen_at(const FlightSeries& series, std::string_view name,
+                              const std::vector<double>& time_s) {
+    const auto track = chosen_track(series, name);
+    return track.empty() ? std::vector<double>{} : resample(track, time_s);
+}
+
+std::map<std::string, std::string> sources_of(const FlightSeries& series) {
+    std::map<std::string, std::string> sources;
+    for (const auto& name : track_names()) {
+        if (const auto track = chosen_track(series, name); !track.empty()) sources[name] = track.source;
+    }
+    return sources;
+}
+
+std::optional<double> ground_altitude_m(const FlightSeries& series) {
+    // A rotorcraft's heights are above the reference on the ground.
+    if (chosen_track(series, "altitude_m").source.starts_with("ROTORCRAFT_FP")) return 0.0;
+    const auto logged = chosen_track(series, "ground_altitude_m");
+    return logged.empty() ? series.planned_ground_altitude_m : logged.value.back();
+}
+
+std::vector<std::string> warnings_of(const FlightSeries& series) {
+    std::vector<std::string> warnings;
+    if (energy_and_power_are_exchanged(series)) {
+        warnings.emplace_back("ENERGY holds its power before its energy: the two were exchanged");
+    }
+    if (!series.assumed_definitions.empty()) {
+        std::vector<std::string> assumed;
+        for (const auto& definition : series.assumed_definitions) assumed.push_back(definition.text);
+        warnings.push_back(
+            fmt::format("no .log beside it: message layouts assumed: {}", fmt::join(assumed, ", ")));
+    }
+    if (series.current_origin == CurrentOrigin::throttle) {
+        warnings.emplace_back(
+            "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: its current was computed "
+            "from throttle, so a power model fitted to it is circular");
+    }
+    const auto power = choose_power(series);
+    for (const auto& reason : power.passed_over) {
+        warnings.push_back(fmt::format("{}: power is taken from {}", reason, power.power_w.source));
+    }
+    for (const auto& skip : series.skipped) warnings.push_back(describe(skip));
+    if (series.lacks_log && series.assumed_definitions.empty()) warnings.emplace_back("no .log beside it");
+    warnings.insert(warnings.end(), series.notes.begin(), series.notes.end());
+    return warnings;
+}
+
+void require_power(const FlightSeries& series, const std::string& holds) {
+    if (const auto& restart = series.clock_restart) {
+        throw InputError({series.file},
+                         fmt::format("its clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})",
+                                     restart->from_s, restart->to_s, series.aircraft_id, restart->message),
+                         "it holds several recordings: split it where the time begins anew");
+    }
+    const auto power = choose_power(series);
+    if (!power.power_w.empty()) return;
+    std::vector<std::string> reasons = power.passed_over;
+    for (const auto& skip : series.skipped) reasons.push_back(describe(skip));
+    for (const auto& assumed : series.assumed_definitions) reasons.push_back("assumed " + assumed.text);
+    std::string reason;
+    if (!reasons.empty()) reason = fmt::format(" ({})", fmt::join(reasons, "; "));
+    throw InputError(
+        {series.file}, fmt::format("holds no measured power of aircraft {}{}", series.aircraft_id, reason),
+        fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE{}{}",
+                    holds.empty() ? "" : "; it holds ", holds));
+}
+
+void replace_track(FlightSeries& series, Track track) {
+    const auto is_same = [&](const Track& other) { return other.name == track.name; };
+    const auto at = std::find_if(series.tracks.begin(), series.tracks.end(), is_same) - series.tracks.begin();
+    std::erase_if(series.tracks, is_same);
+    series.tracks.insert(series.tracks.begin() + at, std::move(track));
+}
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "flight/flight_series.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flightwatt::flight {
+
+/// The track of that name that the programs compute with: the first candidate that varies, else the first
+/// that has values. Exceptions: of airspeed one that varies or none (without a sensor it is constant); of
+/// ground speed the first; of throttle a rotorcraft's thrust comes last; of current and power the sum over
+/// devices where no message tells the whole. Power is the first that measures something (is not 0 throughout)
+/// and is not contradicted by voltage times current. Empty if the log has none. `source` says where it is
+/// from: "ENERGY.voltage * ENERGY.current", "ESC, summed over 4 devices".
+Track chosen_track(const FlightSeries& series, std::string_view name);
+
+/// The track of that name at other times, linear between its points and constant outside; `time_s` must rise.
+/// Empty if the log has none.
+std::vector<double> chosen_at(const FlightSeries& series, std::string_view name,
+                              const std::vector<double>& time_s);
+
+/// The power samples, whose clock most programs compute on.
+inline Track power_track(const FlightSeries& series) { return chosen_track(series, "power_w"); }
+
+/// Where each chosen track came from, by name.
+std::map<std::string, std::string> sources_of(const FlightSeries& series);
+
+/// Above sea level, from the log's NAVIGATION_REF, else as planned; 0 where altitudes are above the ground.
+std::optional<double> ground_altitude_m(const FlightSeries& series);
+
+/// What a user should know: assumed layouts, sources passed over, skipped lines.
+std::vector<std::string> warnings_of(const FlightSeries& series);
+
+/// Throws InputError where the clock began anew, or where no power was measured: it says what was looked at
+/// and, with `holds`, what the log holds instead.
+void require_power(const FlightSeries& series, const std::string& holds = "");
+
+/// Puts a track into the series in place of all of its name.
+void replace_track(FlightSeries& series, Track track);
+
+}  // namespace flightwatt::flight

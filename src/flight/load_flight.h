@@ -1,0 +1,81 @@
+#pragma once
+
+#include "flight/flight_series.h"
+#include "flight/power_check.h"
+#include "flight/segmentation.h"
+#include "telemetry/data_file.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace flightwatt::flight {
+
+/// How a flight is read, segmented and judged: the same for every program.
+struct LoadOptions {
+    std::optional<std::string> aircraft_id;  ///< one of several in the log
+    std::optional<std::size_t> sortie;       ///< from 1: the others are taken for ground
+    SegmentationOptions segmentation;
+    bool correct_idle_offset = false;     ///< see correct_idle_offset()
+    std::set<std::string> excluded = {};  ///< flights that are not used
+    std::set<std::string> keep = {};      ///< flights that are used in spite of power faults
+    /// False: a log without altitude has no phases, and one in which nothing flew no sortie.
+    bool flight_required = true;
+};
+
+struct LoadedFlight {
+    FlightSeries series;  ///< its idle offset is corrected if that was asked for
+    FlightPhases phases;
+    PowerReport power;                  ///< as measured, before any correction
+    std::string exclusion = {};         ///< why the flight is not to be used; empty if it is
+    std::vector<std::string> warnings;  ///< of the series and the segmentation
+};
+
+/// A log with its .log, or a series CSV, in memory: mapped once for all who read it. Throws InputError for a
+/// file that cannot be read.
+class FlightFile {
+  public:
+    explicit FlightFile(const std::filesystem::path& path);
+    FlightFile(const FlightFile&) = delete;
+    FlightFile& operator=(const FlightFile&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    bool is_series() const { return !data_.has_value(); }
+    std::string_view text() const { return data_ ? data_->text() : series_text_; }
+    /// The .log beside a log; std::nullopt without one.
+    const std::optional<std::string>& log_text() const { return log_text_; }
+    std::filesystem::path log_file() const { return log_file_; }
+
+  private:
+    std::filesystem::path path_;
+    std::optional<telemetry::DataFile> data_;
+    std::string series_text_;
+    std::filesystem::path log_file_;
+    std::optional<std::string> log_text_;
+};
+
+/// The series of each aircraft that may be meant: of the one that is named, else of all that sent telemetry.
+/// Judges nothing yet. Throws InputError where the file holds no telemetry, or the named one sent nothing.
+std::vector<FlightSeries> read_candidates(const FlightFile& file,
+                                          const std::optional<std::string>& aircraft_id);
+
+/// The one that flew: the segmentation finds a sortie in its altitude and throttle. Where none did, the only
+/// one. Throws InputError if that leaves several (it says which).
+FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
+
+/// Segments and judges a series. Throws InputError where no power was measured, for a sortie that the log has
+/// not, and, if a flight is required, where there is no altitude or nothing flew.
+LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options);
+
+/// From file to judgement: Paparazzi .data (compressed or not, with its .log beside it) or series CSV.
+LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options);
+LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// The series alone. Throws InputError where no power was measured.
+FlightSeries read_flight(const std::filesystem::path& path,
+                         const std::optional<std::string>& aircraft_id = std::nullopt);
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,68 @@
+#include "batch/batch_fit.h"
+
+#include "base/atomic_file.h"
+#include "batch/batch_files.h"
+#include "helpers/generated_flights.h"
+#include "helpers/rejected.h"
+#include "helpers/test_paths.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::batch {
+namespace {
+
+using testing::HasSubstr;
+
+BatchFit some_fit() {
+    std::vector<mechanical::FlightSamples> samples;
+    for (auto& flight : test::generated(3, 5)) samples.push_back(std::move(flight.samples));
+    mechanical::ModelFitOptions options;
+    options.name = "three";
+    options.phases.order = 2;
+    options.weights.weighting = mechanical::Weighting::uniform;
+    auto fit = fit_flights(samples, options);
+    fit.excluded = {"other"};
+    fit.keep = {"doubtful"};
+    return fit;
+}
+
+TEST(BatchFit, IsReadBackAsItWasWritten) {
+    const auto out = test::scratch_dir();
+    const auto fit = some_fit();
+    write_batch_fit(fit, out);
+    const auto read = read_batch_fit(out).value();
+    EXPECT_EQ(to_toml(read.model), to_toml(fit.model));
+    EXPECT_TRUE(read.model.phases[flight::Phase::cruise].errors);
+    EXPECT_EQ(read.options.phases.order, 2);
+    EXPECT_EQ(read.options.phases.low_rad, fit.options.phases.low_rad);
+    EXPECT_EQ(read.options.weights.weighting, mechanical::Weighting::uniform);
+    EXPECT_EQ(read.excluded, fit.excluded);
+    EXPECT_EQ(read.keep, fit.keep);
+    for (const auto phase : flight::all_phases) {
+        EXPECT_EQ(read.bands[phase].time_s.size(), 101u);
+        EXPECT_EQ(read.bands[phase].low_95_w, fit.bands[phase].low_95_w);
+        EXPECT_EQ(read.bands[phase].flights_high_w, fit.bands[phase].flights_high_w);
+    }
+    // model.toml is the model alone.
+    EXPECT_FALSE(mechanical::read_mechanical_model(out / model_name).phases[flight::Phase::cruise].errors);
+}
+
+TEST(BatchFit, IsNoneWithoutAModelAndRefusesWhatIsDamaged) {
+    const auto out = test::scratch_dir();
+    EXPECT_FALSE(read_batch_fit(out));
+    write_batch_fit(some_fit(), out);
+    const auto refusal = [&] { return test::rejected([&] { read_batch_fit(out); }); };
+    auto text = read_file(out / fit_name);
+    const std::string format = "\"format\": 1";
+    ASSERT_NE(text.find(format), std::string::npos);
+    write_file_atomically(out / fit_name, text.replace(text.find(format), format.size(), "\"format\": 2"));
+    EXPECT_THAT(refusal(), HasSubstr("its format is newer"));
+    write_file_atomically(out / fit_name, "{}");
+    EXPECT_THAT(refusal(), HasSubstr("run flightwatt batch again"));
+    std::filesystem::remove(out / fit_name);
+    EXPECT_THAT(refusal(), HasSubstr("fit.json: does not exist"));
+}
+
+}  // namespace
+}  // namespace flightwatt::batch

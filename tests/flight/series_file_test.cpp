@@ -1,0 +1,100 @@
+#include "flight/series_file.h"
+
+#include "base/error.h"
+#include "flight/chosen_track.h"
+#include "flight/power_check.h"
+#include "flight/telemetry_series.h"
+#include "helpers/cut_logs.h"
+#include "helpers/rejected.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(SeriesFile, LosesNothingOfAnyLog) {
+    std::size_t read = 0;
+    for (const auto& log : test::all_logs()) {
+        SCOPED_TRACE(log.string());
+        const telemetry::DataFile data(log);
+        for (auto series : test::all_series(data.text(), test::configuration_of(log))) {
+            if (power_track(series).empty()) continue;
+            const auto text = to_csv(series);
+            const auto again = parse_series_csv(text, series.file);
+            EXPECT_TRUE(again == series) << "aircraft " << series.aircraft_id;
+            EXPECT_EQ(to_csv(again), text);
+            ++read;
+        }
+    }
+    EXPECT_GE(read, 6u);
+}
+
+FlightSeries series_of(const std::string& text) {
+    return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
+}
+
+TEST(SeriesFile, KeepsEveryTrackOnItsOwnClock) {
+    auto series = series_of(
+        "1 20 ENERGY 40 12. 1. 12. 0.1 1.\n1.5 20 ESTIMATOR 100. 0.\n1.5 20 GPS 3 1 1 0 20000 0 0 1 1 31 0\n"
+        "rubbish\n2 20 ENERGY 50 11. 2. 22. 0.2 2.\n2.5 20 TAKEOFF 1\nrubbish\n");
+    series.block_names = {{0, "Wait \"GPS\""}, {3, "Take\tOff"}};
+    series.planned_ground_altitude_m = 0.1;
+    series.notes = {"a note"};
+    const auto text = to_csv(series);
+    EXPECT_THAT(text, StartsWith("# format = 1\n# flight = \"x\"\n"));
+    EXPECT_THAT(text, HasSubstr("\ntime_s,altitude_m,altitude_m.2,throttle_percent,"));
+    EXPECT_THAT(text, HasSubstr("\n1.5,100,20,,"));
+    EXPECT_TRUE(parse_series_csv(text, "x.data") == series);
+    EXPECT_EQ(parse_series_csv(text, "renamed.csv").flight, "x");
+}
+
+TEST(SeriesFile, KeepsDevicesApart) {
+    const auto series = series_of(
+        "1 20 ESC 1. 12. 12. 0. 0. 0. 0\n1.2 20 ESC 2. 12. 24. 0. 0. 0. 1\n"
+        "2 20 ESC 1. 12. 12. 0. 0. 0. 0\n2.2 20 ESC 4. 12. 48. 0. 0. 0. 1\n");
+    const auto again = parse_series_csv(to_csv(series), "x.data");
+    EXPECT_TRUE(again == series);
+    EXPECT_EQ(power_track(again).source, "ESC, summed over 2 devices");
+}
+
+TEST(SeriesFile, IsReadWithoutFrontMatterAndWithEmptyCells) {
+    const auto series =
+        parse_series_csv("# mine\ntime_s,power_w,altitude_m\n1,2,\n2,3,10\n3,,11\n", "out/mine.csv");
+    EXPECT_EQ(series.flight, "mine");
+    EXPECT_THAT(power_track(series).time_s, ElementsAre(1, 2));
+    EXPECT_THAT(chosen_track(series, "altitude_m").time_s, ElementsAre(2, 3));
+    EXPECT_EQ(power_track(series).source, "series CSV");
+    EXPECT_TRUE(warnings_of(series).empty());
+}
+
+TEST(SeriesFile, RefusesANewerFormatAndWhatItDoesNotKnow) {
+    const auto refusal = [](const std::string& text) {
+        return test::rejected([&] { parse_series_csv(text, "s.csv"); });
+    };
+    const std::string table = "time_s,power_w\n1,2\n2,3\n";
+    EXPECT_THAT(refusal("# format = 2\n" + table), HasSubstr("format = 2 is newer than this program"));
+    const std::string front =
+        "# format = 1\n# flight = \"x\"\n# aircraft_id = \"\"\n# aircraft_name = \"\"\n";
+    EXPECT_THAT(refusal(front + "# current_origin = \"guessed\"\n" + table), HasSubstr("s.csv:5:"));
+    EXPECT_THAT(refusal(front + "# current_origin = \"unknown\"\n# colour = 1\n" + table),
+                HasSubstr("colour"));
+    EXPECT_EQ(refusal(front + "# current_origin = \"unknown\"\n" + table), "");
+}
+
+TEST(SeriesFile, OfACorrectedSeriesIsNotCorrectedAgain) {
+    const auto log = test::source_dir() / "logs" / "opterra_synthetic_01.data";
+    const telemetry::DataFile data(log);
+    auto series = test::all_series(data.text(), test::configuration_of(log)).at(0);
+    correct_idle_offset(series, IdleCurrent{0.1, 0.01, 100});
+    const auto again = parse_series_csv(to_csv(series), series.file);
+    EXPECT_TRUE(again == series);
+    EXPECT_EQ(warnings_of(again), warnings_of(series));
+}
+
+}  // namespace
+}  // namespace flightwatt::flight
