@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -224,7 +225,8 @@ TEST(Batch, KeepsFlightsOfOneNameApart) {
     const auto tuesday = read_file(written / "flight_2.series.csv");
     std::filesystem::remove_all(folder / "in" / "monday");
     EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), ElementsAre("flight"));
-    EXPECT_EQ(read_file(written / "flight.series.csv"), tuesday);
+    EXPECT_EQ(std::regex_replace(tuesday, std::regex("\"flight_2\""), "\"flight\""),
+              read_file(written / "flight.series.csv"));
     EXPECT_FALSE(std::filesystem::exists(written / "flight_2.series.csv"));
 }
 

@@ -110,7 +110,10 @@ int processes_with(const std::string& marker) {
     std::error_code gone;
     for (std::filesystem::directory_iterator it("/proc", gone), end; it != end; it.increment(gone)) {
         std::ifstream file(it->path() / "cmdline");
-        const std::string line((std::istreambuf_iterator<char>(file)), {});
+        // A process may end while it is read; getline then fails, an iterator on the buffer would throw.
+        constexpr char no_separator = '\1';
+        std::string line;
+        std::getline(file, line, no_separator);
         if (line.find(marker) != std::string::npos) ++count;
     }
     return count;
