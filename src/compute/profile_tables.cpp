@@ -10,7 +10,7 @@
 namespace flightwatt::compute {
 namespace {
 
-constexpr int first_parameter_flag = 200;  // of powprofiler
+constexpr int written_parameter_flag = 200;  // of powprofiler
 
 std::string comments_of(const ComponentEstimate& component, const ProfileOutcome& outcome,
                         const ProfileSpecification& specification) {
@@ -103,7 +103,7 @@ std::string idle_csv(const PowerEstimate& idle) {
 std::string powprofiler_layer2_csv(const ComponentEstimate& component) {
     std::string text;
     for (std::size_t i = 0; i < component.parameters.size(); ++i) {
-        text += fmt::format("{},", first_parameter_flag + static_cast<int>(i));
+        text += fmt::format("{},", written_parameter_flag + static_cast<int>(i));
     }
     text += "100,130\n";
     for (const auto& node : component.nodes) {

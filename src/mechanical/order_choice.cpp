@@ -17,15 +17,15 @@ constexpr std::size_t most_blocks = 20;
 constexpr std::size_t least_samples_a_block = 2;
 
 /// What is fitted and what is foretold.
-struct Fold {
+struct OrderFold {
     std::vector<PhaseSamples> seen;
     PhaseSamples excluded;
 };
 
-std::vector<Fold> leave_one_flight_out(std::span<const PhaseSamples> flights) {
-    std::vector<Fold> folds;
+std::vector<OrderFold> leave_one_flight_out(std::span<const PhaseSamples> flights) {
+    std::vector<OrderFold> folds;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        Fold fold;
+        OrderFold fold;
         fold.excluded = flights[i];
         for (std::size_t k = 0; k < flights.size(); ++k) {
             if (k != i) fold.seen.push_back(flights[k]);
@@ -35,10 +35,10 @@ std::vector<Fold> leave_one_flight_out(std::span<const PhaseSamples> flights) {
     return folds;
 }
 
-std::vector<Fold> blocks_of_time(const PhaseSamples& flight) {
+std::vector<OrderFold> blocks_of_time(const PhaseSamples& flight) {
     const std::size_t samples = flight.tau.size();
     const auto blocks = std::clamp(samples / least_samples_a_block, time_folds, most_blocks);
-    std::vector<Fold> folds(time_folds);
+    std::vector<OrderFold> folds(time_folds);
     for (auto& fold : folds) {
         fold.seen.push_back({flight.flight, flight.duration_s, {}, {}});
         fold.excluded = {flight.flight, flight.duration_s, {}, {}};
@@ -51,11 +51,11 @@ std::vector<Fold> blocks_of_time(const PhaseSamples& flight) {
             part.power_w.push_back(flight.power_w[j]);
         }
     }
-    std::erase_if(folds, [](const Fold& fold) { return fold.excluded.tau.empty(); });
+    std::erase_if(folds, [](const OrderFold& fold) { return fold.excluded.tau.empty(); });
     return folds;
 }
 
-double mean_square_error_w2(flight::Phase phase, const Fold& fold, const PhaseFitOptions& options,
+double mean_square_error_w2(flight::Phase phase, const OrderFold& fold, const PhaseFitOptions& options,
                             const WeightOptions& weights) {
     const auto fit = fit_phase(phase, fold.seen, options);
     const auto average = average_phase(fit, flight_weights(fit, phase, weights));
@@ -73,7 +73,7 @@ struct FoldErrors {
     std::string reason;
 };
 
-FoldErrors errors_of(flight::Phase phase, const std::vector<Fold>& folds, const PhaseFitOptions& options,
+FoldErrors errors_of(flight::Phase phase, const std::vector<OrderFold>& folds, const PhaseFitOptions& options,
                      const WeightOptions& weights) {
     FoldErrors errors;
     try {

@@ -10,7 +10,7 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr int most_rounds = 20;
+constexpr int max_reserve_rounds = 20;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<dou
     std::optional<double> bound;
     std::vector<ScheduleSegment> schedule;
     bool lands = false;
-    for (int round = 0; round < most_rounds && !lands; ++round) {
+    for (int round = 0; round < max_reserve_rounds && !lands; ++round) {
         result.plan = plan_rest(problem, planner, start, planned_percent);
         if (!bound) bound = result.plan.bound;
         result.plan.bound = result.plan.feasible ? *bound : 0.0;

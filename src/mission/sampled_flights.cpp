@@ -18,7 +18,7 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double same_time_s = 1e-6;  ///< as in simulation.cpp: empty at the very end has lasted
+constexpr double lasted_tolerance_s = 1e-6;  ///< as in simulation.cpp: empty at the very end has lasted
 constexpr double most_samples = 1e7;
 
 /// How one flight ended.
@@ -60,7 +60,7 @@ Landing land(const DrawnFlight& flight, const std::vector<double>& times_s) {
         charge = follow(flight, segment, charge, times_s, landing.soc_percent);
     landing.soc_percent.resize(times_s.size(), charge.soc_percent);
     landing.final_soc_percent = charge.soc_percent;
-    const double lasted_s = flight.segments.back().end_s - same_time_s;
+    const double lasted_s = flight.segments.back().end_s - lasted_tolerance_s;
     landing.depleted = charge.empty_at_s && *charge.empty_at_s < lasted_s;
     landing.battery_failure =
         landing.depleted || charge.undeliverable || (charge.cut_off_at_s && *charge.cut_off_at_s < lasted_s);

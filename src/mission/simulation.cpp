@@ -16,7 +16,7 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double most_rows = 1e7;
-constexpr double same_time_s = 1e-6;  ///< a battery that is empty this near to the end has lasted
+constexpr double lasting_tolerance_s = 1e-6;  ///< a battery that is empty this near to the end has lasted
 
 void require_output_step(double output_s, double duration_s) {
     if (!(output_s > 0.0) || !std::isfinite(output_s)) {
@@ -128,7 +128,7 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
     summary.duration_s = segments.back().end_s;
     summary.undeliverable = end.undeliverable;
     const auto ended_early_at_s = [&](const std::optional<double>& time_s) {
-        return time_s && *time_s < summary.duration_s - same_time_s ? time_s : std::nullopt;
+        return time_s && *time_s < summary.duration_s - lasting_tolerance_s ? time_s : std::nullopt;
     };
     summary.depleted_at_s = ended_early_at_s(end.empty_at_s);
     summary.cut_off_at_s = ended_early_at_s(end.cut_off_at_s);

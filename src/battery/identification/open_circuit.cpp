@@ -13,7 +13,7 @@ namespace {
 
 constexpr double empty_cell_v = 3.5;        // at rest: the chart's knee
 constexpr double least_part_percent = 3.0;  // of the chart: less tells no capacity
-constexpr double chart_step_percent = 5.0;
+constexpr double added_step_percent = 5.0;
 
 double chart_capacity_ah(double drawn_ah, double cell_voltage_v) {
     const double used_percent = units::percent_per_whole - lipo_chart_soc_percent(cell_voltage_v);
@@ -68,7 +68,7 @@ ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& s
     constexpr double same_percent = 1e-6;
     const bool extends = known_to > same_percent;
     extended.known_down_to_percent = extends ? known_to : 0.0;
-    for (double percent = 0.0; extends && percent < known_to - 0.5; percent += chart_step_percent) {
+    for (double percent = 0.0; extends && percent < known_to - 0.5; percent += added_step_percent) {
         const double below_v = lipo_chart_voltage_v(known_to) - lipo_chart_voltage_v(percent);
         soc.push_back(percent);
         volts.push_back(std::max(last_v - cells * below_v, last_v / 2.0));

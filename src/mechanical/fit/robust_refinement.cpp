@@ -21,7 +21,7 @@ namespace {
 constexpr double deviations_per_median = 1.4826;
 
 /// Residuals below this, in standard deviations of the power, are rounding.
-constexpr double rounding_level = 1e-10;
+constexpr double smallest_scale = 1e-10;
 
 constexpr int most_scalings = 50;
 constexpr double same_scale = 1e-6;
@@ -110,7 +110,7 @@ RobustFit refine_robustly(std::span<const ScaledSamples> flights, const Frequenc
                           const JointFit& start) {
     RobustFit fit{start, 0.0};
     fit.scale = scale_of(flights, fit.joint);
-    for (int i = 0; i < most_scalings && fit.scale > rounding_level; ++i) {
+    for (int i = 0; i < most_scalings && fit.scale > smallest_scale; ++i) {
         fit.joint = minimised(flights, range, fit.joint, fit.scale);
         const double scale = scale_of(flights, fit.joint);
         const bool stays = std::abs(scale - fit.scale) <= same_scale * fit.scale;

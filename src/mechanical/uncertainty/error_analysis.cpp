@@ -17,7 +17,7 @@ namespace flightwatt::mechanical {
 namespace {
 
 /// A derivative by theta of which less than this part lies outside of the basis shows no frequency.
-constexpr double rounding_level = 1e-10;
+constexpr double direction_tolerance = 1e-10;
 
 /// What the errors of one flight are made of.
 struct FlightPart {
@@ -89,7 +89,8 @@ FlightPart part_of(const PhaseSamples& unsorted, const FlightCurve& curve, const
     part.orthonormal = at.by_coefficients * qr->from_orthonormal;
     part.coefficient_sensitivity = qr->coefficients;
     part.theta_direction = at.by_theta - at.by_coefficients * qr->coefficients;
-    if (part.theta_direction.norm() <= rounding_level * at.by_theta.norm()) part.theta_direction.setZero();
+    if (part.theta_direction.norm() <= direction_tolerance * at.by_theta.norm())
+        part.theta_direction.setZero();
     const Eigen::Map<const Eigen::VectorXd> power_w(samples.power_w.data(), at.residual.size());
     part.square_sum_about_mean = (power_w.array() - power_w.mean()).square().sum();
     part.condition = condition_of(at.by_coefficients);

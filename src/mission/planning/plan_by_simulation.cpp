@@ -14,7 +14,7 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr int most_rounds = 16;
+constexpr int max_simulation_rounds = 16;
 constexpr double gap_that_is_none = 1e-5;
 
 /// A schedule, simulated.
@@ -87,7 +87,7 @@ Trial best_trial(const PlanningProblem& problem, const Trial& least, double boun
     auto planner = highest;
     PlannedReserve reserve(problem.reserve_soc_percent, *least.summary.final_soc_percent);
     std::vector<ScheduleSegment> last;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < max_simulation_rounds; ++round) {
         const auto plan = plan_rest(problem, planner, start_of(problem), reserve.percent());
         if (!plan.feasible) {
             if (!plan.deliverable) planner = highest;

@@ -10,7 +10,7 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double point_every_s = 0.1;
-constexpr double same_time_s = 1e-9;
+constexpr double repeated_time_s = 1e-9;
 
 /// How much the lines bend, in voltage over the longer of two neighbours: an interpolated smooth curve is off
 /// by an eighth of that, one with a corner by less than all of it.
@@ -39,7 +39,7 @@ std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission,
     VoltageCourse course;
     for (const auto& row : simulation.curve.rows) {
         // At a jump the current changes, the source does not.
-        if (!course.time_s.empty() && row.time_s - course.time_s.back() < same_time_s) continue;
+        if (!course.time_s.empty() && row.time_s - course.time_s.back() < repeated_time_s) continue;
         course.time_s.push_back(row.time_s);
         course.voltage_v.push_back(row.terminal_voltage_v + mission.battery.resistance_ohm * row.current_a);
     }

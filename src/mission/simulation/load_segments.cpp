@@ -5,14 +5,14 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double same_time_s = 1e-9;
+constexpr double edge_tolerance_s = 1e-9;
 
 /// Times at which something changes, in order, between the segment's start and its end.
 std::vector<double> cuts_of(const LoadSegment& segment, const std::vector<Disturbance>& disturbances) {
     std::vector<double> cuts;
     for (const auto& disturbance : disturbances) {
         for (const double time_s : {disturbance.start_s, disturbance.end_s}) {
-            if (time_s > segment.start_s + same_time_s && time_s < segment.end_s - same_time_s)
+            if (time_s > segment.start_s + edge_tolerance_s && time_s < segment.end_s - edge_tolerance_s)
                 cuts.push_back(time_s);
         }
     }
@@ -66,10 +66,11 @@ std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments,
             part.start_s = start_s;
             part.end_s = end_s;
             for (const auto& disturbance : disturbances) {
-                if (disturbance.start_s >= end_s - same_time_s || disturbance.end_s <= start_s + same_time_s)
+                if (disturbance.start_s >= end_s - edge_tolerance_s ||
+                    disturbance.end_s <= start_s + edge_tolerance_s)
                     continue;
                 disturb_power(disturbance, part);
-                if (disturbance.start_s >= start_s - same_time_s)
+                if (disturbance.start_s >= start_s - edge_tolerance_s)
                     part.soc_drop_percent += disturbance.soc_drop_percent;
             }
             start_s = end_s;

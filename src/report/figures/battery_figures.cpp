@@ -11,15 +11,15 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr std::size_t screen_columns = 130;  // of a panel
-constexpr auto time_title = "time in the log [s]";
+constexpr std::size_t battery_columns = 130;  // of a panel
+constexpr auto record_time_title = "time in the log [s]";
 constexpr auto soc_title = "state of charge [%]";
 constexpr auto open_circuit_title = "open-circuit voltage [V]";
 
 /// A curve as a screen shows it, broken where the record is not used.
 void add_curve(FigureData& data, const battery::DischargeRecord& record, const std::vector<double>& voltage_v,
                std::string_view name) {
-    for (const auto i : visible_rows(record.time_s, voltage_v, screen_columns)) {
+    for (const auto i : visible_rows(record.time_s, voltage_v, battery_columns)) {
         data.add({record.time_s[i], record.used[i] ? voltage_v[i] : std::nan("")}, {name});
     }
 }
@@ -37,7 +37,7 @@ VegaJson voltage_panel(const battery::Battery& battery, const battery::Discharge
             {"data", data.json()},
             {"mark", {{"type", "line"}, {"point", {{"opacity", 0}, {"size", 40}, {"aria", false}}}}},
             {"encoding",
-             {{"x", quantity("time_s", time_title)},
+             {{"x", quantity("time_s", record_time_title)},
               {"y", quantity("voltage_v", "voltage [V]", {{"scale", {{"zero", false}}}})},
               {"color", category("curve", "", {{"scale", curves}, {"legend", {{"symbolType", "stroke"}}}})},
               {"strokeWidth",

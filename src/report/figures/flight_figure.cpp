@@ -15,10 +15,10 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr std::size_t screen_columns = 250;
-constexpr int panel_width = 640;
+constexpr std::size_t power_columns = 250;
+constexpr int flight_width = 640;
 
-constexpr auto time_title = "time in the log [s]";
+constexpr auto log_time_title = "time in the log [s]";
 
 /// One row a phase: for the shading and its names.
 FigureData phase_rows(const flight::FlightPhases& phases) {
@@ -44,7 +44,7 @@ FigureData edge_rows(const ReportFlight& flight) {
 FigureData power_rows(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model) {
     FigureData data({"time_s", "power_w"}, {"curve"});
     const auto power = power_track(flight.series);
-    for (const auto i : visible_rows(power.time_s, power.value, screen_columns)) {
+    for (const auto i : visible_rows(power.time_s, power.value, power_columns)) {
         data.add({power.time_s[i], power.value[i]}, {"measured"});
     }
     if (!model) return data;
@@ -67,7 +67,7 @@ FigureData power_rows(const ReportFlight& flight, const std::optional<mechanical
 FigureData channel_rows(const std::vector<double>& time_s, const std::vector<double>& values,
                         const std::string& column) {
     FigureData data({"time_s", column});
-    for (const auto i : visible_rows(time_s, values, screen_columns)) {
+    for (const auto i : visible_rows(time_s, values, power_columns)) {
         data.add({time_s[i], values[i]});
     }
     return data;
@@ -79,7 +79,7 @@ VegaJson phase_layers(const FigureData& phases, const FigureData& edges, bool wi
         {{"data", phases.reference("phases")},
          {"mark", {{"type", "rect"}, {"opacity", 0.13}, {"aria", false}, {"clip", true}}},
          {"encoding",
-          {{"x", quantity("start_s", time_title)},
+          {{"x", quantity("start_s", log_time_title)},
            {"x2", {{"field", "end_s"}}},
            {"fill",
             category("phase", "phase",
@@ -93,7 +93,7 @@ VegaJson phase_layers(const FigureData& phases, const FigureData& edges, bool wi
                         {"strokeWidth", 1.5},
                         {"clip", true}}},
                       {"encoding",
-                       {{"x", quantity("time_s", time_title)},
+                       {{"x", quantity("time_s", log_time_title)},
                         {"tooltip",
                          {category("edge", "edge"), quantity("time_s", "time [s]", {{"format", ".1f"}}),
                           category("evidence", "evidence"), category("verdict", "the autopilot")}}}}});
@@ -107,7 +107,8 @@ VegaJson phase_layers(const FigureData& phases, const FigureData& edges, bool wi
                {"dy", -3},
                {"y", 0},
                {"clip", false}}},
-             {"encoding", {{"x", quantity("middle_s", time_title)}, {"text", category("word", "phase")}}}});
+             {"encoding",
+              {{"x", quantity("middle_s", log_time_title)}, {"text", category("word", "phase")}}}});
     }
     return layers;
 }
@@ -120,7 +121,7 @@ VegaJson panel(VegaJson layers, int height, bool is_last) {
                     : VegaJson{{"grid", false}, {"labels", false}, {"title", nullptr}};
         layer["encoding"]["x"]["scale"] = {{"zero", false}, {"nice", false}};
     }
-    return {{"width", panel_width}, {"height", height}, {"layer", layers}};
+    return {{"width", flight_width}, {"height", height}, {"layer", layers}};
 }
 
 /// A line; transparent points on it carry its tooltips.
@@ -134,7 +135,7 @@ VegaJson line_layer(const FigureData& data, const std::string& column, const std
               {"clip", true},
               {"point", {{"opacity", 0}, {"size", 60}, {"aria", false}}}}},
             {"encoding",
-             {{"x", quantity("time_s", time_title)},
+             {{"x", quantity("time_s", log_time_title)},
               {"y", quantity(column, title, {{"scale", {{"zero", false}}}})},
               {"tooltip",
                {quantity("time_s", "time [s]", {{"format", ".1f"}}),
@@ -182,7 +183,7 @@ std::string caption_of(const ReportFlight& flight, bool has_model) {
     if (has_model) text += " The model is each phase's curve, stretched to the time flown.";
     const auto power = power_track(flight.series);
     const auto samples = power.time_s.size();
-    const auto drawn = visible_rows(power.time_s, power.value, screen_columns).size();
+    const auto drawn = visible_rows(power.time_s, power.value, power_columns).size();
     if (drawn < samples) {
         text += fmt::format(" Drawn with {} of {} samples: the extremes of each column of the screen.", drawn,
                             samples);

@@ -10,8 +10,8 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr std::size_t points = 101;
-constexpr auto time_title = "time since the phase began [s]";
+constexpr std::size_t curve_points = 101;
+constexpr auto phase_time_title = "time since the phase began [s]";
 constexpr auto power_title = "power [W]";
 
 const VegaJson& curve_names() {
@@ -21,7 +21,7 @@ const VegaJson& curve_names() {
 }
 
 double time_at(std::size_t i, double duration_s) {
-    return duration_s * static_cast<double>(i) / static_cast<double>(points - 1);
+    return duration_s * static_cast<double>(i) / static_cast<double>(curve_points - 1);
 }
 
 /// The color of a curve, and its place in the legend; `shown` are the curves that the figure has.
@@ -42,7 +42,7 @@ VegaJson area_layer(const FigureData& data, std::string_view low, std::string_vi
     return {{"data", data.json()},
             {"mark", {{"type", "area"}, {"opacity", opacity}, {"clip", true}, {"aria", false}}},
             {"encoding",
-             {{"x", quantity("time_s", time_title)},
+             {{"x", quantity("time_s", phase_time_title)},
               {"y", axis_of(low)},
               {"y2", {{"field", high}}},
               {"color", color}}}};
@@ -69,7 +69,7 @@ VegaJson band_layers(const mechanical::CurveBand& band, const VegaJson& shown) {
 
 VegaJson model_layer(const mechanical::PhaseModel& phase, const VegaJson& shown) {
     FigureData data({"time_s", "power_w"});
-    for (std::size_t i = 0; i < points; ++i) {
+    for (std::size_t i = 0; i < curve_points; ++i) {
         const double time_s = time_at(i, phase.duration_s);
         data.add({time_s, power_w(phase.fourier, time_s)});
     }
@@ -80,7 +80,7 @@ VegaJson model_layer(const mechanical::PhaseModel& phase, const VegaJson& shown)
               {"clip", true},
               {"point", {{"opacity", 0}, {"size", 60}, {"aria", false}}}}},
             {"encoding",
-             {{"x", quantity("time_s", time_title, {{"scale", {{"nice", false}}}})},
+             {{"x", quantity("time_s", phase_time_title, {{"scale", {{"nice", false}}}})},
               {"y", axis_of("power_w")},
               {"color", color_of(0, shown)},
               {"tooltip",
@@ -95,7 +95,7 @@ VegaJson published_layer(const PublishedCurve& curve, const VegaJson& shown) {
         {"data", data.json()},
         {"mark", {{"type", "point"}, {"size", 14}, {"strokeWidth", 1.2}, {"clip", true}, {"aria", false}}},
         {"encoding",
-         {{"x", quantity("time_s", time_title)},
+         {{"x", quantity("time_s", phase_time_title)},
           {"y", axis_of("power_w")},
           {"color", color_of(3, shown)},
           {"tooltip",
@@ -103,7 +103,7 @@ VegaJson published_layer(const PublishedCurve& curve, const VegaJson& shown) {
             quantity("power_w", "published [W]", {{"format", ".2f"}})}}}}};
 }
 
-/// Root mean square of published less model, over the points within the phase.
+/// Root mean square of published less model, over the curve_points within the phase.
 double rms_w(const mechanical::PhaseModel& phase, const PublishedCurve& curve) {
     double squares = 0.0;
     std::size_t count = 0;
@@ -121,7 +121,7 @@ std::string described(const mechanical::MechanicalModel& model) {
         const auto& fitted = model.phases[phase];
         double least = power_w(fitted.fourier, 0.0);
         double greatest = least;
-        for (std::size_t i = 1; i < points; ++i) {
+        for (std::size_t i = 1; i < curve_points; ++i) {
             const double power = power_w(fitted.fourier, time_at(i, fitted.duration_s));
             least = std::min(least, power);
             greatest = std::max(greatest, power);

@@ -13,13 +13,13 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr int panel_width = 640;
-constexpr auto time_title = "time since lift-off [s]";
-constexpr auto soc_title = "final state of charge [%]";
+constexpr int plan_width = 640;
+constexpr auto mission_time_title = "time since lift-off [s]";
+constexpr auto final_soc_title = "final state of charge [%]";
 constexpr auto utility_title = "utility (mean worth a second)";
 
 VegaJson utility_axes() {
-    return {{"x", quantity("soc_percent", soc_title)}, {"y", quantity("utility", utility_title)}};
+    return {{"x", quantity("soc_percent", final_soc_title)}, {"y", quantity("utility", utility_title)}};
 }
 
 VegaJson points_layer(const std::vector<UtilityPoint>& points) {
@@ -41,7 +41,7 @@ VegaJson points_layer(const std::vector<UtilityPoint>& points) {
     encoding["size"] = {{"field", "kind"}, {"type", "ordinal"}, {"title", ""}, {"scale", sizes}};
     encoding["tooltip"] = {category("mission", "mission"), category("kind", "schedule"),
                            quantity("utility", "utility", {{"format", ".4g"}}),
-                           quantity("soc_percent", soc_title, {{"format", ".2f"}})};
+                           quantity("soc_percent", final_soc_title, {{"format", ".2f"}})};
     return {{"data", data.json()},
             {"mark", {{"type", "point"}, {"filled", true}, {"opacity", 1}}},
             {"encoding", encoding}};
@@ -132,7 +132,7 @@ VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
     const auto y = category("component", "", {{"sort", nullptr}, {"axis", {{"labelLimit", 130}}}});
     const VegaJson bar{{"mark", {{"type", "bar"}, {"clip", true}, {"height", 15}, {"yOffset", 9}}},
                        {"encoding",
-                        {{"x", quantity("from_s", time_title, axis)},
+                        {{"x", quantity("from_s", mission_time_title, axis)},
                          {"x2", {{"field", "to_s"}}},
                          {"y", y},
                          {"color", quantity("power_w", "power of the component [W]",
@@ -149,7 +149,9 @@ VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
          VegaJson::array({{{"filter", fmt::format("datum.long_s > {}", least_part * duration_s)}}})},
         {"mark", {{"type", "text"}, {"style", "note"}, {"dy", -8}}},
         {"encoding",
-         {{"x", quantity("middle_s", time_title, axis)}, {"y", y}, {"text", category("runs", "runs")}}}};
+         {{"x", quantity("middle_s", mission_time_title, axis)},
+          {"y", y},
+          {"text", category("runs", "runs")}}}};
     return {{"data", data.json()}, {"layer", {bar, words}}};
 }
 
@@ -161,13 +163,14 @@ VegaJson edge_layer(const mission::Mission& mission) {
         data.add({timeline.start_s[phase], timeline.start_s[phase] + mission.duration_s[phase] / 2.0},
                  {phase_word(phase)});
     }
-    const auto x = quantity("begin_s", time_title);
+    const auto x = quantity("begin_s", mission_time_title);
     const VegaJson rule{
         {"mark", {{"type", "rule"}, {"style", "edge"}, {"strokeDash", {3, 3}}, {"aria", false}}},
         {"encoding", {{"x", x}}}};
     const VegaJson word{
         {"mark", {{"type", "text"}, {"style", "note"}, {"baseline", "bottom"}, {"dy", -3}, {"y", 0}}},
-        {"encoding", {{"x", quantity("middle_s", time_title)}, {"text", category("phase", "phase")}}}};
+        {"encoding",
+         {{"x", quantity("middle_s", mission_time_title)}, {"text", category("phase", "phase")}}}};
     return {{"data", data.json()}, {"layer", {rule, word}}};
 }
 
@@ -216,7 +219,7 @@ Figure utility_figure(const SimulatedMission& planned, const std::vector<Utility
             fmt::format(" {}: {:.4g} at {:.2f} %.", point.mission, point.utility, point.soc_percent);
     }
     figure.spec = new_spec(figure);
-    figure.spec["width"] = panel_width;
+    figure.spec["width"] = plan_width;
     figure.spec["height"] = 260;
     figure.spec["layer"] = VegaJson::array();
     const double reserve_percent = planned.simulation.summary.reserve_soc_percent;
@@ -242,7 +245,7 @@ Figure strip_figure(const SimulatedMission& planned, const std::string& id) {
                         describe_qos(component, running.qos), running.start_s, running.end_s);
     }
     figure.spec = new_spec(figure);
-    figure.spec["width"] = panel_width;
+    figure.spec["width"] = plan_width;
     figure.spec["height"] = {{"step", 42}};
     figure.spec["usermeta"] = {{"margin_px", 150}};  // the components' names
     figure.spec["layer"] = {bars_layer(mission, mission::timeline_of(mission.duration_s).duration_s),

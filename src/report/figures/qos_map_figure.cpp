@@ -12,7 +12,7 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr auto soc_title = "final state of charge [%]";
+constexpr auto map_soc_title = "final state of charge [%]";
 
 double cell_soc(const QosMap& map, std::size_t i, std::size_t j) {
     return (map.at(i, j) + map.at(i + 1, j) + map.at(i, j + 1) + map.at(i + 1, j + 1)) / 4.0;
@@ -26,7 +26,7 @@ VegaJson axis(const std::string& field, const QosAxis& qos) {
 }
 
 VegaJson color(const std::string& field) {
-    return quantity(field, soc_title,
+    return quantity(field, map_soc_title,
                     {{"scale", {{"range", "heatmap"}}}, {"legend", {{"gradientLength", 200}}}});
 }
 
@@ -49,7 +49,7 @@ VegaJson cell_layer(const QosMap& map) {
               {"tooltip",
                {quantity("x_low", valid_utf8(map.x.name) + " from"), quantity("x_high", "to"),
                 quantity("y_low", valid_utf8(map.y.name) + " from"), quantity("y_high", "to"),
-                quantity("soc_percent", soc_title, {{"format", ".2f"}})}}}}};
+                quantity("soc_percent", map_soc_title, {{"format", ".2f"}})}}}}};
 }
 
 /// The configurations that the missions run with both components on, and who runs them.

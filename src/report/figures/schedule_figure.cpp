@@ -12,9 +12,9 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr int panel_width = 640;
-constexpr auto time_title = "time since lift-off [s]";
-constexpr auto soc_title = "state of charge [%]";
+constexpr int schedule_width = 640;
+constexpr auto schedule_time_title = "time since lift-off [s]";
+constexpr auto schedule_soc_title = "state of charge [%]";
 
 FigureData curve_rows(std::span<const SimulatedMission> missions) {
     FigureData data({"time_s", "soc_percent", "power_w", "mission_number"}, {"phase"});
@@ -79,8 +79,8 @@ VegaJson curve_layer(std::span<const SimulatedMission> missions, const FigureDat
               {"clip", true},
               {"point", {{"opacity", 0}, {"size", 50}, {"aria", false}}}}},
             {"encoding",
-             {{"x", quantity("time_s", time_title)},
-              {"y", quantity("soc_percent", soc_title)},
+             {{"x", quantity("time_s", schedule_time_title)},
+              {"y", quantity("soc_percent", schedule_soc_title)},
               {"color", color_of(missions)},
               {"strokeDash", dash_of(missions)},
               {"tooltip",
@@ -105,8 +105,8 @@ VegaJson published_layer(std::span<const SimulatedMission> missions, const Publi
             {"transform", with_titles(titles)},
             {"mark", {{"type", "point"}, {"size", 12}, {"strokeWidth", 1}, {"clip", true}, {"aria", false}}},
             {"encoding",
-             {{"x", quantity("time_s", time_title)},
-              {"y", quantity("soc_percent", soc_title)},
+             {{"x", quantity("time_s", schedule_time_title)},
+              {"y", quantity("soc_percent", schedule_soc_title)},
               {"color", color_of(missions)},
               {"tooltip",
                {category("mission", "published, Fig. 3"), quantity("time_s", "time [s]", {{"format", ".0f"}}),
@@ -130,7 +130,7 @@ VegaJson phase_layers(std::span<const SimulatedMission> missions) {
         {"data", data.json()},
         {"mark",
          {{"type", "rule"}, {"style", "edge"}, {"strokeDash", {3, 3}}, {"clip", true}, {"aria", false}}},
-        {"encoding", {{"x", quantity("end_s", time_title)}}}};
+        {"encoding", {{"x", quantity("end_s", schedule_time_title)}}}};
     const VegaJson word{
         {"data", data.json()},
         {"mark",
@@ -140,7 +140,8 @@ VegaJson phase_layers(std::span<const SimulatedMission> missions) {
           {"dy", -3},
           {"y", 0},
           {"clip", false}}},
-        {"encoding", {{"x", quantity("middle_s", time_title)}, {"text", category("word", "phase")}}}};
+        {"encoding",
+         {{"x", quantity("middle_s", schedule_time_title)}, {"text", category("word", "phase")}}}};
     return VegaJson::array({edge, word});
 }
 
@@ -159,12 +160,12 @@ VegaJson strip_panel(std::span<const SimulatedMission> missions, double longest_
     }
     const VegaJson axis{{"scale", {{"domain", {0.0, longest_s}}, {"nice", false}}},
                         {"axis", {{"grid", false}}}};
-    return {{"width", panel_width},
+    return {{"width", schedule_width},
             {"height", {{"step", 18}}},
             {"data", data.json()},
             {"mark", {{"type", "bar"}, {"clip", true}}},
             {"encoding",
-             {{"x", quantity("start_s", time_title, axis)},
+             {{"x", quantity("start_s", schedule_time_title, axis)},
               {"x2", {{"field", "end_s"}}},
               {"y", category("mission", "",
                              {{"sort", title_list(missions)},
@@ -220,7 +221,7 @@ Figure schedule_figure(std::span<const SimulatedMission> missions, const Publish
     figure.spec["params"] = {zoom, legend_parameter("mission", title_list(missions), "curves")};
     figure.spec["usermeta"] = {{"margin_px", 170}};  // the strip's names
     figure.spec["datasets"] = {{"missions", titles.csv()}};
-    figure.spec["vconcat"] = {{{"width", panel_width}, {"height", 330}, {"layer", layers}},
+    figure.spec["vconcat"] = {{{"width", schedule_width}, {"height", 330}, {"layer", layers}},
                               strip_panel(missions, longest_s)};
     figure.spec["resolve"] = {
         {"scale", {{"x", "shared"}, {"color", "independent"}, {"strokeDash", "independent"}}}};
