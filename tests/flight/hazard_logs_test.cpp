@@ -1,4 +1,4 @@
-// The committed logs of logs/hazards/ against the phases that were flown (NAME.truth.csv).
+// The committed logs of tests/data/hazards/ against the phases that were flown (NAME.truth.csv).
 
 #include "base/csv.h"
 #include "flight/load_flight.h"
@@ -55,7 +55,7 @@ TEST(HazardLogs, AreSegmentedAsTheyWereFlown) {
     std::set<std::string> expected;
     for (const auto& hazard : synthetic::hazards()) expected.insert("hazard_01_" + hazard.first);
     std::set<std::string> seen;
-    for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "logs" / "hazards")) {
+    for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "tests" / "data" / "hazards")) {
         if (entry.path().extension() != ".data") continue;
         SCOPED_TRACE(entry.path().filename().string());
         auto truth = entry.path();

@@ -12,18 +12,18 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-ReportFlight sample_flight(const std::string& name) {
+ReportFlight sample_flight(const std::string& path) {
     ReportFlight flight;
-    flight.series = flight::read_flight(test::source_dir() / "logs" / (name + ".data"));
+    flight.series = flight::read_flight(test::source_dir() / (path + ".data"));
     flight.phases = segment(flight.series);
     flight.name = flight.series.flight;
     return flight;
 }
 
 TEST(FlightsSection, NamesEveryReasonOnceWithItsFlights) {
-    auto whole = sample_flight("opterra_synthetic_01");
-    auto one = sample_flight("hazards/hazard_01_run-up");
-    auto two = sample_flight("hazards/hazard_01_two-sorties");
+    auto whole = sample_flight("logs/opterra_synthetic_01");
+    auto one = sample_flight("tests/data/hazards/hazard_01_run-up");
+    auto two = sample_flight("tests/data/hazards/hazard_01_two-sorties");
     for (auto* flight : {&one, &two}) {
         flight->unusable_power = "made for <segmentation>";
         flight->exclusions = {flight->name + ": it is left out: made for <segmentation>"};
