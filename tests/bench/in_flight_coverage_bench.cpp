@@ -1,5 +1,5 @@
 // How often the 95 % interval of a prediction in flight holds the energy of a generated cruise.
-// usage: in_flight_coverage_bench [FITS]: flights left out of each row, about; 1000 if not said
+// usage: in_flight_coverage_bench [FITS]: flights excluded in turn, of each row, about; 1000 if not said
 
 #include "base/number.h"
 #include "helpers/generated_flights.h"

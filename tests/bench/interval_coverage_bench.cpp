@@ -1,4 +1,4 @@
-// How often 95 % intervals of a phase's curve hold the truth, over many made-up flights.
+// How often 95 % intervals of a phase's curve hold the truth, over many synthetic flights.
 // usage: interval_coverage_bench [FITS]: of each kind, 1000 if not said
 
 #include "base/number.h"
