@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -43,17 +44,24 @@ PlanningProblem small_mission(std::mt19937& random) {
     return mission;
 }
 
-/// The most that any schedule is worth which lands, simulated.
+/// The most utility of any schedule that lands, by simulating them. One that computes more in every slot than another
+/// draws more, so those above one that does not land are passed over.
 double best_of_all(const PlanningProblem& mission, const Planner& planner) {
     const auto slots = slots_of(mission);
+    std::vector<bool> lands(std::size_t{1} << slots.size());
     double best = -1.0;
-    for (std::size_t code = 0; code < (std::size_t{1} << slots.size()); ++code) {
+    for (std::size_t code = 0; code < lands.size(); ++code) {
         std::vector<ScheduleSegment> schedule;
+        bool may_land = true;
         for (std::size_t i = 0; i < slots.size(); ++i) {
+            const auto bit = std::size_t{1} << i;
+            may_land = may_land && ((code & bit) == 0 || lands[code & ~bit]);
             schedule.push_back({slots[i], planner.depletions.configurations[(code >> i) & 1]});
         }
-        const auto summary = simulate(mission, schedule, {1e3, 1.0}).summary;
-        if (summary.keeps_reserve) best = std::max(best, *summary.utility);
+        if (!may_land) continue;
+        const auto summary = simulate(mission, schedule, {1e3, 4.0}).summary;
+        lands[code] = summary.keeps_reserve;
+        if (lands[code]) best = std::max(best, *summary.utility);
     }
     return best;
 }
