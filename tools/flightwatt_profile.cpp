@@ -161,36 +161,29 @@ int main(int argc, char** argv) {
     stage.name = "profile";
     stage.arguments = "SPEC -o DIR | --check-interpolation FILE...";
     stage.description =
-        "Runs each component of SPEC (TOML, or powprofiler's .cfg) over its quality of service while "
-        "sampling\n"
-        "power. DIR/NAME.csv is layer 2, configuration to mean power, energy and standard error, as "
-        "missions\n"
-        "take it; DIR/layer1 holds power over time of every run, DIR/runs.csv what became of each, "
-        "DIR/idle.csv\n"
-        "the idle computer. A component that fails or hangs is recorded and ended with all its children, "
-        "the\n"
-        "others go on; the exit code is then 4. Ctrl-C leaves nothing running; the same command goes on "
-        "where\n"
-        "it stopped. Without duration_s in SPEC a run is as long as its command, ended as hung after "
-        "timeout_s;\n"
-        "with it the command is ended when its time is over, whatever it does. Runs that succeeded are not "
-        "done again while their part of SPEC is the same; remove "
-        "DIR\n"
-        "when a program itself has changed.\n\n"
-        "Samplers: auto, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, "
-        "recorded.";
+        R"(Runs each component of SPEC (TOML, or powprofiler's .cfg) over its quality of service while sampling
+power. DIR/NAME.csv is layer 2, configuration to mean power, energy and standard error, as missions
+take it; DIR/layer1 holds power over time of every run, DIR/runs.csv what became of each, DIR/idle.csv
+the idle computer. A component that fails or hangs is recorded and ended with all its children, the
+others go on; the exit code is then 4. Ctrl-C leaves nothing running; the same command goes on where
+it stopped. Without duration_s in SPEC a run is as long as its command, ended as hung after timeout_s;
+with it the command is ended when its time is over, whatever it does. Runs that succeeded are not done
+again while their part of SPEC is the same; remove DIR when a program itself has changed.
+
+Samplers: auto, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, recorded.)";
     stage.output_help = "the folder of the results";
-    stage.options.add_options()("sampler", po::value<std::string>()->value_name("KIND"),
-                                "sample with this instead of what SPEC says")(
-        "sysfs", po::value<std::string>()->value_name("ROOT"), "look for sensors below ROOT instead of /sys")(
-        "above-idle", "profiles hold the power above that of the idle computer")(
-        "powprofiler", "write powprofiler's formats too, to DIR/powprofiler")(
-        "trials", po::value<int>()->value_name("N"),
-        "run N configurations of each component, spread over its range, and interpolate the others")(
-        "check-interpolation", "of profiles: find each node from the others, and print the errors")(
-        "parameters", po::value<std::string>()->value_name("A,B"),
-        "the parameters' names, of a profile that has flags (--check-interpolation)")(
-        "columns", po::value<std::string>()->value_name("A,B,power_w"),
+    const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+    auto add = stage.options.add_options();
+    add("sampler", text("KIND"), "sample with this instead of what SPEC says");
+    add("sysfs", text("ROOT"), "look for sensors below ROOT instead of /sys");
+    add("above-idle", "profiles hold the power above that of the idle computer");
+    add("powprofiler", "write powprofiler's formats too, to DIR/powprofiler");
+    add("trials", po::value<int>()->value_name("N"),
+        "run N configurations of each component, spread over its range, and interpolate the others");
+    add("check-interpolation", "of profiles: find each node from the others, and print the errors");
+    add("parameters", text("A,B"),
+        "the parameters' names, of a profile that has flags (--check-interpolation)");
+    add("columns", text("A,B,power_w"),
         "the columns' names, of a profile without a header (--check-interpolation)");
     return cli::run_stage(argc, argv, stage, profile_components);
 }

@@ -1,6 +1,7 @@
-// flightwatt synthesize: made-up Paparazzi logs of flights after a mechanical model.
+// flightwatt synthesize: synthetic Paparazzi logs of flights after a mechanical model.
 
 #include "base/atomic_file.h"
+#include "base/csv.h"
 #include "base/error.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
@@ -46,7 +47,7 @@ synthetic::SyntheticFlight make_flight(const flight::PerPhase<mechanical::PhaseM
 
 /// The phases that the log shows, cut where it begins and ends.
 std::string truth_csv(const synthetic::SyntheticScenario& scenario) {
-    std::string text = "sortie,phase,start_s,end_s,complete\n";
+    CsvWriter csv({"sortie", "phase", "start_s", "end_s", "complete"});
     for (std::size_t s = 0; s < scenario.flights.size(); ++s) {
         const auto& flight = scenario.flights[s];
         for (const auto phase : flight::all_phases) {
@@ -54,10 +55,10 @@ std::string truth_csv(const synthetic::SyntheticScenario& scenario) {
             const double end_s = std::min(flight.end_s(phase), scenario.end_s);
             if (end_s <= start_s) continue;
             const bool complete = start_s == flight.start_s(phase) && end_s == flight.end_s(phase);
-            text += fmt::format("{},{},{},{},{}\n", s + 1, to_string(phase), start_s, end_s, complete);
+            csv.add(s + 1, to_string(phase), start_s, end_s, complete);
         }
     }
-    return text;
+    return csv.text();
 }
 
 /// The hazards asked for: none, one by its name, or all.
@@ -72,7 +73,7 @@ std::vector<std::pair<std::string, synthetic::Hazard>> chosen_hazards(const std:
     throw UsageError(fmt::format("--hazard {}: expected {}", name, fmt::join(names, ", ")));
 }
 
-/// What one made-up log is of, for its names.
+/// What one synthetic log is of, for its names.
 struct LogIdentity {
     std::string name;
     std::string made_by;
@@ -190,29 +191,28 @@ int main(int argc, char** argv) {
     stage.name = "synthesize";
     stage.arguments = "MODEL.toml -o FOLDER";
     stage.description =
-        "Writes made-up Paparazzi logs (.log and .data) of flights whose power follows a mechanical model, "
-        "with\n"
-        "sensor noise, lost lines, durations that vary and a spread between flights. The files say that they "
-        "are\n"
-        "synthetic. The same seed gives the same files.";
+        R"(Writes synthetic Paparazzi logs (.log and .data) of flights whose power follows a mechanical model, with
+sensor noise, lost lines, durations that vary and a spread between flights. The files say that they are
+synthetic. The same seed gives the same files.)";
     stage.max_inputs = 1;
     stage.output_help = "the folder to write into";
-    stage.options.add_options()("flights", po::value<int>()->value_name("N")->default_value(6), "how many")(
-        "seed", po::value<std::int64_t>()->value_name("S")->default_value(1), "seed of everything random")(
-        "name", po::value<std::string>()->value_name("NAME")->default_value("opterra_synthetic"),
-        "file names begin with it")("spread", po::value<double>()->value_name("X")->default_value(1.0, "1"),
-                                    "flight-to-flight spread, as a multiple of the paper's bands")(
-        "current-noise",
+    auto add = stage.options.add_options();
+    add("flights", po::value<int>()->value_name("N")->default_value(6), "how many");
+    add("seed", po::value<std::int64_t>()->value_name("S")->default_value(1), "seed of everything random");
+    add("name", po::value<std::string>()->value_name("NAME")->default_value("opterra_synthetic"),
+        "file names begin with it");
+    add("spread", po::value<double>()->value_name("X")->default_value(1.0, "1"),
+        "flight-to-flight spread, as a multiple of the paper's bands");
+    add("current-noise",
         po::value<double>()->value_name("A")->default_value(synthetic::SyntheticSensors{}.current_noise_a,
                                                             "0.001"),
-        "noise of the current sensor, as a standard deviation")(
-        "cruise", po::value<double>()->value_name("S"), "how long flights cruise, in seconds (the model's)")(
-        "flight-messages-only", "leave out the messages that no flight is read from: small logs")(
-        "truth", "write the true phases beside each log, as NAME.truth.csv")(
-        "hazard", po::value<std::string>()->value_name("NAME")->default_value("none"),
-        "something that real logs do and that must not fool the segmentation: "
-        "estimator-starts-at-zero, dives-in-cruise, run-up, power-burst-after-landing, "
-        "throttle-burst-before-touchdown, two-sorties, begins-in-the-air, ends-in-the-air, or all, a log "
-        "each");
+        "noise of the current sensor, as a standard deviation");
+    add("cruise", po::value<double>()->value_name("S"), "how long flights cruise, in seconds (the model's)");
+    add("flight-messages-only", "leave out the messages that no flight is read from: small logs");
+    add("truth", "write the true phases beside each log, as NAME.truth.csv");
+    add("hazard", po::value<std::string>()->value_name("NAME")->default_value("none"),
+        "something that real logs do and that must not fool the segmentation: estimator-starts-at-zero, "
+        "dives-in-cruise, run-up, power-burst-after-landing, throttle-burst-before-touchdown, two-sorties, "
+        "begins-in-the-air, ends-in-the-air, or all, a log each");
     return cli::run_stage(argc, argv, stage, synthesize);
 }
