@@ -1,6 +1,7 @@
 // flightwatt batch: parse and segment every log, incrementally, and fit them.
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/signal_watch.h"
 #include "batch/batch_files.h"
 #include "batch/batch_fit.h"
@@ -9,6 +10,7 @@
 #include "batch/interruption.h"
 #include "cli/output/fit_options.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/json_text.h"
 #include "cli/output/table_one_output.h"
 #include "cli/progress.h"
 #include "cli/stage.h"
@@ -210,21 +212,14 @@ int main(int argc, char** argv) {
     stage.name = "batch";
     stage.arguments = "LOG|FOLDER... -o OUT";
     stage.description =
-        "Parses and segments every .data log (folders are searched to the bottom) into OUT/flights, several "
-        "at a\n"
-        "time, and fits them: OUT/model.toml, OUT/table1.txt, .csv, .md, and OUT/flights.csv, a row a flight "
-        "and\n"
-        "phase. Logs whose results are up to date are not done again. A log that cannot be used is reported "
-        "and the\n"
-        "others go on; the exit code is then 3. Flights whose log is gone are dropped. "
-        "Logs\n"
-        "of a folder below FOLDER that holds a file not-fitted.txt are listed and excluded from the fit; its "
-        "first "
-        "line\n"
-        "says why.\n\n"
-        "SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. "
-        "However it\n"
-        "ended, the same command goes on where it stopped and comes to the same results.";
+        R"(Parses and segments every .data log (folders are searched to the bottom) into OUT/flights, several at a
+time, and fits them: OUT/model.toml, OUT/table1.txt, .csv, .md, and OUT/flights.csv, a row a flight and
+phase. Logs whose results are up to date are not done again. A log that cannot be used is reported and the
+others go on; the exit code is then 3. Flights whose log is gone are dropped. Logs of a folder below FOLDER
+that holds a file not-fitted.txt are listed and excluded from the fit; its first line says why.
+
+SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. However it
+ended, the same command goes on where it stopped and comes to the same results.)";
     stage.output_help = "the folder of the results";
     cli::add_fit_options(stage.options);
     stage.options.add_options()("name", po::value<std::string>()->value_name("NAME")->default_value("batch"),

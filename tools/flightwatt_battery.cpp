@@ -1,5 +1,6 @@
 // flightwatt battery: flights to the battery that they were flown on.
 
+#include "base/error.h"
 #include "battery/lipo_chart.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
@@ -118,15 +119,12 @@ int main(int argc, char** argv) {
     stage.name = "battery";
     stage.arguments = "FLIGHT.data|SERIES.csv...";
     stage.description =
-        "Identifies the battery from the flights' own voltage, current and charge: open-circuit voltage "
-        "over\n"
-        "state of charge, series resistance and one RC pair, with 95 % intervals, for missions (model =\n"
-        "\"thevenin\"). The battery goes to the standard output as TOML; with -o it goes to the file, and "
-        "its\n"
-        "parameters and flights are shown: how well each flight's voltage is met, and how well the others\n"
-        "foretell it. The fullest flight begins at 100 %, the others where their resting voltage lies. "
-        "Flights\n"
-        "whose current was computed from throttle are refused.";
+        R"(Identifies the battery from the flights' own voltage, current and charge: open-circuit voltage over
+state of charge, series resistance and one RC pair, with 95 % intervals, for missions (model =
+"thevenin"). The battery goes to the standard output as TOML; with -o it goes to the file, and its
+parameters and flights are shown: how well each flight's voltage is met, and how well the others
+predict it. The fullest flight begins at 100 %, the others where their resting voltage lies. Flights
+whose current was computed from throttle are refused.)";
     stage.options.add_options()("capacity", po::value<double>()->value_name("AH"),
                                 "the pack's capacity; without it, what a flight drew from full to empty, or "
                                 "else a guess after the usual chart of LiPo cells")(

@@ -1,5 +1,6 @@
 // Several mission files to a table, ranked by what they leave in the battery.
 
+#include "cli/output/json_text.h"
 #include "cli/output/mission_json.h"
 #include "cli/output/sampling_output.h"
 #include "cli/output/terminal_pictures.h"

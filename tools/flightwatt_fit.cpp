@@ -1,9 +1,11 @@
 // flightwatt fit: several flights to a mechanical power model and Table I.
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "cli/output/fit_error_output.h"
 #include "cli/output/fit_options.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/json_text.h"
 #include "cli/output/table_one_output.h"
 #include "cli/stage.h"
 #include "mechanical/measured_flight.h"
@@ -128,11 +130,9 @@ int main(int argc, char** argv) {
     stage.name = "fit";
     stage.arguments = "FLIGHT.data|SERIES.csv...";
     stage.description =
-        "Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, "
-        "one\n"
-        "frequency for all flights, averaged over the flights with weights. The model goes to the standard "
-        "output\n"
-        "as TOML; with -o it goes to the file and Table I is shown.";
+        R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one
+frequency for all flights, averaged over the flights with weights. The model goes to the standard output
+as TOML; with -o it goes to the file and Table I is shown.)";
     add_fit_options(stage.options, cli::AutoOrder::accepted);
     stage.options.add_options()("name", po::value<std::string>()->value_name("NAME"), "the model's name")(
         "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
         "curves", po::value<std::string>()->value_name("FILE.csv"),
         "write the curves with their band and the flights' envelope; implies --errors")(
         "level-covariate", po::value<std::string>()->value_name("NAME"),
-        "let the cruise level follow what 'flightwatt validate --covariate all' found to foretell it: "
+        "let the cruise level follow what 'flightwatt validate --covariate all' found to predict it: "
         "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]")(
         "loss", po::value<std::string>()->value_name("HOW")->default_value("none"),
         "none or huber: how outliers count in the last refinement");

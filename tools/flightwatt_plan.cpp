@@ -1,7 +1,9 @@
 // A mission to the schedule of most utility that lands with the reserve; and what is feasible at most.
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/units.h"
+#include "cli/output/json_text.h"
 #include "cli/output/plan_json.h"
 #include "cli/stage.h"
 #include "mission/feasibility_limits.h"

@@ -217,15 +217,12 @@ int main(int argc, char** argv) {
     stage.name = "predict";
     stage.arguments = "FLIGHT.data|SERIES.csv --model MODEL.toml --until S --remaining S";
     stage.description =
-        "Predicts the energy from a moment in cruise to the end of the flight. What was measured until then\n"
-        "moves the cruise level of the model towards this flight's own, weighted by the variances between\n"
-        "flights and within one. Nothing after the moment is looked at: a log that ends there gives the "
-        "same.\n"
-        "The remaining energy is that of --remaining more seconds of cruise and of a landing as in the "
-        "model\n"
-        "(its duration, too). The 95 % interval is that of the remaining energy; it holds the spread "
-        "between\n"
-        "flights, the drift within one, and that the model rests on few flights.";
+        R"(Predicts the energy from a moment in cruise to the end of the flight. What was measured until then
+moves the cruise level of the model towards this flight's own, weighted by the variances between
+flights and within one. Nothing after the moment is looked at: a log that ends there gives the same.
+The remaining energy is that of --remaining more seconds of cruise and of a landing as in the model
+(its duration, too). The 95 % interval is that of the remaining energy; it holds the spread between
+flights, the drift within one, and that the model rests on few flights.)";
     stage.max_inputs = 1;
     stage.options.add_options()("model", po::value<std::string>()->value_name("MODEL.toml"),
                                 "from flightwatt fit, of two flights or more")(

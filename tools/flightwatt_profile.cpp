@@ -1,6 +1,7 @@
 // flightwatt profile: runs software over its quality of service and measures its power.
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/signal_watch.h"
 #include "base/toml_reader.h"
 #include "batch/folder_lock.h"

@@ -1,15 +1,16 @@
 // flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
 
+#include "base/error.h"
 #include "base/number.h"
 #include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
+#include "report/batch_content.h"
 #include "report/battery_section.h"
 #include "report/figure_files.h"
 #include "report/missions_section.h"
 #include "report/page.h"
-#include "report/report_flights.h"
 
 #include <chrono>
 #include <cstdlib>

@@ -45,10 +45,9 @@ int main(int argc, char** argv) {
     stage.name = "segment";
     stage.arguments = "FLIGHT.data|SERIES.csv";
     stage.description =
-        "Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from\n"
-        "lift-off until the height held is reached, cruise, landing from where that height is left until\n"
-        "touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide "
-        "nothing.";
+        R"(Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from
+lift-off until the height held is reached, cruise, landing from where that height is left until
+touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.)";
     stage.max_inputs = 1;
     stage.options.add_options()("explain",
                                 "show the reasons for each edge, and how good the power record is");

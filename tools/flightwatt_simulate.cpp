@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "cli/output/json_text.h"
 #include "cli/output/mission_json.h"
 #include "cli/output/sampling_output.h"
 #include "cli/stage.h"

@@ -1,5 +1,7 @@
 // flightwatt validate: leaves each flight out, fits the others and predicts its energy.
 
+#include "base/error.h"
+#include "base/units.h"
 #include "cli/output/fit_options.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/validation_output.h"
@@ -137,35 +139,27 @@ int main(int argc, char** argv) {
     stage.name = "validate";
     stage.arguments = "FLIGHT.data|SERIES.csv...";
     stage.description =
-        "Leaves one flight out, fits the others, and predicts the energy of each of its phases and of the "
-        "whole\n"
-        "from their durations alone; then compares with the integral of the power that was measured. "
-        "Models:\n"
-        "  fourier         the Fourier series of this project\n"
-        "  constant_mean   the other flights' mean power in the phase\n"
-        "  nearest_flight  the mean power of the one flight whose durations are nearest\n"
-        "  airspeed_cubed  cruise power proportional to the mean cube of the airspeed that was flown, as if "
-        "it\n"
-        "                  had been known before; where flights measured it\n"
-        "With --until S: S seconds after its lift-off a flight has measured its energy up to then; the rest "
-        "of\n"
-        "the cruise and the landing are predicted, by the models above as before the flight, and by\n"
-        "  in_flight           the cruise level shrunk between model and flight (see flightwatt predict)\n"
-        "  in_flight_constant  the same about the model's mean power\n"
-        "  in_flight_airspeed  the same about the power that the airspeed so far lets expect\n"
-        "Errors in percent are parts of the phase's measured energy, the flown part included; none for "
-        "landing,\n"
-        "whose power is near zero. Bias is predicted less measured.";
+        R"(Leaves one flight out, fits the others, and predicts the energy of each of its phases and of the whole
+from their durations alone; then compares with the integral of the power that was measured. Models:
+  fourier         the Fourier series of this project
+  constant_mean   the other flights' mean power in the phase
+  nearest_flight  the mean power of the one flight whose durations are nearest
+  airspeed_cubed  cruise power proportional to the mean cube of the airspeed that was flown, as if it
+                  had been known before; where flights measured it
+With --until S: S seconds after its lift-off a flight has measured its energy up to then; the rest of
+the cruise and the landing are predicted, by the models above as before the flight, and by
+  in_flight           the cruise level shrunk between model and flight (see flightwatt predict)
+  in_flight_constant  the same about the model's mean power
+  in_flight_airspeed  the same about the power that the airspeed so far lets expect
+Errors in percent are parts of the phase's measured energy, the flown part included; none for landing,
+whose power is near zero. Bias is predicted less measured.)";
     cli::add_fit_options(stage.options);
     stage.options.add_options()("until", po::value<double>()->value_name("S"),
                                 "validate the prediction in flight, S seconds after lift-off")(
         "covariate", po::value<std::string>()->value_name("NAME[,NAME]"),
-        "also foretell the cruise by what is known before the flight (height_m, initial_voltage_v, "
-        "time_to_cruise_s) or in the "
-        "first "
-        "60 s of the cruise (wind_m_per_s, airspeed_m_per_s, ground_speed_m_per_s, "
-        "airspeed_cubed_m3_per_s3), or "
-        "all: one further model by_NAME each");
+        "also predict the cruise by what is known before the flight (height_m, initial_voltage_v, "
+        "time_to_cruise_s) or in the first 60 s of the cruise (wind_m_per_s, airspeed_m_per_s, "
+        "ground_speed_m_per_s, airspeed_cubed_m3_per_s3), or all: one further model by_NAME each");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, validate_flights);
 }

@@ -93,30 +93,27 @@ TextTable flights_table(const std::vector<BatchFlight>& flights) {
 }
 
 std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
-    std::string text =
-        "flight,sortie,phase,start_s,end_s,duration_s,samples,mean_power_w,energy_wh,counter_energy_wh,used,"
-        "gaps,"
-        "longest_gap_s,complete,aircraft_id,power_source,power_faults,error\n";
+    CsvWriter csv({"flight", "sortie", "phase", "start_s", "end_s", "duration_s", "samples", "mean_power_w",
+                   "energy_wh", "counter_energy_wh", "used", "gaps", "longest_gap_s", "complete",
+                   "aircraft_id", "power_source", "power_faults", "error"});
+    const std::string none;
     for (const auto& flight : flights) {
         const auto& record = flight.record;
-        const auto name = csv_cell(record.flight);
         if (!record.accepted) {
-            text += fmt::format("{},,,,,,,,,,false,,,,,,,{}\n", name, csv_cell(record.error));
+            csv.add(record.flight, none, none, none, none, none, none, none, none, none, false, none, none,
+                    none, none, none, none, record.error);
             continue;
         }
         for (const auto& phase : record.phases) {
             const auto& statistics = phase.statistics;
-            text += fmt::format(
-                "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},\n", name, phase.sortie,
-                to_string(phase.phase), phase.start_s, phase.end_s, phase.end_s - phase.start_s,
-                statistics.samples, statistics.mean_power_w, statistics.energy_wh,
-                statistics.counter_energy_wh ? fmt::format("{}", *statistics.counter_energy_wh) : "",
-                is_used(flight, phase), statistics.gaps, statistics.longest_gap_s, phase.complete,
-                csv_cell(record.aircraft_id), csv_cell(record.power_source),
-                csv_cell(fmt::format("{}", fmt::join(record.power_faults, "; "))));
+            csv.add(record.flight, phase.sortie, to_string(phase.phase), phase.start_s, phase.end_s,
+                    phase.end_s - phase.start_s, statistics.samples, statistics.mean_power_w,
+                    statistics.energy_wh, statistics.counter_energy_wh, is_used(flight, phase),
+                    statistics.gaps, statistics.longest_gap_s, phase.complete, record.aircraft_id,
+                    record.power_source, fmt::format("{}", fmt::join(record.power_faults, "; ")), none);
         }
     }
-    return text;
+    return csv.text();
 }
 
 }  // namespace flightwatt::batch

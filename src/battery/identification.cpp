@@ -47,7 +47,7 @@ double effective_samples(const Eigen::VectorXd& residual) {
     return static_cast<double>(n) * (1.0 - r) / (1.0 + r);
 }
 
-/// Akaike's: a stiffer curve foretells as well, but leans the resistances towards its misfit.
+/// Akaike's: a stiffer curve predicts as well, but leans the resistances towards its misfit.
 double criterion(const CircuitFit& fit, double samples) {
     const auto parameters = static_cast<double>(fit.knots_ah.size()) + 3.0;
     return samples * std::log(fit.rms_v * fit.rms_v + 1e-18) + 2.0 * parameters;

@@ -30,7 +30,7 @@ struct IdentifiedFlight {
     double voltage_rms_v = 0.0;
 };
 
-/// How a flight's voltage is foretold by the others.
+/// How a flight's voltage is predicted by the others.
 struct LeftOutCheck {
     std::string flight;
     double voltage_rms_v = 0.0;

@@ -1,5 +1,7 @@
 #include "compute/power_profile.h"
 
+#include "compute/qos_range.h"
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -8,14 +10,6 @@
 
 namespace flightwatt::compute {
 namespace {
-
-std::string spell(const std::vector<std::string>& parameters, const std::vector<double>& qos) {
-    std::vector<std::string> parts;
-    for (std::size_t i = 0; i < qos.size(); ++i) {
-        parts.push_back(fmt::format("{} = {}", parameters[i], qos[i]));
-    }
-    return fmt::format("{}", fmt::join(parts, ", "));
-}
 
 std::vector<double> axis_of(const std::vector<ProfileNode>& nodes, std::size_t parameter) {
     std::vector<double> axis;
@@ -29,8 +23,8 @@ std::vector<double> axis_of(const std::vector<ProfileNode>& nodes, std::size_t p
 void refuse_duplicates(const std::vector<std::string>& parameters, const std::vector<ProfileNode>& sorted) {
     for (std::size_t i = 1; i < sorted.size(); ++i) {
         if (sorted[i].qos != sorted[i - 1].qos) continue;
-        const auto what =
-            parameters.empty() ? "a profile without parameters" : spell(parameters, sorted[i].qos);
+        const auto what = parameters.empty() ? "a profile without parameters"
+                                             : spell_qos(parameters, sorted[i].qos, " = ", ", ");
         throw InputError(
             sorted[i].where,
             fmt::format("{} has a second node, the first is in line {}", what, sorted[i - 1].where.line),
@@ -63,7 +57,7 @@ void require_full_grid(const PowerProfile& profile, const std::vector<ProfileNod
     throw InputError(
         {profile.file},
         fmt::format("the grid is incomplete: there is no node at {}",
-                    spell(profile.parameters, grid_point(profile.axes, k))),
+                    spell_qos(profile.parameters, grid_point(profile.axes, k), " = ", ", ")),
         fmt::format("profile every combination of the values, here {} nodes", fmt::join(counts, " x ")));
 }
 

@@ -49,10 +49,13 @@ std::vector<std::vector<double>> combinations_of(const std::vector<QosRange>& ra
     return combinations;
 }
 
-std::string spell_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos) {
+std::string spell_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
+                      std::string_view equals, std::string_view between) {
     std::vector<std::string> parts;
-    for (std::size_t i = 0; i < qos.size(); ++i) parts.push_back(fmt::format("{}={}", parameters[i], qos[i]));
-    return fmt::format("{}", fmt::join(parts, " "));
+    for (std::size_t i = 0; i < qos.size(); ++i) {
+        parts.push_back(fmt::format("{}{}{}", parameters[i], equals, qos[i]));
+    }
+    return fmt::format("{}", fmt::join(parts, between));
 }
 
 std::string with_qos(const std::string& text, const std::vector<std::string>& parameters,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::compute {
@@ -21,8 +22,9 @@ std::vector<double> multiplied(double from, double to, double factor);
 /// Every combination of the values, the last parameter running fastest; one empty combination of no ranges.
 std::vector<std::vector<double>> combinations_of(const std::vector<QosRange>& ranges);
 
-/// "fps=4 key_bits=32".
-std::string spell_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos);
+/// "fps=4 key_bits=32", or with other texts between name and value and between parameters.
+std::string spell_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
+                      std::string_view equals = "=", std::string_view between = " ");
 
 /// `text` with every {name} of a parameter replaced by its value; other braces stay (they may be a shell's).
 std::string with_qos(const std::string& text, const std::vector<std::string>& parameters,

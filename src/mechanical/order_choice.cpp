@@ -16,7 +16,7 @@ constexpr std::size_t time_folds = 5;
 constexpr std::size_t most_blocks = 20;
 constexpr std::size_t least_samples_a_block = 2;
 
-/// What is fitted and what is foretold.
+/// What is fitted and what is predicted.
 struct OrderFold {
     std::vector<PhaseSamples> seen;
     PhaseSamples excluded;

@@ -1,5 +1,6 @@
 #include "mission/sampled_flights.h"
 
+#include "base/csv.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/sampling/flight_draws.h"
@@ -212,12 +213,10 @@ std::string describe(const SampledFlights& flights) {
 }
 
 std::string to_csv(const std::vector<SocBand>& bands) {
-    std::string text = "time_s,soc_p05_percent,soc_p50_percent,soc_p95_percent\n";
-    for (const auto& band : bands) {
-        fmt::format_to(std::back_inserter(text), "{:.10g},{:.10g},{:.10g},{:.10g}\n", band.time_s,
-                       band.p05_percent, band.p50_percent, band.p95_percent);
-    }
-    return text;
+    constexpr int digits = 10;
+    CsvWriter csv({"time_s", "soc_p05_percent", "soc_p50_percent", "soc_p95_percent"}, digits);
+    for (const auto& band : bands) csv.add(band.time_s, band.p05_percent, band.p50_percent, band.p95_percent);
+    return csv.text();
 }
 
 }  // namespace flightwatt::mission

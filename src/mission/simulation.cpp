@@ -1,5 +1,6 @@
 #include "mission/simulation.h"
 
+#include "base/csv.h"
 #include "base/units.h"
 #include "mission/simulation/load_segments.h"
 #include "mission/simulation/segment_discharge.h"
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -207,15 +207,15 @@ std::string describe(const MissionSummary& summary) {
 }
 
 std::string to_csv(const SocCurve& curve) {
-    std::string text =
-        "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v\n";
+    constexpr int digits = 10;
+    CsvWriter csv({"time_s", "phase", "mechanical_w", "compute_w", "power_w", "current_a", "soc_percent",
+                   "terminal_voltage_v"},
+                  digits);
     for (const auto& row : curve.rows) {
-        fmt::format_to(std::back_inserter(text),
-                       "{:.10g},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}\n", row.time_s,
-                       to_string(row.phase), row.mechanical_w, row.compute_w, row.power_w, row.current_a,
-                       row.soc_percent, row.terminal_voltage_v);
+        csv.add(row.time_s, to_string(row.phase), row.mechanical_w, row.compute_w, row.power_w, row.current_a,
+                row.soc_percent, row.terminal_voltage_v);
     }
-    return text;
+    return csv.text();
 }
 
 }  // namespace flightwatt::mission

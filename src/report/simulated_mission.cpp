@@ -1,5 +1,6 @@
 #include "report/simulated_mission.h"
 
+#include "compute/qos_range.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
@@ -62,9 +63,8 @@ std::string describe(const compute::ComputeModel& compute, const compute::Config
     for (const auto& running : run) {
         const auto& component = compute.components[running.component];
         text += (text.empty() ? "" : ", ") + component.name;
-        for (std::size_t p = 0; p < running.qos.size(); ++p) {
-            text += fmt::format(" {} {:g}", component.profile.parameters[p], running.qos[p]);
-        }
+        if (!running.qos.empty())
+            text += " " + compute::spell_qos(component.profile.parameters, running.qos, " ");
     }
     return text.empty() ? "nothing" : text;
 }

@@ -13,7 +13,7 @@ namespace flightwatt::synthetic {
 /// end, cruise little, landing most at its beginning and end.
 double band_w(flight::Phase phase, double tau);
 
-/// How made-up flights differ from the model and from each other.
+/// How synthetic flights differ from the model and from each other.
 struct SpreadOptions {
     double bands = 1.0;             ///< standard deviation of a flight, in half widths of the band
     double duration_spread = 0.06;  ///< durations are uniform within +- this part of the model's

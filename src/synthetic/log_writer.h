@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-/// Paparazzi's own formats, for made-up logs.
+/// Paparazzi's own formats, for synthetic logs.
 namespace flightwatt::synthetic {
 
 /// A float as Paparazzi's OCaml server prints what came over the air: "235.", "-0.", "-3e-06", "12.421459".
@@ -17,7 +17,7 @@ std::string ocaml_float(double value);
 std::string data_line(double time_s, std::string_view sender, std::string_view message,
                       const std::vector<std::string>& fields);
 
-/// What a made-up .log says.
+/// What a synthetic .log says.
 struct LogDocument {
     std::string comment;
     double time_of_day_s = 0.0;

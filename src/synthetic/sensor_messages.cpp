@@ -159,7 +159,7 @@ std::vector<Report> other_reports() {
                                 std::string("36"),           std::to_string(7 * channel),
                                 std::to_string(29 * channel)};
          }},
-        // No AIRSPEED: the made-up power does not follow it, and a sensor would suggest that it did.
+        // No AIRSPEED: the synthetic power does not follow it, and a sensor would suggest that it did.
         {0.9,
          message("IMU_GYRO", {{"gp", "float", "rad/s", "", {}},
                               {"gq", "float", "rad/s", "", {}},

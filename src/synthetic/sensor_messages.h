@@ -28,7 +28,7 @@ struct Report {
     std::function<std::vector<std::string>(const Moment&)> fields;
 };
 
-/// The telemetry of a made-up fixed-wing aircraft: the messages that flights are read from, and those that
+/// The telemetry of a synthetic fixed-wing aircraft: the messages that flights are read from, and those that
 /// fill a real log beside them, about as often.
 std::vector<Report> telemetry_reports();
 

@@ -7,7 +7,7 @@
 
 namespace flightwatt::synthetic {
 
-/// A made-up flight: what truly happens, as functions of time. It waits on the ground, runs its motor up,
+/// A synthetic flight: what truly happens, as functions of time. It waits on the ground, runs its motor up,
 /// takes off, climbs into a circle, descends in circles, lands and waits.
 struct SyntheticFlight {
     double motor_run_up_s = 30.0;  ///< when the motor is tried on the ground

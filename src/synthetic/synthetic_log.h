@@ -7,7 +7,7 @@
 
 namespace flightwatt::synthetic {
 
-/// How the made-up telemetry link and sensors behave.
+/// How the synthetic telemetry link and sensors behave.
 struct SyntheticSensors {
     double current_noise_a = 0.001;  ///< standard deviation; 0.02 on the real aircraft of 2020
     double current_step_a = 0.001;   ///< what the current is rounded to
@@ -19,7 +19,7 @@ struct SyntheticSensors {
     double pack_resistance_ohm = 0.06;
 };
 
-/// A made-up log as Paparazzi would have written it.
+/// A synthetic log as Paparazzi would have written it.
 struct SyntheticLog {
     std::string data;
     std::string log;

@@ -36,6 +36,7 @@ TEST(CombinationsOf, RunTheLastParameterFastest) {
 TEST(WithQos, ReplacesTheParametersAlone) {
     const std::vector<std::string> parameters{"fps", "key_bits"};
     EXPECT_EQ(spell_qos(parameters, {5.8, 32.0}), "fps=5.8 key_bits=32");
+    EXPECT_EQ(spell_qos(parameters, {5.8, 32.0}, " = ", ", "), "fps = 5.8, key_bits = 32");
     EXPECT_EQ(spell_qos({}, {}), "");
     EXPECT_EQ(with_qos("run-{fps} {key_bits} {fps}", parameters, {5.8, 32.0}), "run-5.8 32 5.8");
     EXPECT_EQ(with_qos("awk '{print $1}' {fsp}", parameters, {5.8, 32.0}), "awk '{print $1}' {fsp}");

@@ -1,154 +1,33 @@
 #pragma once
 
-#include "base/error.h"
-#include "base/number.h"
-#include "base/units.h"
-#include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mechanical/model_fit.h"
 
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-/// The options of a fit, which fit and batch share.
 namespace flightwatt::cli {
 
 /// Whether a stage can choose the order by itself ("--order auto").
 enum class AutoOrder { refused, accepted };
 
-inline void add_fit_options(boost::program_options::options_description& options,
-                            AutoOrder automatic = AutoOrder::refused) {
-    namespace po = boost::program_options;
-    options.add_options()("order", po::value<std::string>()->value_name("N")->default_value("3"),
-                          automatic == AutoOrder::accepted
-                              ? "order of the Fourier series, 0 to 8, or auto: chosen for each phase by how "
-                                "well it foretells a flight left out (blocks of time of a single flight)"
-                              : "order of the Fourier series, 0 to 8")(
-        "weights", po::value<std::string>()->value_name("HOW")->default_value("agreement"),
-        "uniform, inverse-variance or agreement")(
-        "weight", po::value<std::vector<std::string>>()->value_name("FLIGHT[:PHASE]=W")->composing(),
-        "a weight by hand; then every flight needs one")(
-        "min-periods", po::value<double>()->value_name("X")->default_value(0.5, "0.5"),
-        "least periods of the series in a phase; fewer make its basis collinear")(
-        "max-periods", po::value<double>()->value_name("X")->default_value(120.0, "120"),
-        "most periods in a phase; the sampling may allow fewer");
-}
+/// The options of a fit, which several stages share.
+void add_fit_options(boost::program_options::options_description& options,
+                     AutoOrder automatic = AutoOrder::refused);
 
-/// "FLIGHT=0.4" or "FLIGHT:cruise=0.4".
-inline mechanical::HandWeight parse_hand_weight(const std::string& text) {
-    const auto equals = text.rfind('=');
-    const auto value = equals == std::string::npos ? std::nullopt : parse_number(text.substr(equals + 1));
-    if (!value)
-        throw UsageError(fmt::format("--weight {}: expected FLIGHT=NUMBER or FLIGHT:PHASE=NUMBER", text));
-    mechanical::HandWeight weight{text.substr(0, equals), std::nullopt, *value};
-    if (const auto colon = weight.flight.rfind(':'); colon != std::string::npos) {
-        weight.phase = flight::phase_from(weight.flight.substr(colon + 1));
-        if (!weight.phase) {
-            throw UsageError(fmt::format("--weight {}: no phase '{}', expected takeoff, cruise or landing",
-                                         text, weight.flight.substr(colon + 1)));
-        }
-        weight.flight.resize(colon);
-    }
-    return weight;
-}
+/// --order as a number; std::nullopt for "auto" where that is accepted. Throws UsageError for another text.
+std::optional<int> read_order(const StageCall& call, AutoOrder automatic);
 
-/// --order as a number; std::nullopt for "auto" where that is accepted.
-inline std::optional<int> read_order(const cli::StageCall& call, AutoOrder automatic) {
-    const auto text = call.get<std::string>("order");
-    if (text == "auto" && automatic == AutoOrder::accepted) return std::nullopt;
-    const auto number = parse_unsigned(text);
-    if (!number || *number > static_cast<std::uint64_t>(mechanical::max_order)) {
-        throw UsageError(fmt::format("--order {}: expected 0 to {}{}", text, mechanical::max_order,
-                                     automatic == AutoOrder::accepted ? " or auto"
-                                     : text == "auto"                 ? "; 'flightwatt fit' can choose it"
-                                                                      : ""));
-    }
-    return static_cast<int>(*number);
-}
-
-/// Where the order is to be chosen it is left at the default.
-inline mechanical::ModelFitOptions read_fit_options(const cli::StageCall& call,
-                                                    AutoOrder automatic = AutoOrder::refused) {
-    mechanical::ModelFitOptions options;
-    options.phases.order = read_order(call, automatic).value_or(options.phases.order);
-    options.phases.low_rad = units::rad_from_turns(call.get<double>("min-periods"));
-    options.phases.high_periods = call.get<double>("max-periods");
-    admissible_range({}, options.phases);  // refuses bad options before any log is read
-    const auto name = call.get<std::string>("weights");
-    const auto weighting = mechanical::weighting_from(name);
-    if (!weighting || *weighting == mechanical::Weighting::by_hand) {
-        throw UsageError(fmt::format("--weights {}: expected uniform, inverse-variance or agreement{}", name,
-                                     weighting ? "; give weights by hand with --weight" : ""));
-    }
-    options.weights.weighting = *weighting;
-    if (const auto weights = call.maybe<std::vector<std::string>>("weight")) {
-        if (!call.options["weights"].defaulted())
-            throw UsageError("--weights and --weight exclude each other: give one of them");
-        options.weights.weighting = mechanical::Weighting::by_hand;
-        for (const auto& text : *weights) options.weights.by_hand.push_back(parse_hand_weight(text));
-    }
-    return options;
-}
+/// What the user gave of them. Where the order is to be chosen it is left at the default. Throws UsageError
+/// for options that make no sense or exclude each other.
+mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder automatic = AutoOrder::refused);
 
 /// The fitted model as the stages' JSON.
-inline nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
-    using Json = nlohmann::ordered_json;
-    Json json{{"name", model.name},
-              {"weighting", model.weighting},
-              {"phases", Json::object()},
-              {"flights", Json::array()}};
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        auto& entry = json["phases"][std::string(to_string(phase))];
-        entry = {{"duration_s", fitted.duration_s}, {"omega_rad_per_s", fitted.fourier.omega_rad_per_s},
-                 {"a0_w", fitted.fourier.a0_w},     {"cos_w", fitted.fourier.cos_w},
-                 {"sin_w", fitted.fourier.sin_w},   {"rms_w", fitted.rms_w.value_or(0.0)},
-                 {"samples", fitted.samples},       {"flights", fitted.flights}};
-        if (const auto& law = fitted.level_law) {
-            entry["level_law"] = {{"covariate", to_string(law->covariate)},
-                                  {"flights", law->flights},
-                                  {"mean", law->mean},
-                                  {"sd", law->sd},
-                                  {"least", law->least},
-                                  {"most", law->most},
-                                  {"mean_power_w", law->mean_power_w},
-                                  {"slope_w", law->slope_w},
-                                  {"residual_sd_w", law->residual_sd_w.value()}};
-        }
-        if (fitted.range) {
-            entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},
-                                           {"high", fitted.range->high_rad},
-                                           {"at_bound", to_string(fitted.range->at_bound)}};
-        }
-    }
-    for (const auto& flight : model.flights) {
-        Json weights = Json::object();
-        for (const auto phase : flight::all_phases) {
-            const auto& part = flight.phases[phase];
-            weights[std::string(to_string(phase))] = part ? Json(part->weight) : Json();
-        }
-        json["flights"].push_back({{"flight", flight.flight}, {"weights", weights}});
-    }
-    return json;
-}
+nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model);
 
-/// Says where a phase's frequency stands at the edge of what it could be.
-inline void warn_of_bounds(const cli::StageCall& call, const mechanical::MechanicalModel& model) {
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        if (!fitted.range || fitted.range->at_bound == mechanical::FrequencyBound::none) continue;
-        cli::warn(
-            call,
-            fmt::format("{}: omega * duration stands at its {} bound, {:.3f} rad: the frequency is not "
-                        "determined by the data, the curve is",
-                        to_string(phase), to_string(fitted.range->at_bound),
-                        fitted.range->at_bound == mechanical::FrequencyBound::low ? fitted.range->low_rad
-                                                                                  : fitted.range->high_rad));
-    }
-}
+/// Warns of a frequency at the edge of what it could be.
+void warn_of_bounds(const StageCall& call, const mechanical::MechanicalModel& model);
 
 }  // namespace flightwatt::cli

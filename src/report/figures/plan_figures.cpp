@@ -1,5 +1,6 @@
 #include "report/figures/plan_figures.h"
 
+#include "compute/qos_range.h"
 #include "report/sections/phase_words.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <numeric>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::report {
 namespace {
@@ -198,11 +198,7 @@ std::vector<Running> running_times(const mission::Mission& mission) {
 }
 
 std::string describe_qos(const compute::Component& component, const std::vector<double>& qos) {
-    std::vector<std::string> parts;
-    for (std::size_t p = 0; p < qos.size(); ++p) {
-        parts.push_back(fmt::format("{} {:g}", component.profile.parameters[p], qos[p]));
-    }
-    return parts.empty() ? "on" : fmt::format("{}", fmt::join(parts, ", "));
+    return qos.empty() ? "on" : compute::spell_qos(component.profile.parameters, qos, " ", ", ");
 }
 
 Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points,

@@ -1,29 +1,15 @@
-#pragma once
+#include "report/batch_content.h"
 
-#include "batch/batch_fit.h"
 #include "batch/fit_selection.h"
 #include "batch/stored_flights.h"
 #include "cli/output/table_one_output.h"
-#include "mechanical/measured_flight.h"
-#include "report/flights_section.h"
-#include "report/model_section.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
-#include <optional>
-#include <vector>
 
-/// What flightwatt report takes from a batch's folder.
 namespace flightwatt::report {
 
-struct BatchContent {
-    std::vector<ReportFlight> flights;
-    std::vector<mechanical::MeasuredFlight> measured;  ///< what the batch's fit took of them
-    std::optional<batch::BatchFit> fit;                ///< absent where the batch could not fit them
-};
-
-inline BatchContent read_batch_content(const std::filesystem::path& out) {
+BatchContent read_batch_content(const std::filesystem::path& out) {
     BatchContent content;
     content.fit = batch::read_batch_fit(out);
     const auto fit = content.fit.value_or(batch::BatchFit{});
@@ -53,9 +39,8 @@ inline BatchContent read_batch_content(const std::filesystem::path& out) {
     return content;
 }
 
-/// The batch's model with its bands and intervals, beside a published one where there is one.
-inline ReportModel model_of(const batch::BatchFit& fit,
-                            const std::optional<mechanical::MechanicalModel>& published) {
+ReportModel model_of(const batch::BatchFit& fit,
+                     const std::optional<mechanical::MechanicalModel>& published) {
     ReportModel model{fit.model, "Fitted by flightwatt batch to the flights above."};
     model.bands = fit.bands;
     model.table_one = cli::table_of(fit.model, published, mechanical::TableIntervals::present);
