@@ -62,7 +62,7 @@ std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie
     cells.push_back(closure_percent(sums));
     cells.push_back(fmt::format("{}", sums.gaps));
     cells.push_back(fmt::format("{}", flight.warnings.size()));
-    cells.emplace_back(flight.exclusions.empty() ? "all" : flight.unusable_power.empty() ? "in part" : "no");
+    cells.emplace_back(fitted_part(flight));
     return cells;
 }
 

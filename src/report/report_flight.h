@@ -5,6 +5,7 @@
 #include "flight/segmentation.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::report {
@@ -21,5 +22,8 @@ struct ReportFlight {
     std::vector<batch::RecordedVerdict> verdicts = {};
     std::string unusable_power = {};  ///< why its power record is used for nothing; empty if it is
 };
+
+/// How much of it the model was fitted to: "all", "in part" or "no".
+std::string_view fitted_part(const ReportFlight& flight);
 
 }  // namespace flightwatt::report
