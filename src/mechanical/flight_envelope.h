@@ -13,9 +13,8 @@ namespace flightwatt::mechanical {
 inline constexpr std::size_t points_of_spread = 21;
 
 /// How the flights' own curves differ about their weighted mean at `points` evenly spread parts of the phase
-/// (two or more): the envelope of those with a weight, and the standard deviation of one flight,
-///     sd^2 = sum w_i (f_i - mean)^2 / (1 - sum w_i^2),
-/// which is unbiased if flights are drawn from one population (n - 1 with equal weights). std::nullopt where
+/// (two or more): the envelope of those with a weight, and the standard deviation of one flight
+/// (docs/methods.md, Eq. 10). std::nullopt where
 /// a single flight counts. This is where a new flight's curve may lie, not how well the mean is known.
 std::optional<PhaseSpread> flight_envelope(const PhaseFit& fit, std::span<const double> weights,
                                            std::size_t points = points_of_spread);

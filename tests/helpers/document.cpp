@@ -106,9 +106,10 @@ class Reader {
         const auto cells = cells_of(line);
         if (cells.size() == 5 && (cells[0] == "key" || cells[0] == "column")) {
             in_key_table_ = true;
+            is_column_ = cells[0] == "column";
         } else if (in_key_table_ && !cells[0].starts_with("---")) {
             for (const auto& key : words_in_code(cells[0]))
-                document_.keys.push_back({section_, tables_, key, cells[2], cells[3], line_});
+                document_.keys.push_back({section_, tables_, key, cells[2], cells[3], is_column_, line_});
         }
     }
 
@@ -116,6 +117,7 @@ class Reader {
     std::size_t line_ = 0;
     bool in_fence_ = false;
     bool in_key_table_ = false;
+    bool is_column_ = false;
     DocumentedExample* example_ = nullptr;
     std::string section_;
     std::vector<std::string> tables_;

@@ -12,7 +12,8 @@ struct DocumentedKey {
     std::vector<std::string> tables;  ///< what the heading of the third level names in `...`: "plan.levels"
     std::string key;
     std::string unit;
-    std::string fallback;  ///< the column "default"
+    std::string fallback;    ///< the column "default"
+    bool is_column = false;  ///< of a table, and not a key
     std::size_t line = 0;
 };
 

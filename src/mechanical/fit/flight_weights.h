@@ -38,16 +38,15 @@ struct WeightOptions {
 /// twice for the same phase, are negative or not finite, or are given though the weighting is another.
 void check_weights(const WeightOptions& options, std::span<const std::string> flights);
 
-/// The weights of the flights of one phase, in [0, 1], in their order; their sum is 1.
+/// The weights of the flights of one phase, in [0, 1], in their order; their sum is 1 (docs/methods.md, Eq. 9).
 ///   inverse-variance: an rms below a thousandth of the largest counts as that; all 0: by samples alone.
-///   agreement: with d_i^2 the mean over the phase of (f_i - mean of the other flights' curves)^2,
-///     w_i ~ 1 / (d_i^2 + median of all d_j^2), so a stray flight counts little and none counts for all;
+///   agreement: a stray flight counts little and none counts for all;
 ///     one flight has 1, two have 1/2 each, curves that are equal to rounding count the same.
 ///   by hand: normalised. Throws UsageError if a flight of the phase has none, or none is positive.
 std::vector<double> flight_weights(const PhaseFit& fit, flight::Phase phase, const WeightOptions& options);
 
-/// The weighted average of the flights' curves and durations (Eqs. 5-7). The flights share theta, so
-/// averaging curves at equal parts of the phase is averaging coefficients; omega is theta / average duration.
+/// The weighted average of the flights' curves and durations (docs/methods.md, Eq. 8). The flights share
+/// theta, so averaging curves at equal parts of the phase is averaging coefficients; omega is theta / average duration.
 PhaseModel average_phase(const PhaseFit& fit, std::span<const double> weights);
 
 }  // namespace flightwatt::mechanical

@@ -24,7 +24,8 @@ struct ErrorAnalysis {
 
 /// Linearised error propagation through the joint least squares of all flights, with noise that is correlated
 /// (r^(gap / median gap), see residual_correlation.h) and has a variance of its own in each flight: every
-/// estimate is a linear function of the noise, whose covariance is carried through it (a sandwich, not
+/// estimate is a linear function of the noise, whose covariance is carried through it (docs/methods.md,
+/// Eq. 13; a sandwich, not
 /// sigma^2 (J^T J)^-1 with n replaced). J's arrow is eliminated flight by flight with pivoted QR, columns
 /// scaled to length 1: near collinearity that keeps twice the digits of the normal equations that
 /// ceres::Covariance would invert, and Ceres knows no correlated noise. Where theta stands at a bound it is

@@ -1,0 +1,115 @@
+// The examples of docs/missions.md and docs/formats.md, and the commands of README.md, run as a user would.
+
+#include "base/atomic_file.h"
+#include "helpers/document.h"
+#include "helpers/running_program.h"
+#include "helpers/test_paths.h"
+
+#include <fstream>
+#include <regex>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr const char* small_mission =
+    "mechanical = \"MODEL\"\nbattery = \"BATTERY\"\n[components.detection]\nprofile = \"PROFILE\"\n"
+    "[[schedule]]\notherwise = true\nrun = { detection = { fps = 8 } }\n";
+
+/// A mission that names `file` in place of one of its own.
+std::string mission_with(const std::string& what, const std::string& file) {
+    std::string text = small_mission;
+    for (const auto& [name, usual] : {std::pair("MODEL", "fits/mechanical/opterra-table1.toml"),
+                                      std::pair("BATTERY", "fits/battery/paper.toml"),
+                                      std::pair("PROFILE", "fits/compute/tx2-detection.csv")})
+        text = std::regex_replace(text, std::regex(name), name == what ? file : usual);
+    return text;
+}
+
+/// The program that reads an example, and its arguments.
+struct Reading {
+    std::string program;
+    Words arguments;
+};
+
+Reading reading_of(const DocumentedExample& example, const std::filesystem::path& folder) {
+    const auto write = [&](const char* name, const std::string& text) {
+        std::ofstream(folder / name) << text;
+        return std::string(name);
+    };
+    const auto file = write("example", example.text);
+    if (example.kind == "mission") {
+        const bool is_plan = example.text.find("[plan]") != std::string::npos;
+        if (is_plan && example.text.find("[policy]") == std::string::npos)
+            return {"flightwatt-plan", {file, "-o", "planned.toml"}};
+        if (example.text.find("[uncertainty]") != std::string::npos)
+            return {"flightwatt-simulate", {file, "--samples", "10", "-o", "soc.csv"}};
+        return {"flightwatt-simulate", {file, "-o", "soc.csv"}};
+    }
+    if (example.kind == "disturbance") {
+        const auto mission = write("mission", mission_with("", ""));
+        return {"flightwatt-simulate", {mission, "--disturb", file, "-o", "soc.csv"}};
+    }
+    if (example.kind == "model")
+        return {"flightwatt-simulate", {write("mission", mission_with("MODEL", file)), "-o", "soc.csv"}};
+    if (example.kind == "battery")
+        return {"flightwatt-simulate", {write("mission", mission_with("BATTERY", file)), "-o", "soc.csv"}};
+    if (example.kind == "profile") {
+        const auto profile = write("example.csv", example.text);
+        return {"flightwatt-simulate", {write("mission", mission_with("PROFILE", profile)), "-o", "soc.csv"}};
+    }
+    if (example.kind == "specification") return {"flightwatt-profile", {file, "-o", "profiles"}};
+    if (example.kind == "series") {
+        const auto series = write("example.csv", example.text);
+        return {"flightwatt-parse", {series, "-o", "copy.csv"}};
+    }
+    return {};
+}
+
+TEST(Examples, AreReadByTheirPrograms) {
+    const auto folder = scratch_dir();
+    std::filesystem::create_directory_symlink(source_dir() / "fits", folder / "fits");
+    std::size_t run = 0;
+    for (const auto* page : {"missions.md", "formats.md"}) {
+        const auto document = read_document(source_dir() / "docs" / page);
+        for (const auto& example : document.examples) {
+            if (example.kind == "model") std::ofstream(folder / "wind-model.toml") << example.text;
+        }
+    }
+    for (const auto* page : {"formats.md", "missions.md"}) {
+        for (const auto& example : read_document(source_dir() / "docs" / page).examples) {
+            if (example.kind == "model") std::ofstream(folder / "wind-model.toml") << example.text;
+            const auto reading = reading_of(example, folder);
+            ASSERT_FALSE(reading.program.empty())
+                << page << ":" << example.line << ": '" << example.kind << "'";
+            EXPECT_EQ(run_program(reading.program, reading.arguments, folder), 0)
+                << page << ":" << example.line << ": " << read_file(folder / "stderr");
+            ++run;
+        }
+    }
+    EXPECT_GE(run, 15U);
+}
+
+/// The commands of "Your own flights in five commands", with the sample logs in place of one's own.
+TEST(Examples, TheFiveCommandsOfTheReadmeRun) {
+    const auto folder = scratch_dir();
+    const auto text = read_file(source_dir() / "README.md");
+    const std::string fence = "```sh\n";
+    const auto start = text.find(fence, text.find("in five commands"));
+    ASSERT_NE(start, std::string::npos);
+    auto commands = text.substr(start + fence.size(), text.find("```", start + 1) - start - fence.size());
+    commands = std::regex_replace(commands, std::regex("~/flights"), (source_dir() / "logs").string());
+    commands = std::regex_replace(commands, std::regex("\\$PWD/build/release"), binary_dir().string());
+    if (!std::filesystem::exists(source_dir() / "web" / "node_modules" / "vega"))
+        commands = std::regex_replace(commands, std::regex("flightwatt report [^\\n]*"), "");
+    const auto result = run_shell("set -e\n" + commands, folder);
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    for (const auto* file : {"my/model.toml", "my/pack.toml", "my/soc.csv"})
+        EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+}
+
+}  // namespace
+}  // namespace flightwatt::test
