@@ -9,6 +9,7 @@
 #include "report/batch_content.h"
 #include "report/battery_section.h"
 #include "report/figure_files.h"
+#include "report/flights_section.h"
 #include "report/missions_section.h"
 #include "report/page.h"
 

@@ -131,7 +131,7 @@ AnyMission with_read_schedule(const TomlTable& root, const MissionReading& readi
     const bool lacks_schedule = entries.empty() && !setup.compute.components.empty();
     if (!reading.may_lack_schedule && !adaptive) require_schedule(root, lacks_schedule);
     if (lacks_schedule || root.has("plan") || adaptive) {
-        PlanningProblem problem{std::move(setup), {}, {}, std::move(adaptive)};
+        PlanningProblem problem{std::move(setup), {}, {}, adaptive};
         problem.plan = read_plan_settings(root, problem.compute);
         problem.fixed = resolve_fixed_segments(entries, problem.duration_s);
         if (problem.adaptive && problem.adaptive->decide_every_s == 0.0)
