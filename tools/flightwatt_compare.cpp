@@ -5,7 +5,7 @@
 #include "cli/output/sampling_output.h"
 #include "cli/output/terminal_pictures.h"
 #include "cli/stage.h"
-#include "mission/comparison.h"
+#include "mission/mission_summary.h"
 #include "mission/disturbance_file.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"

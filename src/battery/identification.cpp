@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "battery/lipo_chart.h"
 
 #include <algorithm>
 #include <cmath>
@@ -145,7 +144,7 @@ std::vector<IdentifiedFlight> identified_flights(const AlignedFit& aligned) {
         flight.resting_voltage_v = record->resting_voltage_v;
         flight.initial_charge_ah = initial_ah;
         flight.drawn_ah = record->charge_ah.back();
-        const auto used = std::count(record->used.begin(), record->used.end(), true);
+        const auto used = used_samples(*record);
         flight.samples = static_cast<std::size_t>(used);
         flight.unused = record->used.size() - flight.samples;
         flight.voltage_rms_v =
@@ -209,11 +208,11 @@ std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> record
                                          const IdentificationOptions& options) {
     std::vector<LeftOutCheck> checks;
     if (records.size() < 2) return checks;
-    for (std::size_t left_out = 0; left_out < records.size(); ++left_out) {
+    for (std::size_t k = 0; k < records.size(); ++k) {
         std::vector<DischargeRecord> others(records.begin(), records.end());
-        others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
         const auto identified = identify_battery(others, options);
-        const auto& record = records[left_out];
+        const auto& record = records[k];
         const auto predicted = predict_voltage(identified.battery, record);
         double squares = 0.0;
         double samples = 0.0;

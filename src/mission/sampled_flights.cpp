@@ -4,7 +4,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/sampling/flight_draws.h"
-#include "mission/simulation/segment_discharge.h"
+#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 #include <atomic>

@@ -3,7 +3,6 @@
 #include "base/csv.h"
 #include "base/units.h"
 #include "mission/simulation/load_segments.h"
-#include "mission/simulation/segment_discharge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +50,7 @@ void add_row(SocCurve& curve, const battery::Battery& battery, const LoadSegment
     row.mechanical_w = mechanical_w(segment, time_s);
     row.compute_w = segment.compute_w;
     row.power_w = power_w(segment, time_s);
-    auto now = state.state();
+    battery::BatteryState now = state;
     if (const auto ended_at_s = state.ended_at_s()) {
         // Without a load the RC pair discharges itself.
         if (battery.thevenin) {
@@ -85,14 +84,13 @@ battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment,
     add_row(curve, battery, segment, times.front(), state);
     for (std::size_t i = 1; i < times.size(); ++i) {
         if (!state.ended_at_s()) {
-            state = discharge(battery, load, times[i - 1], times[i], state.state(), options);
+            state = discharge(battery, {load, times[i - 1], times[i]}, state, options);
             if (state.undeliverable) {
                 add_row(curve, battery, segment, state.undeliverable->time_s, state);
                 return state;
             }
             if (const auto ended_at_s = state.ended_at_s()) {
-                const battery::Discharge before{state.soc_percent, std::nullopt, std::nullopt, std::nullopt,
-                                                state.rc_voltage_v};
+                const battery::Discharge before{static_cast<const battery::BatteryState&>(state)};
                 add_row(curve, battery, segment, *ended_at_s, before);  // the last row with a current,
                 add_row(curve, battery, segment, *ended_at_s, state);   // and the first without
             }
@@ -142,22 +140,6 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
 
 }  // namespace
 
-std::string to_string(ScheduleOrigin origin) {
-    switch (origin) {
-        case ScheduleOrigin::given:
-            return "";
-        case ScheduleOrigin::optimal:
-            return "optimal";
-        case ScheduleOrigin::planned:
-            return "planned";
-        case ScheduleOrigin::infeasible:
-            return "no plan keeps the reserve";
-        case ScheduleOrigin::replanned:
-            return "replanned in flight";
-    }
-    throw std::logic_error("to_string: no such origin of a schedule");
-}
-
 Simulation simulate(const MissionSetup& mission, const std::vector<ScheduleSegment>& schedule,
                     const SimulationSteps& steps, const std::vector<Disturbance>& disturbances) {
     const auto segments = disturbed(load_segments(mission, schedule), disturbances);
@@ -166,7 +148,7 @@ Simulation simulate(const MissionSetup& mission, const std::vector<ScheduleSegme
     const Supply supply{disturbed(mission.battery, disturbances),
                         steps.cuts_off ? mission.cutoff_voltage_v : 0.0};
     SocCurve curve;
-    battery::Discharge state{mission.initial_soc_percent, std::nullopt, std::nullopt};
+    battery::Discharge state{{mission.initial_soc_percent}};
     for (const auto& segment : segments) {
         state = run_segment(supply, segment, steps, state, curve);
         if (state.undeliverable) break;
@@ -179,31 +161,6 @@ Simulation simulate(const MissionSetup& mission, const std::vector<ScheduleSegme
 Simulation simulate(const Mission& mission, const SimulationSteps& steps,
                     const std::vector<Disturbance>& disturbances) {
     return simulate(mission, mission.schedule, steps, disturbances);
-}
-
-std::string describe(const MissionSummary& summary) {
-    if (const auto& failure = summary.undeliverable) {
-        return fmt::format(
-            "{}: the battery cannot deliver {:.6g} W at {:.6g} s: its limit U^2 / (4 R) is {:.6g} W",
-            summary.mission, failure->power_w, failure->time_s, failure->limit_w);
-    }
-    auto end = fmt::format("{:.2f} % left after {:.1f} s", *summary.final_soc_percent, summary.duration_s);
-    if (summary.depleted_at_s) {
-        end = fmt::format("empty at {:.1f} s of {:.1f} s", *summary.depleted_at_s, summary.duration_s);
-    } else if (summary.cut_off_at_s) {
-        end = fmt::format("cut off at {:.1f} s of {:.1f} s with {:.2f} % left", *summary.cut_off_at_s,
-                          summary.duration_s, *summary.final_soc_percent);
-    } else if (!summary.keeps_reserve) {
-        end += fmt::format(", less than the reserve of {:.6g} %", summary.reserve_soc_percent);
-    }
-    if (summary.decisions && summary.decisions->without_plan > 0) {
-        end += fmt::format(
-            " (at {} of {} decisions no plan kept the reserve with its margin, and what "
-            "demands least energy was run)",
-            summary.decisions->without_plan, summary.decisions->made);
-    }
-    return fmt::format("{}: {}; {:.3f} Wh, {:.3f} mechanical and {:.3f} computing", summary.mission, end,
-                       summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh);
 }
 
 std::string to_csv(const SocCurve& curve) {

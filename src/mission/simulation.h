@@ -1,11 +1,9 @@
 #pragma once
 
-#include "battery/discharge.h"
 #include "mission/disturbance.h"
 #include "mission/mission.h"
-#include "mission/sampled_soc.h"
+#include "mission/mission_summary.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,49 +28,6 @@ struct SocCurve {
     std::vector<SocRow> rows;
 };
 
-/// How a mission's schedule came about.
-enum class ScheduleOrigin {
-    given,    ///< by the mission
-    optimal,  ///< planned, and proven to be as good as the best
-    planned,
-    infeasible,  ///< no plan keeps the reserve: the one of least energy demand
-    replanned    ///< in flight, by an adaptive policy
-};
-
-/// "optimal", "no plan keeps the reserve" ...; empty for one that was given.
-std::string to_string(ScheduleOrigin origin);
-
-/// What an adaptive policy decided.
-struct AdaptiveDecisions {
-    std::size_t made = 0;
-    std::size_t without_plan = 0;    ///< where no plan kept the reserve: least energy demand was run
-    double mechanical_factor = 1.0;  ///< of mechanical power to the model's, as learned at the end
-};
-
-/// What a mission comes to. Energies are what the whole mission demands of the battery, also beyond the
-/// battery's end.
-struct MissionSummary {
-    std::string mission;
-    ScheduleOrigin schedule = ScheduleOrigin::given;
-    std::optional<double> final_soc_percent;  ///< none if the battery cannot deliver the power
-    double mechanical_energy_wh = 0.0;
-    double compute_energy_wh = 0.0;
-    double energy_wh = 0.0;            ///< both together
-    double delivered_energy_wh = 0.0;  ///< demanded until the battery ended or failed
-    double duration_s = 0.0;
-    std::optional<double> depleted_at_s;  ///< when the battery was empty, if before the mission's end
-    std::optional<double> cut_off_at_s;   ///< when its voltage fell below the cut-off, if before the end
-    std::optional<battery::Undeliverable> undeliverable;
-    /// Mean utility a second over the whole mission (of a linear utility of FPS with weight 1: mean FPS), where
-    /// the mission states utilities. What would run after the battery's end has none.
-    std::optional<double> utility;
-    bool feasible = false;  ///< the battery lasts: empty at the very end counts, any earlier does not
-    double reserve_soc_percent = 0.0;                           ///< what the mission asks to be left
-    bool keeps_reserve = false;                                 ///< feasible, and the reserve is left
-    std::optional<AdaptiveDecisions> decisions = std::nullopt;  ///< of an adaptive policy
-    std::optional<SampledFlights> samples = std::nullopt;       ///< if flights were drawn
-};
-
 struct Simulation {
     SocCurve curve;  ///< up to the end of the mission, or to where the battery cannot deliver
     MissionSummary summary;
@@ -95,9 +50,6 @@ Simulation simulate(const MissionSetup& mission, const std::vector<ScheduleSegme
 /// The same with the mission's own schedule.
 Simulation simulate(const Mission& mission, const SimulationSteps& steps = {},
                     const std::vector<Disturbance>& disturbances = {});
-
-/// One line for people: what is left, or when and why the battery failed.
-std::string describe(const MissionSummary& summary);
 
 /// time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v
 std::string to_csv(const SocCurve& curve);

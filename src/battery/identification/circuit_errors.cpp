@@ -1,6 +1,5 @@
-#include "battery/identification/circuit_errors.h"
-
 #include "base/statistics.h"
+#include "battery/identification/circuit_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,16 +23,9 @@ struct Block {
 
 /// Rounding of a voltage that hardly moves is the same for the whole block; of one that does, it is noise.
 double common_rounding_v(const DischargeRecord& record, const std::vector<double>& voltages_v) {
-    double mean = 0.0;
-    double squares = 0.0;
-    double count = 0.0;
-    for (const double value : voltages_v) {
-        count += 1.0;
-        const double delta = value - mean;
-        mean += delta / count;
-        squares += delta * (value - mean);
-    }
-    const bool still = std::sqrt(squares / count) < record.resolution_v / 2.0;
+    const auto n = static_cast<double>(voltages_v.size());
+    const double variance = n > 1.0 ? sample_variance(voltages_v) * (n - 1.0) / n : 0.0;
+    const bool still = std::sqrt(variance) < record.resolution_v / 2.0;
     return still ? record.resolution_v / std::sqrt(12.0) : 0.0;  // of a uniform distribution
 }
 
@@ -67,9 +59,8 @@ std::vector<Block> blocks_of_records(std::span<const AlignedRecord> records) {
     std::vector<Block> blocks;
     Eigen::Index row = 0;
     for (const auto& [record, charge] : records) {
-        const auto count = std::count(record->used.begin(), record->used.end(), true);
-        blocks.push_back({row, count, 0.0});
-        row += count;
+        blocks.push_back({row, used_samples(*record), 0.0});
+        row += blocks.back().count;
     }
     return blocks;
 }
@@ -138,7 +129,7 @@ CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const Circu
     const auto in_time = blocks_of_time(records, errors.block_s);
     errors.blocks = in_time.size();
     const double degrees_of_freedom =
-        static_cast<double>(in_time.size()) - static_cast<double>(columns.cols());
+        static_cast<double>(errors.blocks) - static_cast<double>(columns.cols());
     Eigen::VectorXd half_width =
         jackknife(columns, fit.residual_v, in_time) * student_t_half_width(degrees_of_freedom);
     if (records.size() >= enough_records) {

@@ -18,18 +18,12 @@ namespace {
 constexpr int grid_points = 48;
 constexpr double longest_part = 0.25;  // of a record: what is slower looks like the open-circuit voltage
 
-Eigen::Index used_samples(std::span<const AlignedRecord> records) {
-    Eigen::Index count = 0;
-    for (const auto& [record, charge] : records) {
-        count += std::count(record->used.begin(), record->used.end(), true);
-    }
-    return count;
-}
-
 /// A channel of the used samples, one after the other.
 template <typename Channel>
 Eigen::VectorXd gathered(std::span<const AlignedRecord> records, const Channel& channel) {
-    Eigen::VectorXd values(used_samples(records));
+    Eigen::Index samples = 0;
+    for (const auto& aligned : records) samples += used_samples(*aligned.record);
+    Eigen::VectorXd values(samples);
     Eigen::Index row = 0;
     for (const auto& aligned : records) {
         const auto& source = channel(aligned);
@@ -65,7 +59,7 @@ Eigen::VectorXd settled(std::span<const AlignedRecord> records, double time_cons
     });
 }
 
-/// The time constants worth a look, as logarithms.
+/// The time constants to search, as logarithms.
 std::pair<double, double> time_constant_range(std::span<const AlignedRecord> records) {
     double longest_s = 0.0;
     std::vector<double> intervals;

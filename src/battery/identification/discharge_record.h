@@ -32,6 +32,8 @@ struct DischargeRecord {
 /// the log does not begin at rest.
 DischargeRecord discharge_record(const flight::FlightSeries& series);
 
+std::ptrdiff_t used_samples(const DischargeRecord& record);
+
 /// The current [A] that has settled in an RC pair of that time constant at every sample: the solution of
 /// tau dx/dt = I - x from the resting current on, exact for a current that is constant between samples.
 std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s);

@@ -3,7 +3,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/planning/plan_rest.h"
-#include "mission/simulation/segment_discharge.h"
+#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,15 +25,7 @@ constexpr double jump_factor = 2.0;  ///< of the depletion predicted: beyond, ch
 /// open-circuit voltage over it. The state of charge itself where that is constant.
 double energy_equivalent_soc_percent(const AdaptivePlanner& planner, double soc_percent) {
     if (!planner.open_circuit) return soc_percent;
-    const auto& [knots, voltage_v] = *planner.open_circuit;
-    double sum = 0.0;
-    for (std::size_t k = 1; k < knots.size() && knots[k - 1] < soc_percent; ++k) {
-        const double to_percent = std::min(knots[k], soc_percent);
-        const double part = (to_percent - knots[k - 1]) / (knots[k] - knots[k - 1]);
-        const double to_v = std::lerp(voltage_v[k - 1], voltage_v[k], part);
-        sum += (to_percent - knots[k - 1]) * (voltage_v[k - 1] + to_v) / 2.0;
-    }
-    return sum / planner.known.battery.voltage_v;
+    return voltage_integral(*planner.open_circuit, soc_percent) / planner.known.battery.voltage_v;
 }
 
 /// The times from one decision to the next, as planned.
@@ -78,17 +70,13 @@ class Flight {
           disturbances_(disturbances),
           battery_(disturbed(actual.battery, disturbances)),
           planned_(timeline_of(known_.duration_s)),
-          flown_(timeline_of(actual.duration_s)) {
+          load_(load_of(actual)) {
         charge_.soc_percent = actual.initial_soc_percent;
         reserve_percent_ = energy_equivalent_soc_percent(planner, known_.reserve_soc_percent);
         const auto& policy = *known_.adaptive;
         reach_ =
             policy.mechanical_sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
         for (const auto phase : flight::all_phases) {
-            if (actual.mechanical && actual.duration_s[phase] != 0.0) {
-                curves_[phase] = flown_model(actual.mechanical->phases[phase], actual.duration_s[phase],
-                                             actual.phase_clock);
-            }
             if (known_.duration_s[phase] > 0.0)
                 rest_mechanical_percent_ += mechanical_percent({phase, 0.0, known_.duration_s[phase]});
         }
@@ -152,21 +140,9 @@ class Flight {
         running_for_s_ += planned.duration_s();
         running_ = planned.run;
         append_merged(flight_.schedule, planned);
-        for (const auto& segment : disturbed({load_of(planned)}, disturbances_))
+        const auto flown = rescale_to_flown_durations({planned}, known_.duration_s, actual_.duration_s);
+        for (const auto& segment : disturbed({load_segment(load_, flown.front())}, disturbances_))
             charge_ = after_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
-    }
-
-    LoadSegment load_of(const ScheduleSegment& planned) const {
-        const auto flown =
-            rescale_to_flown_durations({planned}, known_.duration_s, actual_.duration_s).front();
-        LoadSegment segment;
-        segment.phase = flown.phase;
-        segment.phase_start_s = flown_.start_s[flown.phase];
-        segment.start_s = segment.phase_start_s + flown.start_s;
-        segment.end_s = segment.phase_start_s + flown.end_s;
-        segment.mechanical = curves_[flown.phase];
-        segment.compute_w = power_w(actual_.compute, flown.run);
-        return segment;
     }
 
     void learn(const PhaseSegment& interval, double observed_percent, double predicted_percent) {
@@ -188,9 +164,8 @@ class Flight {
     const std::vector<Disturbance>& disturbances_;
     battery::Battery battery_;  ///< as it really is
     MissionTimeline planned_;
-    MissionTimeline flown_;
+    MissionLoad load_;  ///< of the mission as it really is
     AdaptiveFlight flight_;
-    flight::PerPhase<std::optional<mechanical::FourierModel>> curves_;
     battery::Discharge charge_;
     Learned learned_;
     std::optional<compute::Configuration> running_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "battery/discharge.h"
 #include "mission/disturbance.h"
 #include "mission/mission.h"
 
@@ -20,6 +21,17 @@ struct LoadSegment {
     double soc_drop_percent = 0.0;  ///< [points] that the battery loses at once as this starts
 };
 
+/// What the schedules of a mission demand, as far as it does not depend on the schedule. Refers to the mission.
+struct MissionLoad {
+    const MissionSetup& mission;
+    MissionTimeline timeline;
+    /// Of the phases that are flown, in their own time; none without a mechanical model.
+    flight::PerPhase<std::optional<mechanical::FourierModel>> mechanical;
+};
+
+MissionLoad load_of(const MissionSetup& mission);
+LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& scheduled);
+
 /// The load of a schedule, in order and without gaps: each segment starts exactly where the one before ends.
 std::vector<LoadSegment> load_segments(const MissionSetup& mission,
                                        const std::vector<ScheduleSegment>& schedule);
@@ -35,5 +47,15 @@ double power_w(const LoadSegment& segment, double time_s);
 /// Energies [J] demanded from the segment's start to `time_s`, a time within it.
 double mechanical_energy_j(const LoadSegment& segment, double time_s);
 double compute_energy_j(const LoadSegment& segment, double time_s);
+
+/// The battery after the charge that it loses at once as a segment starts.
+battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segment);
+
+/// The state of a battery after a segment, for flights that are flown by the thousand. Where the depletion
+/// does not depend on the state of charge and power is never negative, without resistance, it is the closed
+/// integral that depletion tables hold; elsewhere Runge-Kutta with steps of a second. A battery that has
+/// ended, or cannot deliver, stays as it is.
+battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v,
+                                 const LoadSegment& segment, battery::Discharge state);
 
 }  // namespace flightwatt::mission
