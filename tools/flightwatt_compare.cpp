@@ -6,7 +6,7 @@
 #include "cli/output/terminal_pictures.h"
 #include "cli/stage.h"
 #include "mission/mission_summary.h"
-#include "mission/disturbance_file.h"
+#include "mission/disturbance.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "mission/timeline.h"
+#include "mission/schedule.h"
 
+#include <filesystem>
 #include <limits>
 #include <vector>
 
@@ -28,5 +29,11 @@ battery::Battery disturbed(battery::Battery battery, const std::vector<Disturban
 std::vector<Disturbance> rescale_to_flown_durations(std::vector<Disturbance> disturbances,
                                                     const flight::PerPhase<double>& planned_s,
                                                     const flight::PerPhase<double>& flown_s);
+
+/// Reads a file of disturbances (docs/missions.md) of a mission whose phases take so long. Throws InputError for
+/// unknown keys, values out of range, segments that are empty or not within their phase, phases that are not flown,
+/// and entries that change nothing.
+std::vector<Disturbance> read_disturbances(const std::filesystem::path& path,
+                                           const flight::PerPhase<double>& duration_s);
 
 }  // namespace flightwatt::mission

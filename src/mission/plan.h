@@ -30,9 +30,7 @@ struct MissionPlan {
 /// Plans a mission and simulates the result; where that ends below the reserve (by rounding, or because a
 /// full battery refused charge, which tables do not know), plans anew with more to spare. The tables deplete
 /// the battery no more than the simulation, so the bound holds nevertheless. With `probability`, the reserve is
-/// kept with that chance: see sampling/level_deviation.h. Infeasible plans are returned as such. Batteries
-/// whose source follows their charge, and those that may be cut off: see planning/plan_by_simulation.h.
-/// Throws InputError if the mission states no utility, or too many choices.
+/// kept with that chance: see sampling/level_deviation.h. Infeasible plans are returned as such. Throws InputError if the mission states no utility, or too many choices.
 MissionPlan plan_mission(const PlanningProblem& problem,
                          const std::optional<double>& probability = std::nullopt);
 

@@ -2,12 +2,8 @@
 #include "base/format_version.h"
 #include "base/toml_numbers.h"
 #include "compute/profile_reader.h"
-#include "mission/file/adaptive_policy_toml.h"
-#include "mission/file/conditions_toml.h"
-#include "mission/file/plan_settings_toml.h"
+#include "mission/file/planning_toml.h"
 #include "mission/file/schedule_toml.h"
-#include "mission/file/uncertainty_toml.h"
-#include "mission/file/utility_toml.h"
 #include "mission/mission_file.h"
 
 #include <fmt/format.h>
@@ -44,6 +40,49 @@ mechanical::PhaseClock read_clock(const TomlTable& root, bool has_mechanical) {
     if (*name == "absolute") return mechanical::PhaseClock::absolute;
     throw InputError(root.where("phase_clock"), fmt::format("there is no phase_clock '{}'", *name),
                      "it is \"stretch\" or \"absolute\"");
+}
+
+const mechanical::LevelLaw& law_of(const TomlTable& conditions,
+                                   const std::optional<mechanical::MechanicalModel>& mechanical) {
+    if (!mechanical) {
+        throw InputError(conditions.where(), "conditions have no meaning with mechanical = \"none\"",
+                         "leave them out");
+    }
+    const auto& law = mechanical->phases[flight::Phase::cruise].level_law;
+    if (law) return *law;
+    throw InputError(
+        conditions.where(),
+        fmt::format("the cruise level of the mechanical model '{}' follows no condition", mechanical->name),
+        "fit it with one: flightwatt fit --level-covariate NAME FLIGHT...; or leave the conditions out");
+}
+
+/// Shifts the model's cruise so that its mean over the model's own duration is the power of its level law under the
+/// [conditions], and returns that power with its spread. What the flights of the law did not show is refused: a plan
+/// can be changed, and a power that nothing supports should not look like a result.
+mechanical::ConstantPower apply_conditions(const TomlTable& conditions,
+                                           std::optional<mechanical::MechanicalModel>& mechanical) {
+    const auto& law = law_of(conditions, mechanical);
+    const auto name = to_string(law.covariate);
+    for (const auto& key : conditions.keys()) {
+        if (key == name) continue;
+        throw InputError(conditions.where(key),
+                         fmt::format("the cruise level of this mechanical model does not follow '{}'", key),
+                         fmt::format("it follows {}, from {:.4g} to {:.4g}", name, law.least, law.most));
+    }
+    const double value = conditions.number(name);
+    const auto level = level_at(law, value);
+    if (!level.within_flights) {
+        throw InputError(
+            conditions.where(name),
+            fmt::format("{} = {} is beyond what the model's flights showed", name, value),
+            fmt::format("the {} flights of its level law were from {:.4g} to {:.4g}; give one of these, or "
+                        "fit a model to flights that were flown so",
+                        law.flights, law.least, law.most));
+    }
+    auto& cruise = mechanical->phases[flight::Phase::cruise];
+    const double model_mean_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+    cruise.fourier.a0_w += level.power_w - model_mean_w;
+    return constant_power(level);
 }
 
 double read_duration(const TomlTable& durations, std::string_view phase) {
@@ -110,6 +149,42 @@ void read_components(const TomlTable& root, MissionSetup& mission) {
         }
         mission.utilities.push_back(std::move(utility));
     }
+}
+
+std::optional<double> optional_sd(const TomlTable& table, std::string_view key) {
+    return optional_number_in(at_least(0.0), table, key);
+}
+
+flight::PerPhase<std::optional<double>> read_phases(const TomlTable& uncertainty, std::string_view key) {
+    flight::PerPhase<std::optional<double>> phases;
+    const auto table = uncertainty.optional_table(key);
+    if (!table) return phases;
+    for (const auto phase : flight::all_phases) phases[phase] = optional_sd(*table, to_string(phase));
+    table->refuse_unknown_keys();
+    return phases;
+}
+
+Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeModel& compute,
+                             bool has_mechanical) {
+    Uncertainty read;
+    read.compute_sd_percent.resize(compute.components.size());
+    const auto table = mission.optional_table("uncertainty");
+    if (!table) return read;
+    table->refuse_keys_except(
+        {"level_sd_percent", "duration_sd_s", "compute_sd_percent", "capacity_sd_percent"});
+    if (table->has("level_sd_percent") && !has_mechanical) {
+        throw InputError(table->where("level_sd_percent"),
+                         "level_sd_percent has no meaning with mechanical = \"none\"", "leave it out");
+    }
+    read.level_sd_percent = read_phases(*table, "level_sd_percent");
+    read.duration_sd_s = read_phases(*table, "duration_sd_s");
+    read.capacity_sd_percent = optional_sd(*table, "capacity_sd_percent");
+    if (const auto components = table->optional_table("compute_sd_percent")) {
+        for (std::size_t i = 0; i < compute.components.size(); ++i)
+            read.compute_sd_percent[i] = optional_sd(*components, compute.components[i].name);
+        components->refuse_unknown_keys();
+    }
+    return read;
 }
 
 /// Throws where a mission that is yet to be planned is not accepted.

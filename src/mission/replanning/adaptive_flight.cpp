@@ -2,7 +2,7 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mission/planning/plan_rest.h"
+#include "mission/planning/planner.h"
 #include "mission/simulation/load_segments.h"
 
 #include <algorithm>

@@ -12,6 +12,20 @@
 #include <fmt/format.h>
 
 namespace flightwatt::mission {
+namespace {
+
+double phase_depletion_percent(const MissionSetup& mission, const compute::Configuration& configuration,
+                               flight::Phase phase) {
+    const auto table = make_depletion_table(mission, {configuration});
+    return soc_depletion_percent(table, {{phase, 0.0, mission.duration_s[phase]}, 0});
+}
+
+void require_probability(double probability) {
+    if (probability >= 0.5 && probability < 1.0) return;
+    throw std::invalid_argument("the probability of a margin is not from 0.5 to below 1");
+}
+
+}  // namespace
 
 LevelDeviation level_deviation(const MissionSetup& mission, flight::Phase phase) {
     const auto& model = mission.mechanical->phases[phase];
@@ -47,16 +61,6 @@ double level_sd_w(const MissionSetup& mission, flight::Phase phase) {
                      "[uncertainty] with level_sd_percent");
 }
 
-namespace {
-
-double phase_depletion_percent(const MissionSetup& mission, const compute::Configuration& configuration,
-                               flight::Phase phase) {
-    const auto table = make_depletion_table(mission, {configuration});
-    return soc_depletion_percent(table, {{phase, 0.0, mission.duration_s[phase]}, 0});
-}
-
-}  // namespace
-
 double soc_depletion_sd_percent(const MissionSetup& mission,
                                 const std::vector<compute::Configuration>& configurations) {
     const auto most_power =
@@ -85,11 +89,29 @@ double soc_depletion_sd_percent(const MissionSetup& mission,
 
 double margin_percent(const MissionSetup& mission, const std::vector<compute::Configuration>& configurations,
                       double probability) {
-    if (!(probability >= 0.5 && probability < 1.0)) {
-        throw std::invalid_argument("margin_percent: the probability is not from 0.5 to below 1");
+    require_probability(probability);
+    return normal_quantile(probability) * soc_depletion_sd_percent(mission, configurations);
+}
+
+PlanningProblem mission_at_quantile(const PlanningProblem& problem, double probability) {
+    require_probability(probability);
+    flight::PerPhase<double> sd_w;
+    double energy_variance_j2 = 0.0;
+    for (const auto phase : flight::all_phases) {
+        if (problem.duration_s[phase] == 0.0) continue;
+        sd_w[phase] = level_sd_w(problem, phase);
+        energy_variance_j2 += std::pow(sd_w[phase] * problem.duration_s[phase], 2);
     }
-    const double sd_percent = soc_depletion_sd_percent(mission, configurations);
-    return normal_quantile(probability) * sd_percent;
+    auto stronger = problem;
+    if (energy_variance_j2 == 0.0) return stronger;
+    for (const auto phase : flight::all_phases) {
+        const double part = sd_w[phase] * problem.duration_s[phase] / std::sqrt(energy_variance_j2);
+        if (part > 0.0) {
+            stronger.mechanical->phases[phase].fourier.a0_w +=
+                normal_quantile(probability) * part * sd_w[phase];
+        }
+    }
+    return stronger;
 }
 
 }  // namespace flightwatt::mission

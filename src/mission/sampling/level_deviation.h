@@ -46,4 +46,11 @@ double soc_depletion_sd_percent(const MissionSetup& mission,
 double margin_percent(const MissionSetup& mission, const std::vector<compute::Configuration>& configurations,
                       double probability);
 
+/// The mission with mechanical power raised by what flights exceed with 1 - probability: every phase by its
+/// deviation (level_deviation) times its part in the deviation of the energy, times the Gaussian quantile. The
+/// final SoC of the returned mission is the (1 - probability) quantile of the final SoC, to first order: as far
+/// as the depletion is linear in power and voltages do not differ much between phases. Throws as
+/// margin_percent does.
+PlanningProblem mission_at_quantile(const PlanningProblem& problem, double probability);
+
 }  // namespace flightwatt::mission

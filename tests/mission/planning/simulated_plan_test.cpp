@@ -1,12 +1,10 @@
 // Plans for batteries whose source follows their charge, and for those that may be cut off.
 
-#include "mission/planning/plan_by_simulation.h"
-
 #include "base/error.h"
 #include "helpers/paper_missions.h"
 #include "mission/feasibility_limits.h"
-#include "mission/infeasibility_report.h"
-#include "mission/planning/plan_rest.h"
+#include "mission/plan.h"
+#include "mission/planning/planner.h"
 #include "mission/planning/voltage_course.h"
 #include "mission/sampling/level_deviation.h"
 
