@@ -8,6 +8,10 @@
 namespace flightwatt::mission {
 namespace {
 
+using test::rejected;
+using test::scratch_dir;
+using test::write_text;
+
 const flight::PerPhase<double> durations{{100.0, 600.0, 50.0}};
 
 /// 100 % are 10 Wh, or 36 kJ; 15 W to compute and 5 W mechanical over 1000 s take 55.6 points.
@@ -68,12 +72,6 @@ TEST(Disturbance, KeepsToItsPartOfAPhase) {
     EXPECT_DOUBLE_EQ(moved.start_s, 550.0);
     EXPECT_DOUBLE_EQ(moved.end_s, 1012.5);
 }
-
-using test::rejected;
-using test::scratch_dir;
-using test::write_text;
-
-const flight::PerPhase<double> durations{{100.0, 600.0, 50.0}};
 
 std::vector<Disturbance> read(const std::string& text) {
     return read_disturbances(write_text(scratch_dir() / "d.toml", text), durations);

@@ -84,8 +84,6 @@ MissionOfCruise paper_plan(double reserve_soc_percent) {
     };
 }
 
-double final_soc(const Mission& mission) { return simulate(mission).summary.final_soc_percent.value_or(0.0); }
-
 TEST(InfeasibilityReport, NamesWhatWouldDo) {
     const auto mission_of = paper_plan(9.0);
     const auto mission = std::get<PlanningProblem>(mission_of(600.0));
