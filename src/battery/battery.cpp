@@ -26,15 +26,14 @@ OpenCircuitVoltage read_curve(const TomlTable& table) {
         throw InputError(table.where(key), message, hint);
     };
     if (soc.size() < 2 || soc.front() != 0.0 || soc.back() != 100.0 ||
-        std::adjacent_find(soc.begin(), soc.end(), std::greater_equal<>()) != soc.end()) {
+        std::ranges::adjacent_find(soc, std::greater_equal<>()) != soc.end()) {
         refuse("soc_percent", "soc_percent does not rise from 0 to 100", "expected [0, ..., 100]");
     }
     if (volts.size() != soc.size()) {
         refuse("voltage_v", fmt::format("{} voltages for {} states of charge", volts.size(), soc.size()),
                "expected one each");
     }
-    if (volts.front() <= 0.0 ||
-        std::adjacent_find(volts.begin(), volts.end(), std::greater<>()) != volts.end()) {
+    if (volts.front() <= 0.0 || std::ranges::adjacent_find(volts, std::greater<>()) != volts.end()) {
         refuse("voltage_v", "the open-circuit voltage is not positive, or falls as charge rises",
                "expected values in the order of soc_percent, none below the one before");
     }
@@ -44,7 +43,7 @@ OpenCircuitVoltage read_curve(const TomlTable& table) {
 std::vector<double> read_curve_errors(const TomlTable& table, std::size_t knots) {
     if (!table.has("standard_error_v")) return {};
     auto errors = table.numbers("standard_error_v");
-    if (errors.size() != knots || std::any_of(errors.begin(), errors.end(), [](double e) { return e < 0; })) {
+    if (errors.size() != knots || std::ranges::any_of(errors, [](double e) { return e < 0; })) {
         throw InputError(table.where("standard_error_v"),
                          "standard_error_v is not one number of at least 0 for every knot");
     }

@@ -22,7 +22,7 @@ std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segm
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (const auto& [record, initial] : records) {
-        const auto [least, most] = std::minmax_element(record->charge_ah.begin(), record->charge_ah.end());
+        const auto [least, most] = std::ranges::minmax_element(record->charge_ah);
         low = std::min(low, *least + initial);
         high = std::max(high, *most + initial);
     }
@@ -34,8 +34,7 @@ std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segm
 }
 
 bool falls_throughout(const CircuitFit& fit) {
-    return std::adjacent_find(fit.open_circuit_v.begin(), fit.open_circuit_v.end(), std::less<>()) ==
-           fit.open_circuit_v.end();
+    return std::ranges::adjacent_find(fit.open_circuit_v, std::less<>()) == fit.open_circuit_v.end();
 }
 
 /// As many independent samples as neighbours' correlation leaves of the residuals.
@@ -63,7 +62,7 @@ CircuitFit best_fit(std::span<const AlignedRecord> records) {
         if (falls_throughout(fit)) fits.push_back(std::move(fit));
     }
     if (fits.empty()) throw NoAnswerError("the open-circuit voltage does not fall as charge is drawn");
-    return *std::min_element(fits.begin(), fits.end(), [&](const CircuitFit& a, const CircuitFit& b) {
+    return *std::ranges::min_element(fits, [&](const CircuitFit& a, const CircuitFit& b) {
         return criterion(a, samples) < criterion(b, samples);
     });
 }
@@ -113,8 +112,8 @@ double align(std::vector<AlignedRecord>& records, const CircuitFit& fit) {
 AlignedFit aligned_fit(std::span<const DischargeRecord> records) {
     AlignedFit aligned;
     for (const auto& record : records) aligned.records.push_back({&record, 0.0});
-    const auto fullest = *std::max_element(
-        aligned.records.begin(), aligned.records.end(), [](const AlignedRecord& a, const AlignedRecord& b) {
+    const auto fullest =
+        *std::ranges::max_element(aligned.records, [](const AlignedRecord& a, const AlignedRecord& b) {
             return a.record->resting_voltage_v < b.record->resting_voltage_v;
         });
     aligned.fit = best_fit({&fullest, 1});

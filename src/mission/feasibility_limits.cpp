@@ -5,9 +5,9 @@
 #include "mission/planning/planner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
 #include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
@@ -34,7 +34,24 @@ double last_good(const SpareOf& spare_of, double good, double bad) {
     return spare_of(high) >= 0.0 ? high : spare_of(low) >= 0.0 ? low : good;
 }
 
-FeasibilityLimit answer(double value, const Mission& at, const Mission& beyond) {
+/// Two values, the first with something to spare and the second without, if there is such a one.
+struct Bracket {
+    double good = 0.0;
+    std::optional<double> bad;
+};
+
+/// From a good value on: `tried.bad`, and so on times `factor` up to `last`.
+Bracket bracket_of(const SpareOf& spare_of, Bracket tried, double factor, double last) {
+    while (spare_of(*tried.bad) >= 0.0) {
+        const double next = *tried.bad * factor;
+        tried = {*tried.bad, next};
+        if (factor > 1.0 ? next > last : next < last) return {tried.good, std::nullopt};
+    }
+    return tried;
+}
+
+/// `beyond` is the mission with a little more than `value`.
+FeasibilityLimit limit_at(double value, const Mission& at, const Mission& beyond) {
     FeasibilityLimit most;
     most.value = value;
     most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
@@ -93,22 +110,14 @@ std::optional<double> spare_without_fixed(PlanningProblem problem, double margin
     if (problem.fixed.empty()) return std::nullopt;
     problem.fixed.clear();
     const double spare = spare_percent(with_minimum_energy_schedule(problem)) - margin_percent;
-    if (spare < 0.0) return std::nullopt;
-    return spare;
+    return spare < 0.0 ? std::nullopt : std::optional(spare);
 }
 
 }  // namespace
 
 std::string to_string(FeasibilityBound bound) {
-    switch (bound) {
-        case FeasibilityBound::charge:
-            return "charge";
-        case FeasibilityBound::power:
-            return "power";
-        case FeasibilityBound::cut_off:
-            return "cut-off";
-    }
-    throw std::logic_error("to_string: no such bound");
+    constexpr std::array names{"charge", "power", "cut-off"};
+    return names.at(static_cast<std::size_t>(bound));
 }
 
 double spare_percent(const Mission& mission) {
@@ -132,22 +141,19 @@ FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
     };
     const auto spare_of = [&](double cruise_s) { return spare_percent(mission_at(cruise_s)); };
     // From a length that fits: schedules may need so much, never so little.
-    double good_s = shortest_cruise_s;
-    while (good_s < longest_cruise_s && !if_it_fits(mission_of, good_s)) good_s *= 2.0;
-    double bad_s = good_s;
-    if (spare_of(good_s) < 0.0) {
-        good_s = short_enough_s(mission_of, bad_s);
+    double fits_s = shortest_cruise_s;
+    while (fits_s < longest_cruise_s && !if_it_fits(mission_of, fits_s)) fits_s *= 2.0;
+    Bracket bracket{0.0, fits_s};
+    if (spare_of(fits_s) < 0.0) {
+        bracket.good = short_enough_s(mission_of, fits_s);
     } else {
-        while (spare_of(bad_s) >= 0.0) {
-            good_s = bad_s;
-            bad_s *= 2.0;
-            if (bad_s > longest_cruise_s) {
-                throw NoAnswerError(fmt::format("a cruise of {:.3g} s still lands with the reserve", good_s));
-            }
-        }
+        bracket = bracket_of(spare_of, {fits_s, 2.0 * fits_s}, 2.0, longest_cruise_s);
     }
-    const double cruise_s = last_good(spare_of, good_s, bad_s);
-    return answer(cruise_s, mission_at(cruise_s), mission_at(std::nextafter(cruise_s, bad_s) * (1.0 + 1e-9)));
+    if (!bracket.bad)
+        throw NoAnswerError(fmt::format("a cruise of {:.3g} s still lands with the reserve", bracket.good));
+    const double cruise_s = last_good(spare_of, bracket.good, *bracket.bad);
+    const double beyond_s = std::nextafter(cruise_s, *bracket.bad) * (1.0 + 1e-9);
+    return limit_at(cruise_s, mission_at(cruise_s), mission_at(beyond_s));
 }
 
 Mission with_payload(const Mission& mission, double payload_w) {
@@ -169,18 +175,12 @@ FeasibilityLimit largest_payload(const AnyMission& mission) {
         throw NoAnswerError(fmt::format(
             "without any payload the mission misses its reserve by {:.4g} points already", -spare));
     }
-    double good_w = 0.0;
-    double bad_w = 1.0;
-    while (spare_of(bad_w) >= 0.0) {
-        good_w = bad_w;
-        bad_w *= 2.0;
-        if (bad_w > largest_payload_w) {
-            throw NoAnswerError(fmt::format("a payload of {:.3g} W still lands with the reserve", good_w));
-        }
-    }
-    const double payload_w = last_good(spare_of, good_w, bad_w);
-    return answer(payload_w, with_payload(bare, payload_w),
-                  with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
+    const auto bracket = bracket_of(spare_of, {0.0, 1.0}, 2.0, largest_payload_w);
+    if (!bracket.bad)
+        throw NoAnswerError(fmt::format("a payload of {:.3g} W still lands with the reserve", bracket.good));
+    const double payload_w = last_good(spare_of, bracket.good, *bracket.bad);
+    return limit_at(payload_w, with_payload(bare, payload_w),
+                    with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
 }
 
 std::optional<double> least_capacity_ah(const AnyMission& mission) {
@@ -193,18 +193,12 @@ std::optional<double> least_capacity_ah(const AnyMission& mission) {
     };
     const double own_ah = bare.battery.capacity_ah;
     double good_ah = own_ah;
-    double bad_ah = good_ah;
     while (spare_of(good_ah) < 0.0) {
-        bad_ah = good_ah;
         good_ah *= 2.0;
         if (good_ah > most_times * own_ah) return std::nullopt;
     }
-    while (spare_of(bad_ah) >= 0.0) {
-        good_ah = bad_ah;
-        bad_ah /= 2.0;
-        if (bad_ah * most_times < own_ah) return good_ah;
-    }
-    return last_good(spare_of, good_ah, bad_ah);
+    const auto bracket = bracket_of(spare_of, {good_ah, good_ah / 2.0}, 0.5, own_ah / most_times);
+    return bracket.bad ? last_good(spare_of, bracket.good, *bracket.bad) : bracket.good;
 }
 
 InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,

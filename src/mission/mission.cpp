@@ -41,7 +41,7 @@ double utility_per_s(const std::vector<std::optional<Utility>>& utilities,
 std::optional<double> mean_utility(const MissionSetup& mission, const std::vector<ScheduleSegment>& schedule,
                                    double until_s) {
     const auto& utilities = mission.utilities;
-    if (std::none_of(utilities.begin(), utilities.end(), [](const auto& u) { return u.has_value(); })) {
+    if (std::ranges::none_of(utilities, [](const auto& u) { return u.has_value(); })) {
         return std::nullopt;
     }
     const auto timeline = timeline_of(mission.duration_s);

@@ -1,7 +1,7 @@
 #include "mission/mission_summary.h"
 
 #include <algorithm>
-#include <stdexcept>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,19 +24,8 @@ std::string cell(const std::optional<double>& value, int decimals) {
 }  // namespace
 
 std::string to_string(ScheduleOrigin origin) {
-    switch (origin) {
-        case ScheduleOrigin::given:
-            return "";
-        case ScheduleOrigin::optimal:
-            return "optimal";
-        case ScheduleOrigin::planned:
-            return "planned";
-        case ScheduleOrigin::infeasible:
-            return "no plan keeps the reserve";
-        case ScheduleOrigin::replanned:
-            return "replanned in flight";
-    }
-    throw std::logic_error("to_string: no such origin of a schedule");
+    constexpr std::array names{"", "optimal", "planned", "no plan keeps the reserve", "replanned in flight"};
+    return names.at(static_cast<std::size_t>(origin));
 }
 
 std::string describe(const MissionSummary& summary) {
@@ -65,13 +54,12 @@ std::string describe(const MissionSummary& summary) {
 }
 
 std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries) {
-    std::stable_sort(summaries.begin(), summaries.end(),
-                     [](const auto& a, const auto& b) { return merit(a) > merit(b); });
+    std::ranges::stable_sort(summaries, [](const auto& a, const auto& b) { return merit(a) > merit(b); });
     return summaries;
 }
 
 TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
-    const auto any = [&](const auto& has) { return std::any_of(ranked.begin(), ranked.end(), has); };
+    const auto any = [&](const auto& has) { return std::ranges::any_of(ranked, has); };
     // Most missions have no cut-off voltage, and tables are wide enough without it.
     const bool cut_off = any([](const auto& summary) { return summary.cut_off_at_s.has_value(); });
     const bool utility = any([](const auto& summary) { return summary.utility.has_value(); });

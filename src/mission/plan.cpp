@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace flightwatt::mission {
 namespace {
@@ -109,21 +110,15 @@ Trial best_trial(const PlanningProblem& problem, const Trial& least, double boun
         last = trial.schedule;
         reserve.learn(trial, plan.final_soc_percent);
         if (const auto course = voltage_course_of(problem, trial.schedule))
-            planner = with_voltage_course(problem, planner, *course);
+            planner = with_voltage_course(problem, planner, &*course);
     }
     return best;
 }
 
-/// A plan, its bound and how it ends.
-struct TrialPlan {
-    Plan plan;
-    MissionSummary summary;
-};
-
 /// The plan of a mission whose flights do not differ.
-TrialPlan plan_certain(const PlanningProblem& problem) {
+MissionPlan plan_certain(const PlanningProblem& problem) {
     const auto planner = make_planner(problem);
-    TrialPlan result;
+    MissionPlan result;
     auto& plan = result.plan;
     plan.bound_is_proven = !(problem.battery.thevenin && planner.depletions.charges);
     auto found = fly(problem, minimum_energy_schedule(problem));
@@ -149,12 +144,10 @@ TrialPlan plan_certain(const PlanningProblem& problem) {
 /// does, as it keeps the most charge and the highest voltage at any time. With `probability`, plans for the mission
 /// at that quantile of mechanical power.
 MissionPlan plan_by_simulation(const PlanningProblem& problem, const std::optional<double>& probability) {
-    auto [plan, summary] = plan_certain(probability ? mission_at_quantile(problem, *probability) : problem);
-    MissionPlan result{std::move(plan), {problem, {}}, std::move(summary), 0.0};
-    result.flown.schedule = result.plan.schedule;
+    auto result = plan_certain(probability ? mission_at_quantile(problem, *probability) : problem);
+    result.flown = {problem, result.plan.schedule};
     if (!probability) return result;
-    const auto at_quantile = std::move(result.summary);
-    result.summary = simulate(result.flown).summary;
+    const auto at_quantile = std::exchange(result.summary, simulate(result.flown).summary);
     if (at_quantile.final_soc_percent && result.summary.final_soc_percent) {
         result.margin_percent = *result.summary.final_soc_percent - *at_quantile.final_soc_percent;
         result.plan.final_soc_percent += result.margin_percent;

@@ -37,7 +37,7 @@ void append_merged(std::vector<ScheduleSegment>& schedule, ScheduleSegment segme
 std::vector<compute::Configuration> configurations_of(const std::vector<ScheduleSegment>& schedule) {
     std::vector<compute::Configuration> found;
     for (const auto& segment : schedule) {
-        if (std::find(found.begin(), found.end(), segment.run) == found.end()) found.push_back(segment.run);
+        if (std::ranges::find(found, segment.run) == found.end()) found.push_back(segment.run);
     }
     return found;
 }

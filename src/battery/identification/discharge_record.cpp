@@ -44,7 +44,7 @@ void require_channels(const flight::FlightSeries& series, const DischargeRecord&
         const auto [low, high] = std::minmax_element(values->begin(), values->end());
         if (*low == *high) refuse(fmt::format("its {} is {} throughout", name, *low), needed);
     }
-    if (*std::min_element(record.voltage_v.begin(), record.voltage_v.end()) <= 0.0) {
+    if (*std::ranges::min_element(record.voltage_v) <= 0.0) {
         refuse("its voltage is not positive throughout", needed);
     }
 }
@@ -62,7 +62,7 @@ std::vector<double> integrated_charge_ah(const DischargeRecord& record) {
 
 /// The least difference between two of the values that is none of rounding.
 double least_difference(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     double least = values.back() - values.front();
     constexpr double rounding = 1e-9;
     for (std::size_t i = 1; i < values.size(); ++i) {
@@ -97,8 +97,7 @@ void add_charge(const std::vector<double>& counter_ah, DischargeRecord& record) 
 /// Not used are bursts of current that the motor did not draw.
 void mark_used(const std::vector<double>& throttle_percent, DischargeRecord& record) {
     record.used.assign(record.time_s.size(), true);
-    if (throttle_percent.empty() ||
-        *std::max_element(throttle_percent.begin(), throttle_percent.end()) < flight_throttle_percent) {
+    if (throttle_percent.empty() || *std::ranges::max_element(throttle_percent) < flight_throttle_percent) {
         return;
     }
     for (std::size_t i = 0; i < throttle_percent.size(); ++i) {
@@ -155,9 +154,7 @@ DischargeRecord discharge_record(const flight::FlightSeries& series) {
     return record;
 }
 
-std::ptrdiff_t used_samples(const DischargeRecord& record) {
-    return std::count(record.used.begin(), record.used.end(), true);
-}
+std::ptrdiff_t used_samples(const DischargeRecord& record) { return std::ranges::count(record.used, true); }
 
 std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s) {
     std::vector<double> settled(record.time_s.size(), record.resting_current_a);

@@ -41,15 +41,8 @@ int lipo_cells(double resting_voltage_v) {
 }
 
 std::string to_string(CapacityOrigin origin) {
-    switch (origin) {
-        case CapacityOrigin::given:
-            return "given";
-        case CapacityOrigin::flown:
-            return "a flight drew all of it";
-        case CapacityOrigin::chart:
-            return "the LiPo chart";
-    }
-    return "";
+    constexpr std::array names{"given", "a flight drew all of it", "the LiPo chart"};
+    return names.at(static_cast<std::size_t>(origin));
 }
 
 Capacity capacity_of(const CircuitFit& fit, int cells, std::optional<double> given_ah) {

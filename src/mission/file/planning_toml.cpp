@@ -23,7 +23,7 @@ std::optional<std::size_t> read_parameter(const TomlTable& table, const compute:
             fmt::format("the profile has {} parameters: which one has the utility?", known.size()),
             fmt::format("add parameter = ..., one of {}", fmt::join(known, ", ")));
     }
-    const auto found = std::find(known.begin(), known.end(), *name);
+    const auto found = std::ranges::find(known, *name);
     if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
     throw InputError(table.where("parameter"), fmt::format("the profile has no parameter '{}'", *name),
                      known.empty() ? "it has none: leave `parameter` out"
@@ -65,10 +65,10 @@ void read_points(const TomlTable& table, const std::vector<double>& axis, Utilit
             fmt::format("{} numbers of qos and {} of {} are no points", x.size(), y.size(), value),
             "give as many of each, 2 or more");
     }
-    if (std::adjacent_find(x.begin(), x.end(), std::greater_equal<>()) != x.end()) {
+    if (std::ranges::adjacent_find(x, std::greater_equal<>()) != x.end()) {
         throw InputError(table.where("qos"), "the values of qos do not rise");
     }
-    if (!std::is_sorted(y.begin(), y.end())) {
+    if (!std::ranges::is_sorted(y)) {
         throw InputError(table.where(value),
                          fmt::format("{} falls: better quality cannot have less utility", value),
                          "the numbers must not fall");
@@ -102,7 +102,7 @@ void read_levels(const TomlTable& levels, const compute::PowerProfile& profile, 
                              "leave it out for the levels that were profiled");
         }
         for (const double value : values) require_in_range(profile, i, value, levels.where(parameter));
-        std::sort(values.begin(), values.end());
+        std::ranges::sort(values);
         values.erase(std::unique(values.begin(), values.end()), values.end());
         choices.levels[i] = std::move(values);
     }

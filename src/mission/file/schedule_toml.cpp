@@ -4,6 +4,7 @@
 #include "base/units.h"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -62,24 +63,25 @@ void read_segment(const TomlTable& table, double duration_s, ScheduleEntry& entr
     }
 }
 
-/// Before a parameter is missed: the key that is there, and wrong, is what the user has to find.
-void refuse_unknown_parameters(const TomlTable& given, const std::string& component,
-                               const compute::PowerProfile& profile) {
-    const auto& known = profile.parameters;
-    for (const auto& key : given.keys()) {
-        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+/// Before a key is missed: one that is there, and wrong, is what the user has to find. `what` begins the message,
+/// `of_none` and `of_known` the hint.
+void refuse_unknown_names(const TomlTable& table, const std::vector<std::string>& known,
+                          const std::string& what, std::string_view of_none, std::string_view of_known) {
+    for (const auto& key : table.keys()) {
+        if (std::ranges::find(known, key) != known.end()) continue;
         const auto near = nearest_word(key, known);
-        throw InputError(given.where(key), fmt::format("{} has no parameter '{}'", component, key),
+        throw InputError(table.where(key), fmt::format("{} '{}'", what, key),
                          !near.empty()   ? fmt::format("did you mean '{}'?", near)
-                         : known.empty() ? "it has none"
-                                         : fmt::format("its parameters are {}", fmt::join(known, ", ")));
+                         : known.empty() ? std::string(of_none)
+                                         : fmt::format("{} {}", of_known, fmt::join(known, ", ")));
     }
 }
 
 compute::RunningComponent read_running(const TomlTable& run, const std::string& name, std::size_t index,
                                        const compute::PowerProfile& profile) {
     const auto given = run.table(name);
-    refuse_unknown_parameters(given, name, profile);
+    refuse_unknown_names(given, profile.parameters, name + " has no parameter", "it has none",
+                         "its parameters are");
     compute::RunningComponent running{index, {}};
     for (std::size_t i = 0; i < profile.parameters.size(); ++i) {
         const auto& parameter = profile.parameters[i];
@@ -93,14 +95,8 @@ compute::RunningComponent read_running(const TomlTable& run, const std::string& 
 compute::Configuration read_run(const TomlTable& run, const compute::ComputeModel& compute) {
     std::vector<std::string> known;
     for (const auto& component : compute.components) known.push_back(component.name);
-    for (const auto& name : run.keys()) {
-        if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-        const auto near = nearest_word(name, known);
-        throw InputError(run.where(name), fmt::format("there is no component '{}'", name),
-                         !near.empty()   ? fmt::format("did you mean '{}'?", near)
-                         : known.empty() ? "the mission has no [components.NAME]"
-                                         : fmt::format("the components are {}", fmt::join(known, ", ")));
-    }
+    refuse_unknown_names(run, known, "there is no component", "the mission has no [components.NAME]",
+                         "the components are");
     // In the model's order, not the file's: sums of power are then the same however a mission is written.
     compute::Configuration configuration;
     for (std::size_t i = 0; i < known.size(); ++i) {
@@ -136,106 +132,69 @@ ScheduleEntry read_entry(const TomlTable& table, const compute::ComputeModel& co
     return entry;
 }
 
-/// An `otherwise`, and whether it found anything to cover.
-struct Filler {
-    const ScheduleEntry* entry = nullptr;
-    bool used = false;
-};
-
-struct Fillers {
-    flight::PerPhase<Filler> of_phase;
-    Filler of_mission;
-};
-
-Fillers find_fillers(const std::vector<ScheduleEntry>& entries) {
-    Fillers fillers;
-    for (const auto& entry : entries) {
-        if (!entry.otherwise) continue;
-        auto& filler = entry.phase ? fillers.of_phase[*entry.phase] : fillers.of_mission;
-        if (filler.entry != nullptr) {
-            throw InputError(entry.where,
-                             fmt::format("a second `otherwise` for {}, the first is in line {}",
-                                         entry.phase ? to_string(*entry.phase) : "the whole mission",
-                                         filler.entry->where.line),
-                             "keep one of them");
-        }
-        filler.entry = &entry;
-    }
-    return fillers;
+/// The `otherwise` of a phase, or of the mission.
+const ScheduleEntry* otherwise_of(const std::vector<ScheduleEntry>& entries,
+                                  std::optional<flight::Phase> phase) {
+    const auto found = std::ranges::find_if(
+        entries, [&](const ScheduleEntry& entry) { return entry.otherwise && entry.phase == phase; });
+    return found == entries.end() ? nullptr : &*found;
 }
 
-void refuse_unused(const Filler& filler) {
-    if (filler.entry == nullptr || filler.used) return;
-    throw InputError(filler.entry->where, "this `otherwise` covers nothing: the other entries leave no time",
-                     "take it out");
+void refuse_second_otherwise(const std::vector<ScheduleEntry>& entries) {
+    for (const auto& entry : entries) {
+        const auto* first = otherwise_of(entries, entry.phase);
+        if (!entry.otherwise || first == &entry) continue;
+        throw InputError(
+            entry.where,
+            fmt::format("a second `otherwise` for {}, the first is in line {}",
+                        entry.phase ? to_string(*entry.phase) : "the whole mission", first->where.line),
+            "keep one of them");
+    }
 }
 
 [[noreturn]] void refuse_overlap(const ScheduleEntry& first, const ScheduleEntry& second) {
-    const bool in_order = first.where.line <= second.where.line;
-    const auto& later = in_order ? second : first;
-    const auto& earlier = in_order ? first : second;
-    const bool whole = first.whole_phase || second.whole_phase;
+    const auto [earlier, later] =
+        std::minmax(first, second, [](const auto& a, const auto& b) { return a.where.line < b.where.line; });
     throw InputError(
         later.where,
         fmt::format(
             "{} is scheduled twice, here and in line {}",
             spell(*first.phase, std::max(first.start_s, second.start_s), std::min(first.end_s, second.end_s)),
             earlier.where.line),
-        whole ? "give the entry of the whole phase `otherwise = true`, and it takes what the others leave"
-              : "let one end where the other begins");
+        first.whole_phase || second.whole_phase
+            ? "give the entry of the whole phase `otherwise = true`, and it takes what the others leave"
+            : "let one end where the other begins");
 }
 
-[[noreturn]] void refuse_gap(const ScheduleSegment& gap, const ScheduleEntry& near) {
-    throw InputError(near.where,
-                     fmt::format("nothing is scheduled for {}", spell(gap.phase, gap.start_s, gap.end_s)),
-                     "add an entry with `otherwise = true`; `run = {}` runs nothing");
-}
+/// Where an entry lies once it meets its neighbours, or an end of the phase, up to rounding.
+struct PlacedEntry {
+    PhaseSegment segment;
+    const ScheduleEntry* entry;
+};
 
-std::vector<const ScheduleEntry*> explicit_entries(const std::vector<ScheduleEntry>& entries,
-                                                   flight::Phase phase) {
-    std::vector<const ScheduleEntry*> found;
-    for (const auto& entry : entries) {
-        if (!entry.otherwise && entry.phase == phase) found.push_back(&entry);
-    }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const auto* a, const auto* b) { return a->start_s < b->start_s; });
-    return found;
-}
-
-void refuse_overlaps(const std::vector<ScheduleEntry>& entries, flight::Phase phase, double tolerance_s) {
-    const auto sorted = explicit_entries(entries, phase);
-    for (std::size_t i = 1; i < sorted.size(); ++i) {
-        if (sorted[i]->start_s < sorted[i - 1]->end_s - tolerance_s)
-            refuse_overlap(*sorted[i - 1], *sorted[i]);
-    }
-}
-
-/// Appends the segments of one phase, whose explicit entries do not overlap.
-void resolve_phase(const std::vector<ScheduleEntry>& entries, flight::Phase phase, double duration_s,
-                   Fillers& fillers, std::vector<ScheduleSegment>& segments) {
+/// The explicit entries of a phase in order. Throws InputError where two overlap.
+std::vector<PlacedEntry> placed_entries(const std::vector<ScheduleEntry>& entries, flight::Phase phase,
+                                        double duration_s) {
     const double tolerance_s = same_time_tolerance_s(duration_s);
+    std::vector<PlacedEntry> placed;
+    for (const auto& entry : entries) {
+        if (!entry.otherwise && entry.phase == phase)
+            placed.push_back({{phase, entry.start_s, entry.end_s}, &entry});
+    }
+    std::ranges::stable_sort(placed, [](const PlacedEntry& a, const PlacedEntry& b) {
+        return a.segment.start_s < b.segment.start_s;
+    });
     double covered_s = 0.0;
     const ScheduleEntry* previous = nullptr;
-    const auto fill_until = [&](double until_s, const ScheduleEntry& near) {
-        ScheduleSegment gap{phase, covered_s, until_s, {}};
-        auto& own = fillers.of_phase[phase];
-        auto& filler = own.entry != nullptr ? own : fillers.of_mission;
-        if (filler.entry == nullptr) refuse_gap(gap, near);
-        gap.run = filler.entry->run;
-        filler.used = true;
-        segments.push_back(std::move(gap));
-        covered_s = until_s;
-    };
-    for (const auto* entry : explicit_entries(entries, phase)) {
-        if (entry->start_s > covered_s + tolerance_s) fill_until(entry->start_s, *entry);
-        const double end_s = entry->end_s >= duration_s - tolerance_s ? duration_s : entry->end_s;
-        segments.push_back({phase, covered_s, end_s, entry->run});
-        covered_s = end_s;
+    for (auto& [segment, entry] : placed) {
+        if (previous != nullptr && segment.start_s < previous->end_s - tolerance_s)
+            refuse_overlap(*previous, *entry);
+        if (segment.start_s <= covered_s + tolerance_s) segment.start_s = covered_s;
+        if (segment.end_s >= duration_s - tolerance_s) segment.end_s = duration_s;
+        covered_s = segment.end_s;
         previous = entry;
     }
-    if (covered_s < duration_s - tolerance_s) {
-        fill_until(duration_s, previous != nullptr ? *previous : entries.back());
-    }
+    return placed;
 }
 
 }  // namespace
@@ -267,16 +226,39 @@ std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const compute
 std::vector<ScheduleSegment> resolve_schedule(const std::vector<ScheduleEntry>& entries,
                                               const flight::PerPhase<double>& duration_s) {
     if (entries.empty()) throw std::invalid_argument("a schedule has at least one entry");
-    auto fillers = find_fillers(entries);
-    for (const auto phase : flight::all_phases) {
-        refuse_overlaps(entries, phase, same_time_tolerance_s(duration_s[phase]));
-    }
+    refuse_second_otherwise(entries);
+    flight::PerPhase<std::vector<PlacedEntry>> placed;
+    for (const auto phase : flight::all_phases)
+        placed[phase] = placed_entries(entries, phase, duration_s[phase]);
     std::vector<ScheduleSegment> segments;
+    std::set<const ScheduleEntry*> used;
     for (const auto phase : flight::all_phases) {
-        if (duration_s[phase] > 0.0) resolve_phase(entries, phase, duration_s[phase], fillers, segments);
+        double covered_s = 0.0;
+        const auto fill_until = [&](double until_s, const ScheduleEntry& near) {
+            const auto* filler = otherwise_of(entries, phase);
+            if (filler == nullptr) filler = otherwise_of(entries, std::nullopt);
+            if (filler == nullptr) {
+                throw InputError(near.where,
+                                 fmt::format("nothing is scheduled for {}", spell(phase, covered_s, until_s)),
+                                 "add an entry with `otherwise = true`; `run = {}` runs nothing");
+            }
+            used.insert(filler);
+            segments.push_back({phase, covered_s, until_s, filler->run});
+        };
+        for (const auto& [segment, entry] : placed[phase]) {
+            if (segment.start_s > covered_s) fill_until(segment.start_s, *entry);
+            segments.push_back({segment, entry->run});
+            covered_s = segment.end_s;
+        }
+        if (covered_s < duration_s[phase] - same_time_tolerance_s(duration_s[phase]))
+            fill_until(duration_s[phase],
+                       placed[phase].empty() ? entries.back() : *placed[phase].back().entry);
     }
-    for (const auto& filler : fillers.of_phase.values) refuse_unused(filler);
-    refuse_unused(fillers.of_mission);
+    for (const auto& entry : entries) {
+        if (!entry.otherwise || used.contains(&entry)) continue;
+        throw InputError(entry.where, "this `otherwise` covers nothing: the other entries leave no time",
+                         "take it out");
+    }
     return segments;
 }
 
@@ -289,16 +271,8 @@ std::vector<ScheduleSegment> resolve_fixed_segments(const std::vector<ScheduleEn
     }
     std::vector<ScheduleSegment> segments;
     for (const auto phase : flight::all_phases) {
-        const double tolerance_s = same_time_tolerance_s(duration_s[phase]);
-        refuse_overlaps(entries, phase, tolerance_s);
-        double covered_s = 0.0;
-        for (const auto* entry : explicit_entries(entries, phase)) {
-            const double start_s = entry->start_s > covered_s + tolerance_s ? entry->start_s : covered_s;
-            const double end_s =
-                entry->end_s >= duration_s[phase] - tolerance_s ? duration_s[phase] : entry->end_s;
-            segments.push_back({phase, start_s, end_s, entry->run});
-            covered_s = end_s;
-        }
+        for (const auto& [segment, entry] : placed_entries(entries, phase, duration_s[phase]))
+            segments.push_back({segment, entry->run});
     }
     return segments;
 }

@@ -1,7 +1,5 @@
 #include "mission/planning/planner.h"
 
-#include "mission/planning/voltage_course.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -85,12 +83,12 @@ std::vector<Choice> every_choice(const PlanningProblem& problem) {
 /// on with what is fixed can be better than something better.
 std::vector<Choice> undominated(std::vector<Choice> choices,
                                 const std::vector<compute::Configuration>& kept) {
-    std::stable_sort(choices.begin(), choices.end(), draws_less);
+    std::ranges::stable_sort(choices, draws_less);
     std::optional<double> most;
     std::erase_if(choices, [&](const Choice& choice) {
         const bool better = !most || choice.utility_per_s > *most;
         if (better) most = choice.utility_per_s;
-        return !better && std::find(kept.begin(), kept.end(), choice.run) == kept.end();
+        return !better && std::ranges::find(kept, choice.run) == kept.end();
     });
     return choices;
 }
@@ -113,13 +111,6 @@ void require_few_slots(const PlanningProblem& problem, double duration_s) {
                      "make slot_s in [plan] longer");
 }
 
-std::optional<std::size_t> choice_of(const Planner& planner, const compute::Configuration& run) {
-    const auto& known = planner.depletions.configurations;
-    const auto found = std::find(known.begin(), known.end(), run);
-    if (found == known.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - known.begin());
-}
-
 MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner& planner,
                                    const PlanStart& start, const std::vector<MissionSlot>& slots) {
     MultipleChoiceKnapsack knapsack;
@@ -127,12 +118,12 @@ MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner
     knapsack.free_choices = planner.free_choices;
     knapsack.dwell_s = problem.plan.dwell_s;
     if (start.running) {
-        if (const auto choice = choice_of(planner, *start.running))
+        if (const auto choice = index_of(planner.depletions, *start.running))
             knapsack.running = {*choice, start.running_for_s};
     }
     for (const auto& slot : slots) {
         KnapsackSlot choices{slot.duration_s(), std::nullopt, {}};
-        if (slot.fixed) choices.fixed = choice_of(planner, *slot.fixed).value();
+        if (slot.fixed) choices.fixed = index_of(planner.depletions, *slot.fixed).value();
         double more_percent = 0.0;
         if (start.mechanical_factor != 1.0) {
             more_percent = (start.mechanical_factor - 1.0) *
@@ -159,26 +150,26 @@ std::vector<ScheduleSegment> schedule_of(const Planner& planner, const std::vect
 compute::Configuration least_power_configuration(const PlanningProblem& problem) {
     require_few(problem);
     const auto choices = every_choice(problem);
-    return std::min_element(choices.begin(), choices.end(), draws_less)->run;
+    return std::ranges::min_element(choices, draws_less)->run;
 }
 
 Planner make_planner(const PlanningProblem& problem) {
-    if (std::none_of(problem.utilities.begin(), problem.utilities.end(), [](const auto& u) { return !!u; })) {
-        throw InputError({problem.file}, "the mission does not say what quality of service is worth",
+    if (std::ranges::none_of(problem.utilities, [](const auto& u) { return !!u; })) {
+        throw InputError({problem.file}, "the mission states no utility",
                          "give a component utility = { parameter = ..., weight = ... }");
     }
     require_few(problem);
     const auto fixed = configurations_of(problem.fixed);
     const auto kept = problem.plan.dwell_s > 0.0 ? fixed : std::vector<compute::Configuration>();
     Planner planner;
-    std::vector<compute::Configuration> configurations;
+    auto& configurations = planner.depletions.configurations;
     for (auto& choice : undominated(every_choice(problem), kept)) {
         configurations.push_back(std::move(choice.run));
         planner.utility_per_s.push_back(choice.utility_per_s);
     }
     planner.free_choices = configurations.size();
     for (const auto& run : fixed) {
-        if (std::find(configurations.begin(), configurations.end(), run) != configurations.end()) continue;
+        if (index_of(planner.depletions, run)) continue;
         configurations.push_back(run);
         planner.utility_per_s.push_back(utility_per_s(problem.utilities, run));
     }
@@ -186,16 +177,11 @@ Planner make_planner(const PlanningProblem& problem) {
     if (problem.battery.thevenin) highest = voltage_course_of(problem, minimum_energy_schedule(problem));
     if (highest) {
         for (auto& voltage_v : highest->voltage_v) voltage_v += highest->error_v;
-        planner.depletions = make_depletion_table(problem, std::move(configurations), *highest);
-        planner.mechanical_depletion = make_depletion_table(problem, {{}}, *highest);
-        return planner;
     }
-    planner.depletions = make_depletion_table(problem, std::move(configurations));
-    planner.mechanical_depletion = make_depletion_table(problem, {{}});
-    return planner;
+    return with_voltage_course(problem, std::move(planner), highest ? &*highest : nullptr);
 }
 
-Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse& course) {
+Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse* course) {
     planner.depletions = make_depletion_table(problem, std::move(planner.depletions.configurations), course);
     planner.mechanical_depletion = make_depletion_table(problem, {{}}, course);
     return planner;

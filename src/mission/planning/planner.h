@@ -29,8 +29,8 @@ struct Planner {
 /// than this table says.
 Planner make_planner(const PlanningProblem& problem);
 
-/// The same choices, with their depletion along a course of the source's voltage.
-Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse& course);
+/// The same choices, with their depletion along a course of the source's voltage, as make_depletion_table.
+Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse* course);
 
 /// The schedule that demands least energy: the configuration that draws least wherever nothing is fixed (which
 /// any dwell time allows). Throws InputError as make_planner does for too many combinations.

@@ -16,14 +16,10 @@ struct FlightSpreads {
     std::vector<std::string> not_drawn;  ///< what is taken as it is, for want of a spread
 };
 
-/// Levels: as level_deviation. Durations: duration_sd_s, or what the model's flights show, with the same factor and in proportion to the
-/// mission's duration. Computing: compute_sd_percent, or the standard errors of the profile's nodes. Battery:
-/// capacity_sd_percent, and the 95 % intervals of its file.
+/// Levels: as level_deviation. Durations: duration_sd_s, or what the model's flights show, with the same factor and in
+/// proportion to the mission's duration. Computing: compute_sd_percent, or the standard errors of the profile's nodes.
+/// Battery: capacity_sd_percent, and the 95 % intervals of its file.
 FlightSpreads find_spreads(const MissionSetup& mission);
-
-/// The same. Throws InputError, which says what is missing and how to get it, where there is nothing to draw
-/// from.
-FlightSpreads spreads_of(const MissionSetup& mission);
 
 /// The mission as flight number `index` flies it: all normal, independent of each other, and of `seed` and
 /// `index` alone. Levels move a phase's whole curve; a component's nodes move together, unless they have

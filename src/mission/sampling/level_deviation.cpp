@@ -63,10 +63,9 @@ double level_sd_w(const MissionSetup& mission, flight::Phase phase) {
 
 double soc_depletion_sd_percent(const MissionSetup& mission,
                                 const std::vector<compute::Configuration>& configurations) {
-    const auto most_power =
-        std::max_element(configurations.begin(), configurations.end(), [&](const auto& a, const auto& b) {
-            return power_w(mission.compute, a) < power_w(mission.compute, b);
-        });
+    const auto most_power = std::ranges::max_element(configurations, [&](const auto& a, const auto& b) {
+        return power_w(mission.compute, a) < power_w(mission.compute, b);
+    });
     if (most_power == configurations.end())
         throw std::invalid_argument("soc_depletion_sd_percent: no configuration");
     double variance = 0.0;

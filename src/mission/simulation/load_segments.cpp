@@ -20,7 +20,7 @@ std::vector<double> cuts_of(const LoadSegment& segment, const std::vector<Distur
                 cuts.push_back(time_s);
         }
     }
-    std::sort(cuts.begin(), cuts.end());
+    std::ranges::sort(cuts);
     cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
     cuts.push_back(segment.end_s);
     return cuts;
