@@ -26,9 +26,8 @@ OpenCircuitVoltage read_curve(const TomlTable& table) {
         throw InputError(table.where(key), message, hint);
     };
     if (soc.size() < 2 || soc.front() != 0.0 || soc.back() != 100.0 ||
-        std::ranges::adjacent_find(soc, std::greater_equal<>()) != soc.end()) {
+        std::ranges::adjacent_find(soc, std::greater_equal<>()) != soc.end())
         refuse("soc_percent", "soc_percent does not rise from 0 to 100", "expected [0, ..., 100]");
-    }
     if (volts.size() != soc.size()) {
         refuse("voltage_v", fmt::format("{} voltages for {} states of charge", volts.size(), soc.size()),
                "expected one each");
@@ -98,9 +97,8 @@ std::string interval_lines(const BatteryIntervals& intervals) {
                                         {"voltage_v", intervals.voltage_v},
                                         {"resistance_ohm", intervals.resistance_ohm},
                                         {"rc_resistance_ohm", intervals.rc_resistance_ohm},
-                                        {"rc_time_constant_s", intervals.rc_time_constant_s}}) {
+                                        {"rc_time_constant_s", intervals.rc_time_constant_s}})
         if (interval) lines += fmt::format("{} = {}\n", key, toml_reals({interval->low, interval->high}));
-    }
     return lines.empty() ? "" : "\n# 95 %\n[intervals]\n" + lines;
 }
 
@@ -193,9 +191,8 @@ std::string to_toml(const Battery& battery) {
     if (battery.thevenin) {
         const auto& circuit = *battery.thevenin;
         text += fmt::format("rc_resistance_ohm = {}\n", toml_real(circuit.rc_resistance_ohm));
-        if (circuit.rc_resistance_ohm > 0.0) {
+        if (circuit.rc_resistance_ohm > 0.0)
             text += fmt::format("rc_time_constant_s = {}\n", toml_real(circuit.rc_time_constant_s));
-        }
         text += fmt::format("\n[open_circuit]\nsoc_percent = {}\nvoltage_v = {}\n",
                             toml_reals(circuit.open_circuit.soc_percent),
                             toml_reals(circuit.open_circuit.voltage_v));

@@ -101,13 +101,11 @@ Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
     }
     const auto state = after(step, length_s);
     std::optional<Onset> cut_off;
-    if (cutoff_v > 0.0) {
+    if (cutoff_v > 0.0)
         cut_off = first_onset(length_s, [&](double s) { return is_below_cutoff(step, s, cutoff_v); });
-    }
     std::optional<Onset> empty;
-    if (state.soc_percent <= 0.0) {
+    if (state.soc_percent <= 0.0)
         empty = first_onset(length_s, [&](double s) { return after(step, s).soc_percent <= 0.0; });
-    }
     if (empty && (!cut_off || empty->first_s <= cut_off->first_s))
         return {{0.0, after(step, empty->first_s).rc_voltage_v}, step.time_s + empty->first_s};
     if (cut_off) return {after(step, cut_off->first_s), std::nullopt, step.time_s + cut_off->first_s};

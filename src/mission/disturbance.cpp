@@ -18,7 +18,7 @@ struct TimeFrame {
     double duration_s = 0.0;
 };
 
-TimeFrame frame_of(const TomlTable& entry, const flight::PerPhase<double>& duration_s) {
+TimeFrame frame_of(const TomlTable& entry, const PerPhase<double>& duration_s) {
     const auto timeline = timeline_of(duration_s);
     if (!entry.has("phase")) return {"the mission", 0.0, timeline.duration_s};
     const auto phase = read_flown_phase(entry, duration_s);
@@ -77,7 +77,7 @@ constexpr std::array number_keys{
     NumberKey{"resistance_factor", between(0.0, largest_factor), &Disturbance::resistance_factor},
 };
 
-Disturbance read_disturbance(const TomlTable& entry, const flight::PerPhase<double>& duration_s) {
+Disturbance read_disturbance(const TomlTable& entry, const PerPhase<double>& duration_s) {
     entry.refuse_keys_except({"phase", "from", "to", "at", "mechanical_factor", "mechanical_w",
                               "compute_factor", "compute_w", "soc_drop_percent", "capacity_factor",
                               "resistance_factor"});
@@ -102,9 +102,8 @@ Disturbance read_disturbance(const TomlTable& entry, const flight::PerPhase<doub
 }
 
 void refuse_nothing(const TomlTable& entry) {
-    for (const auto& key : entry.keys()) {
+    for (const auto& key : entry.keys())
         if (key != "phase" && key != "from" && key != "to") return;
-    }
     throw InputError(entry.where(), "this entry changes nothing",
                      "give it mechanical_factor, mechanical_w, compute_factor, compute_w, capacity_factor, "
                      "resistance_factor or soc_drop_percent");
@@ -112,7 +111,7 @@ void refuse_nothing(const TomlTable& entry) {
 
 }  // namespace
 
-battery::Battery disturbed(battery::Battery battery, const std::vector<Disturbance>& disturbances) {
+battery::Battery disturbed(battery::Battery battery, const Disturbances& disturbances) {
     for (const auto& disturbance : disturbances) {
         battery.capacity_ah *= disturbance.capacity_factor;
         battery.resistance_ohm *= disturbance.resistance_factor;
@@ -121,9 +120,8 @@ battery::Battery disturbed(battery::Battery battery, const std::vector<Disturban
     return battery;
 }
 
-std::vector<Disturbance> rescale_to_flown_durations(std::vector<Disturbance> disturbances,
-                                                    const flight::PerPhase<double>& planned_s,
-                                                    const flight::PerPhase<double>& flown_s) {
+Disturbances rescale_to_flown_durations(Disturbances disturbances, const PerPhase<double>& planned_s,
+                                        const PerPhase<double>& flown_s) {
     for (auto& disturbance : disturbances) {
         disturbance.start_s = rescale_to_flown_durations_s(disturbance.start_s, planned_s, flown_s);
         disturbance.end_s = rescale_to_flown_durations_s(disturbance.end_s, planned_s, flown_s);
@@ -131,19 +129,17 @@ std::vector<Disturbance> rescale_to_flown_durations(std::vector<Disturbance> dis
     return disturbances;
 }
 
-std::vector<Disturbance> read_disturbances(const std::filesystem::path& path,
-                                           const flight::PerPhase<double>& duration_s) {
+Disturbances read_disturbances(const std::filesystem::path& path, const PerPhase<double>& duration_s) {
     const auto root = read_toml(path);
     root.refuse_keys_except({"format", "disturbance"});
     require_known_format(root);
-    std::vector<Disturbance> disturbances;
+    Disturbances disturbances;
     for (const auto& entry : root.tables("disturbance")) {
         refuse_nothing(entry);
         disturbances.push_back(read_disturbance(entry, duration_s));
     }
-    if (disturbances.empty()) {
+    if (disturbances.empty())
         throw InputError(root.where(), "there are no disturbances", "add [[disturbance]] entries");
-    }
     return disturbances;
 }
 

@@ -128,11 +128,8 @@ double spare_percent(const Mission& mission) {
     }
     const auto summary = simulate(mission).summary;
     if (summary.feasible) return *summary.final_soc_percent - mission.reserve_soc_percent;
-    const double ended_s = summary.undeliverable   ? summary.undeliverable->time_s
-                           : summary.depleted_at_s ? *summary.depleted_at_s
-                                                   : *summary.cut_off_at_s;
     return -mission.reserve_soc_percent -
-           units::percent_of(summary.duration_s - ended_s, summary.duration_s) - 1e-9;
+           units::percent_of(summary.duration_s - powered_until_s(summary), summary.duration_s) - 1e-9;
 }
 
 FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
@@ -144,11 +141,10 @@ FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
     double fits_s = shortest_cruise_s;
     while (fits_s < longest_cruise_s && !if_it_fits(mission_of, fits_s)) fits_s *= 2.0;
     Bracket bracket{0.0, fits_s};
-    if (spare_of(fits_s) < 0.0) {
+    if (spare_of(fits_s) < 0.0)
         bracket.good = short_enough_s(mission_of, fits_s);
-    } else {
+    else
         bracket = bracket_of(spare_of, {fits_s, 2.0 * fits_s}, 2.0, longest_cruise_s);
-    }
     if (!bracket.bad)
         throw NoAnswerError(fmt::format("a cruise of {:.3g} s still lands with the reserve", bracket.good));
     const double cruise_s = last_good(spare_of, bracket.good, *bracket.bad);
@@ -221,9 +217,8 @@ InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const M
     }
     // Depletion and margin are parts of the capacity; the reserve stays what it is.
     const double usable = problem.initial_soc_percent - problem.reserve_soc_percent;
-    if (usable > 0.0) {
+    if (usable > 0.0)
         report.capacity_ah = problem.battery.capacity_ah * (least_depletion + plan.margin_percent) / usable;
-    }
     return report;
 }
 
@@ -231,7 +226,7 @@ std::string describe(const MissionSetup& mission, const InfeasibilityReport& rep
     std::vector<std::string> remedies;
     if (report.cruise_s) {
         remedies.push_back(fmt::format("a cruise {:.1f} s shorter ({:.1f} s)",
-                                       mission.duration_s[flight::Phase::cruise] - *report.cruise_s,
+                                       mission.duration_s[Phase::cruise] - *report.cruise_s,
                                        *report.cruise_s));
     }
     if (report.fixed_spare_percent) {
@@ -239,9 +234,8 @@ std::string describe(const MissionSetup& mission, const InfeasibilityReport& rep
             fmt::format("lower quality where it is fixed (the least leaves {:.2f} points to spare)",
                         *report.fixed_spare_percent));
     }
-    if (report.reserve_soc_percent) {
+    if (report.reserve_soc_percent)
         remedies.push_back(fmt::format("a reserve of at most {:.2f} %", *report.reserve_soc_percent));
-    }
     if (report.capacity_ah) {
         remedies.push_back(fmt::format("a battery of {:.3f} Ah instead of {:.3f} Ah", *report.capacity_ah,
                                        mission.battery.capacity_ah));

@@ -38,12 +38,9 @@ double utility_per_s(const std::vector<std::optional<Utility>>& utilities,
     return sum;
 }
 
-std::optional<double> mean_utility(const MissionSetup& mission, const std::vector<ScheduleSegment>& schedule,
-                                   double until_s) {
+std::optional<double> mean_utility(const MissionSetup& mission, const Schedule& schedule, double until_s) {
     const auto& utilities = mission.utilities;
-    if (std::ranges::none_of(utilities, [](const auto& u) { return u.has_value(); })) {
-        return std::nullopt;
-    }
+    if (std::ranges::none_of(utilities, [](const auto& u) { return u.has_value(); })) return std::nullopt;
     const auto timeline = timeline_of(mission.duration_s);
     double sum = 0.0;
     for (const auto& segment : schedule) {

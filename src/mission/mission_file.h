@@ -30,8 +30,7 @@ AnyMission parse_mission(std::string_view text, const std::filesystem::path& pat
 /// everything else says what it said, its keys sorted and without comments. `compute` is the mission's. The
 /// files that it names are found from `folder`, where the result is to stand.
 std::string planned_mission_toml(std::string_view text, const std::filesystem::path& path,
-                                 const compute::ComputeModel& compute,
-                                 const std::vector<ScheduleSegment>& schedule,
+                                 const compute::ComputeModel& compute, const Schedule& schedule,
                                  const std::filesystem::path& folder);
 
 }  // namespace flightwatt::mission

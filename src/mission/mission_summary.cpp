@@ -12,8 +12,7 @@ namespace {
 /// Greater is better: what lasts, by the charge left; then what ended early, by how long it lasted.
 std::pair<int, double> merit(const MissionSummary& summary) {
     if (!summary.final_soc_percent) return {0, 0.0};  // undeliverable
-    if (summary.depleted_at_s) return {1, *summary.depleted_at_s};
-    if (summary.cut_off_at_s) return {1, *summary.cut_off_at_s};
+    if (summary.depleted_at_s || summary.cut_off_at_s) return {1, powered_until_s(summary)};
     return {2, *summary.final_soc_percent};
 }
 
@@ -26,6 +25,11 @@ std::string cell(const std::optional<double>& value, int decimals) {
 std::string to_string(ScheduleOrigin origin) {
     constexpr std::array names{"", "optimal", "planned", "no plan keeps the reserve", "replanned in flight"};
     return names.at(static_cast<std::size_t>(origin));
+}
+
+double powered_until_s(const MissionSummary& summary) {
+    if (summary.undeliverable) return summary.undeliverable->time_s;
+    return summary.depleted_at_s.value_or(summary.cut_off_at_s.value_or(summary.duration_s));
 }
 
 std::string describe(const MissionSummary& summary) {

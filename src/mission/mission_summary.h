@@ -86,6 +86,9 @@ struct MissionSummary {
     std::optional<SampledFlights> samples = std::nullopt;       ///< if flights were drawn
 };
 
+/// When the battery ended or failed, or the mission's end if it lasts.
+double powered_until_s(const MissionSummary& summary);
+
 /// One line for people: what is left, or when and why the battery failed.
 std::string describe(const MissionSummary& summary);
 

@@ -28,14 +28,14 @@ double reserve_deficit_percent(const MissionSetup& mission, const MissionSummary
 
 /// A schedule, simulated.
 struct Trial {
-    std::vector<ScheduleSegment> schedule;
+    Schedule schedule;
     MissionSummary summary;
     double deficit_percent = 0.0;
 
     bool lands() const { return summary.feasible && deficit_percent <= 0.0; }
 };
 
-Trial fly(const PlanningProblem& problem, std::vector<ScheduleSegment> schedule) {
+Trial fly(const PlanningProblem& problem, Schedule schedule) {
     Trial trial{std::move(schedule), {}, 0.0};
     trial.summary = simulate(problem, trial.schedule).summary;
     trial.deficit_percent = reserve_deficit_percent(problem, trial.summary, problem.reserve_soc_percent);
@@ -95,7 +95,7 @@ Trial best_trial(const PlanningProblem& problem, const Trial& least, double boun
     Trial best = least;
     auto planner = highest;
     PlannedReserve reserve(problem.reserve_soc_percent, *least.summary.final_soc_percent);
-    std::vector<ScheduleSegment> last;
+    Schedule last;
     for (int round = 0; round < max_simulation_rounds; ++round) {
         const auto plan = plan_rest(problem, planner, start_of(problem), reserve.percent());
         if (!plan.feasible) {
@@ -136,13 +136,10 @@ MissionPlan plan_certain(const PlanningProblem& problem) {
     return result;
 }
 
-/// Plans a mission whose battery's source follows its charge, or may be cut off: the depletion by a slot then
-/// depends on what ran before it. The table is made along the voltage of the last plan simulated, and planned anew,
-/// with as much more reserve as the simulation fell short, until a plan lands and the next is no better. The bound
-/// is that of the table along the highest voltage that any schedule keeps (see planner.h), so it is proven though not
-/// always reached; where something charges it is not. If the schedule of least energy demand does not land, none
-/// does, as it keeps the most charge and the highest voltage at any time. With `probability`, plans for the mission
-/// at that quantile of mechanical power.
+/// For a battery whose source follows its charge, or that may be cut off: the depletion by a slot then depends on what
+/// ran before it. Tables are made along the voltage of the last plan simulated, until a plan lands and the next is no
+/// better; the bound is that of the highest voltage that any schedule keeps. If the schedule of least energy demand
+/// does not land, none does, as it keeps the most charge and the highest voltage at any time.
 MissionPlan plan_by_simulation(const PlanningProblem& problem, const std::optional<double>& probability) {
     auto result = plan_certain(probability ? mission_at_quantile(problem, *probability) : problem);
     result.flown = {problem, result.plan.schedule};
@@ -165,7 +162,7 @@ MissionPlan plan_by_tables(const PlanningProblem& problem, const std::optional<d
     const double wanted_percent = problem.reserve_soc_percent + result.margin_percent;
     double planned_percent = wanted_percent;
     std::optional<double> bound;
-    std::vector<ScheduleSegment> schedule;
+    Schedule schedule;
     bool lands = false;
     for (int round = 0; round < max_reserve_rounds && !lands; ++round) {
         result.plan = plan_rest(problem, planner, start, planned_percent);

@@ -3,7 +3,6 @@
 #include "mission/simulation.h"
 
 #include <optional>
-#include <vector>
 
 namespace flightwatt::mission {
 
@@ -12,7 +11,7 @@ struct Plan {
     bool feasible = false;
     bool deliverable = false;  ///< the battery can deliver the power of some schedule
     /// From the start to the mission's end; if infeasible, the one of least energy demand.
-    std::vector<ScheduleSegment> schedule;
+    Schedule schedule;
     double utility = 0.0;            ///< mean utility a second of the rest of the mission
     double bound = 0.0;              ///< no schedule that keeps the reserve has more; 0 if infeasible
     bool bound_is_proven = true;     ///< false: something charges a battery whose source follows its charge

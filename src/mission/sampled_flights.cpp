@@ -10,7 +10,6 @@
 #include <atomic>
 #include <cmath>
 #include <future>
-#include <iterator>
 #include <thread>
 
 #include <fmt/format.h>
@@ -68,8 +67,8 @@ Landing land(const DrawnFlight& flight, const std::vector<double>& times_s) {
 /// Draws and flies flights, and hands each to the place of its number.
 class Sampler {
   public:
-    Sampler(const PreparedMission& prepared, const std::vector<Disturbance>& disturbances,
-            const FlightSpreads& spreads, const SamplingOptions& options)
+    Sampler(const PreparedMission& prepared, const Disturbances& disturbances, const FlightSpreads& spreads,
+            const SamplingOptions& options)
         : prepared_(prepared), disturbances_(disturbances), spreads_(spreads), options_(options) {
         const double duration_s = timeline_of(prepared.setup.duration_s).duration_s;
         for (std::size_t i = 0; i < options.band_times; ++i) {
@@ -110,7 +109,7 @@ class Sampler {
     }
 
     const PreparedMission& prepared_;
-    const std::vector<Disturbance>& disturbances_;
+    const Disturbances& disturbances_;
     const FlightSpreads& spreads_;
     const SamplingOptions& options_;
     std::vector<double> times_s_;
@@ -169,7 +168,7 @@ void require_spread(const MissionSetup& mission) {
                      "compute_sd_percent or capacity_sd_percent");
 }
 
-SampledFlights sample_flights(const PreparedMission& prepared, const std::vector<Disturbance>& disturbances,
+SampledFlights sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                               const SamplingOptions& options) {
     if (options.samples < 2 || static_cast<double>(options.samples) > most_samples) {
         throw UsageError(fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples,

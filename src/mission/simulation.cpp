@@ -44,18 +44,13 @@ std::vector<double> output_times(const LoadSegment& segment, double output_s) {
 /// A row, unless the last one says the same already: not every end of a segment is a jump.
 void add_row(SocCurve& curve, const battery::Battery& battery, const LoadSegment& segment, double time_s,
              const battery::Discharge& state) {
-    SocRow row;
-    row.time_s = time_s;
-    row.phase = segment.phase;
-    row.mechanical_w = mechanical_w(segment, time_s);
-    row.compute_w = segment.compute_w;
-    row.power_w = power_w(segment, time_s);
+    SocRow row{time_s, segment.phase, mechanical_w(segment, time_s), segment.compute_w,
+               power_w(segment, time_s)};
     battery::BatteryState now = state;
     if (const auto ended_at_s = state.ended_at_s()) {
         // Without a load the RC pair discharges itself.
-        if (battery.thevenin) {
+        if (battery.thevenin)
             now.rc_voltage_v *= std::exp((*ended_at_s - time_s) / battery.thevenin->rc_time_constant_s);
-        }
     } else {
         row.current_a = internal_current_a(battery, std::min(row.power_w, power_limit_w(battery, now)), now);
     }
@@ -100,22 +95,17 @@ battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment,
     return state;
 }
 
-void add_energies(const std::vector<LoadSegment>& segments, double delivered_until_s,
-                  MissionSummary& summary) {
+void add_energies(const std::vector<LoadSegment>& segments, MissionSummary& summary) {
+    const double powered_s = powered_until_s(summary);
     for (const auto& segment : segments) {
         summary.mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(segment, segment.end_s));
         summary.compute_energy_wh += units::wh_from_joule(compute_energy_j(segment, segment.end_s));
-        if (segment.start_s >= delivered_until_s) continue;
-        const double until_s = std::min(segment.end_s, delivered_until_s);
+        if (segment.start_s >= powered_s) continue;
+        const double until_s = std::min(segment.end_s, powered_s);
         summary.delivered_energy_wh +=
             units::wh_from_joule(mechanical_energy_j(segment, until_s) + compute_energy_j(segment, until_s));
     }
     summary.energy_wh = summary.mechanical_energy_wh + summary.compute_energy_wh;
-}
-
-double delivered_until_s(const MissionSummary& summary) {
-    if (summary.undeliverable) return summary.undeliverable->time_s;
-    return summary.depleted_at_s.value_or(summary.cut_off_at_s.value_or(summary.duration_s));
 }
 
 /// All but the utility, which depends on the schedule.
@@ -131,7 +121,7 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
     summary.depleted_at_s = ended_early_at_s(end.empty_at_s);
     summary.cut_off_at_s = ended_early_at_s(end.cut_off_at_s);
     if (!end.undeliverable) summary.final_soc_percent = end.soc_percent;
-    add_energies(segments, delivered_until_s(summary), summary);
+    add_energies(segments, summary);
     summary.feasible = !summary.undeliverable && !summary.depleted_at_s && !summary.cut_off_at_s;
     summary.reserve_soc_percent = mission.reserve_soc_percent;
     summary.keeps_reserve = summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent;
@@ -140,8 +130,8 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
 
 }  // namespace
 
-Simulation simulate(const MissionSetup& mission, const std::vector<ScheduleSegment>& schedule,
-                    const SimulationSteps& steps, const std::vector<Disturbance>& disturbances) {
+Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationSteps& steps,
+                    const Disturbances& disturbances) {
     const auto segments = disturbed(load_segments(mission, schedule), disturbances);
     if (segments.empty()) throw std::invalid_argument("simulate: the mission has no schedule");
     require_output_step(steps.output_s, segments.back().end_s);
@@ -154,12 +144,11 @@ Simulation simulate(const MissionSetup& mission, const std::vector<ScheduleSegme
         if (state.undeliverable) break;
     }
     auto summary = summarize(mission, segments, state);
-    summary.utility = mean_utility(mission, schedule, delivered_until_s(summary));
+    summary.utility = mean_utility(mission, schedule, powered_until_s(summary));
     return {std::move(curve), std::move(summary)};
 }
 
-Simulation simulate(const Mission& mission, const SimulationSteps& steps,
-                    const std::vector<Disturbance>& disturbances) {
+Simulation simulate(const Mission& mission, const SimulationSteps& steps, const Disturbances& disturbances) {
     return simulate(mission, mission.schedule, steps, disturbances);
 }
 

@@ -11,7 +11,7 @@ namespace flightwatt::mission {
 
 struct SocRow {
     double time_s = 0.0;  ///< since the mission began
-    flight::Phase phase = flight::Phase::takeoff;
+    Phase phase = Phase::takeoff;
     double mechanical_w = 0.0;  ///< what the mission demands, whatever the battery has left
     double compute_w = 0.0;
     double power_w = 0.0;    ///< both together
@@ -44,12 +44,12 @@ struct SimulationSteps {
 /// back later does not revive it, and neither does the voltage that recovers after a cut-off. `disturbances`
 /// happen in its course. Throws UsageError for an output step that is not positive or makes too many rows, and
 /// std::invalid_argument for an empty schedule.
-Simulation simulate(const MissionSetup& mission, const std::vector<ScheduleSegment>& schedule,
-                    const SimulationSteps& steps = {}, const std::vector<Disturbance>& disturbances = {});
+Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationSteps& steps = {},
+                    const Disturbances& disturbances = {});
 
 /// The same with the mission's own schedule.
 Simulation simulate(const Mission& mission, const SimulationSteps& steps = {},
-                    const std::vector<Disturbance>& disturbances = {});
+                    const Disturbances& disturbances = {});
 
 /// time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v
 std::string to_csv(const SocCurve& curve);

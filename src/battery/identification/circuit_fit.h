@@ -37,9 +37,6 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
 /// rc_resistance and the logarithm of rc_time_constant; the last two columns are absent without an RC pair.
 Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
-/// Open-circuit voltage [V] with this charge drawn; beyond the knots the nearest line goes on.
-double open_circuit_voltage_v(const CircuitFit& fit, double charge_ah);
-
 /// 95 % intervals of a fitted circuit.
 struct CircuitErrors {
     Interval resistance_ohm;
@@ -51,13 +48,9 @@ struct CircuitErrors {
     double block_s = 0.0;
 };
 
-/// Residuals of neighbouring samples are alike (the true curve is no polygon, the sensor rounds), so samples
-/// do not count as independent, blocks of time do: the jackknife leaves each of about 30 blocks out of the
-/// linearised fit (which is the sandwich estimator CR3; Bell and McCaffrey 2002, MacKinnon, Nielsen and Webb
-/// 2023) and takes Student's t of the blocks less the parameters. From three records on it is done with whole
-/// records too, and the wider interval counts: packs and days differ. Two errors that residuals do not show
-/// come on top: rounding of a voltage that stands still, and how far a curve of twice the segments moves the
-/// parameter.
+/// By the jackknife over blocks of time, and from three records on over whole records too (docs/methods.md). Two errors
+/// that residuals do not show come on top: rounding of a voltage that stands still, and how far a curve of twice the
+/// segments moves the parameter.
 CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
 }  // namespace flightwatt::battery

@@ -44,9 +44,8 @@ void require_channels(const flight::FlightSeries& series, const DischargeRecord&
         const auto [low, high] = std::minmax_element(values->begin(), values->end());
         if (*low == *high) refuse(fmt::format("its {} is {} throughout", name, *low), needed);
     }
-    if (*std::ranges::min_element(record.voltage_v) <= 0.0) {
+    if (*std::ranges::min_element(record.voltage_v) <= 0.0)
         refuse("its voltage is not positive throughout", needed);
-    }
 }
 
 /// Charge drawn by the trapezoids of the current [Ah].
@@ -97,9 +96,8 @@ void add_charge(const std::vector<double>& counter_ah, DischargeRecord& record) 
 /// Not used are bursts of current that the motor did not draw.
 void mark_used(const std::vector<double>& throttle_percent, DischargeRecord& record) {
     record.used.assign(record.time_s.size(), true);
-    if (throttle_percent.empty() || *std::ranges::max_element(throttle_percent) < flight_throttle_percent) {
+    if (throttle_percent.empty() || *std::ranges::max_element(throttle_percent) < flight_throttle_percent)
         return;
-    }
     for (std::size_t i = 0; i < throttle_percent.size(); ++i) {
         record.used[i] =
             throttle_percent[i] > idle_throttle_percent || std::abs(record.current_a[i]) <= idle_current_a;
@@ -115,9 +113,8 @@ double median_of(std::vector<double> values) {
 
 void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     double greatest_a = 0.0;
-    for (std::size_t i = 0; i < record.used.size(); ++i) {
+    for (std::size_t i = 0; i < record.used.size(); ++i)
         if (record.used[i]) greatest_a = std::max(greatest_a, record.current_a[i]);
-    }
     const double load_a = std::max(least_load_a, load_part * greatest_a);
     std::size_t end = 0;
     while (end < record.current_a.size() && record.current_a[end] < load_a) ++end;

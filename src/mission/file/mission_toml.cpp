@@ -48,7 +48,7 @@ const mechanical::LevelLaw& law_of(const TomlTable& conditions,
         throw InputError(conditions.where(), "conditions have no meaning with mechanical = \"none\"",
                          "leave them out");
     }
-    const auto& law = mechanical->phases[flight::Phase::cruise].level_law;
+    const auto& law = mechanical->phases[Phase::cruise].level_law;
     if (law) return *law;
     throw InputError(
         conditions.where(),
@@ -79,7 +79,7 @@ mechanical::ConstantPower apply_conditions(const TomlTable& conditions,
                         "fit a model to flights that were flown so",
                         law.flights, law.least, law.most));
     }
-    auto& cruise = mechanical->phases[flight::Phase::cruise];
+    auto& cruise = mechanical->phases[Phase::cruise];
     const double model_mean_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
     cruise.fourier.a0_w += level.power_w - model_mean_w;
     return constant_power(level);
@@ -91,18 +91,18 @@ double read_duration(const TomlTable& durations, std::string_view phase) {
     return number_in(between(shortest_phase_s, longest_phase_s), durations, phase, "or 0: not flown");
 }
 
-flight::PerPhase<double> read_durations(const TomlTable& root,
-                                        const std::optional<mechanical::MechanicalModel>& mechanical) {
-    flight::PerPhase<double> durations;
+PerPhase<double> read_durations(const TomlTable& root,
+                                const std::optional<mechanical::MechanicalModel>& mechanical) {
+    PerPhase<double> durations;
     if (mechanical) {
-        for (const auto phase : flight::all_phases) durations[phase] = mechanical->phases[phase].duration_s;
+        for (const auto phase : all_phases) durations[phase] = mechanical->phases[phase].duration_s;
     } else if (!root.has("duration_s")) {
         throw InputError(root.where("mechanical"), "without a mechanical model the phases have no durations",
                          "add duration_s = { takeoff = ..., cruise = ..., landing = ... }");
     }
     double total_s = 0.0;
     const auto given = root.optional_table("duration_s");
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         const auto name = to_string(phase);
         if (given && (!mechanical || given->has(name))) durations[phase] = read_duration(*given, name);
         total_s += durations[phase];
@@ -130,9 +130,8 @@ compute::Component read_component(const TomlTable& table, const std::string& nam
         if (!table.has(key)) continue;
         (key == "columns" ? naming.columns : naming.parameters) = table.strings(key);
         naming.where = table.where(key);
-        if (naming.parameters.empty() && naming.columns.empty()) {
+        if (naming.parameters.empty() && naming.columns.empty())
             throw InputError(naming.where, fmt::format("{} = [] names nothing", key), "leave it out");
-        }
     }
     return {name, read_power_profile(file_of(table, "profile"), naming)};
 }
@@ -144,9 +143,8 @@ void read_components(const TomlTable& root, MissionSetup& mission) {
         const auto table = components->table(name);
         mission.compute.components.push_back(read_component(table, name));
         std::optional<Utility> utility;
-        if (const auto stated = table.optional_table("utility")) {
+        if (const auto stated = table.optional_table("utility"))
             utility = read_utility(*stated, mission.compute.components.back().profile);
-        }
         mission.utilities.push_back(std::move(utility));
     }
 }
@@ -155,11 +153,11 @@ std::optional<double> optional_sd(const TomlTable& table, std::string_view key) 
     return optional_number_in(at_least(0.0), table, key);
 }
 
-flight::PerPhase<std::optional<double>> read_phases(const TomlTable& uncertainty, std::string_view key) {
-    flight::PerPhase<std::optional<double>> phases;
+PerPhase<std::optional<double>> read_phases(const TomlTable& uncertainty, std::string_view key) {
+    PerPhase<std::optional<double>> phases;
     const auto table = uncertainty.optional_table(key);
     if (!table) return phases;
-    for (const auto phase : flight::all_phases) phases[phase] = optional_sd(*table, to_string(phase));
+    for (const auto phase : all_phases) phases[phase] = optional_sd(*table, to_string(phase));
     table->refuse_unknown_keys();
     return phases;
 }
@@ -238,11 +236,10 @@ AnyMission parse_mission(std::string_view text, const std::filesystem::path& pat
     mission.name = root.optional_string("name").value_or(path.stem().string());
     mission.mechanical = read_mechanical(root);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
-    if (const auto conditions = root.optional_table("conditions")) {
+    if (const auto conditions = root.optional_table("conditions"))
         mission.cruise_level = apply_conditions(*conditions, mission.mechanical);
-    }
     mission.duration_s = read_durations(root, mission.mechanical);
-    if (reading.cruise_s) mission.duration_s[flight::Phase::cruise] = *reading.cruise_s;
+    if (reading.cruise_s) mission.duration_s[Phase::cruise] = *reading.cruise_s;
     mission.battery = read_mission_battery(root);
     read_components(root, mission);
     mission.initial_soc_percent =

@@ -47,8 +47,7 @@ std::string run_text(const compute::ComputeModel& compute, const compute::Config
     return inline_table(components);
 }
 
-std::string schedule_text(const compute::ComputeModel& compute,
-                          const std::vector<ScheduleSegment>& schedule) {
+std::string schedule_text(const compute::ComputeModel& compute, const Schedule& schedule) {
     std::string text;
     for (const auto& segment : schedule) {
         text += fmt::format("\n[[schedule]]\nphase = {}\nfrom = {}\nto = {}\nrun = {}\n",
@@ -61,8 +60,7 @@ std::string schedule_text(const compute::ComputeModel& compute,
 }  // namespace
 
 std::string planned_mission_toml(std::string_view text, const std::filesystem::path& path,
-                                 const compute::ComputeModel& compute,
-                                 const std::vector<ScheduleSegment>& schedule,
+                                 const compute::ComputeModel& compute, const Schedule& schedule,
                                  const std::filesystem::path& folder) {
     auto root = toml::parse(text, path.string());
     root.insert_or_assign("format", format_version);
@@ -73,9 +71,8 @@ std::string planned_mission_toml(std::string_view text, const std::filesystem::p
     const auto to = std::filesystem::absolute(folder);
     for (const std::string_view key : {"mechanical", "battery"}) move_path(root, key, from, to);
     if (auto* components = root.get_as<toml::table>("components")) {
-        for (auto&& [name, component] : *components) {
+        for (auto&& [name, component] : *components)
             if (auto* table = component.as_table()) move_path(*table, "profile", from, to);
-        }
     }
     std::ostringstream out;
     out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};

@@ -65,9 +65,8 @@ void read_points(const TomlTable& table, const std::vector<double>& axis, Utilit
             fmt::format("{} numbers of qos and {} of {} are no points", x.size(), y.size(), value),
             "give as many of each, 2 or more");
     }
-    if (std::ranges::adjacent_find(x, std::greater_equal<>()) != x.end()) {
+    if (std::ranges::adjacent_find(x, std::greater_equal<>()) != x.end())
         throw InputError(table.where("qos"), "the values of qos do not rise");
-    }
     if (!std::ranges::is_sorted(y)) {
         throw InputError(table.where(value),
                          fmt::format("{} falls: better quality cannot have less utility", value),
@@ -143,11 +142,9 @@ PlanSettings read_plan_settings(const TomlTable& mission, const compute::Compute
     plan->refuse_keys_except({"slot_s", "dwell_s", "may_be_off", "levels"});
     settings.slot_s = number_in_or(more_than(0.0), *plan, "slot_s", settings.slot_s);
     settings.dwell_s = number_in_or(at_least(0.0), *plan, "dwell_s", settings.dwell_s);
-    if (plan->has("may_be_off")) {
-        for (const auto& name : plan->strings("may_be_off")) {
+    if (plan->has("may_be_off"))
+        for (const auto& name : plan->strings("may_be_off"))
             settings.choices[component_index(compute, name, plan->where("may_be_off"))].may_be_off = true;
-        }
-    }
     if (const auto levels = plan->optional_table("levels")) {
         for (const auto& name : levels->keys()) {
             const auto i = component_index(compute, name, levels->where(name));

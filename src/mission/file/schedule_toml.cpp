@@ -14,7 +14,7 @@
 namespace flightwatt::mission {
 namespace {
 
-std::string spell(flight::Phase phase, double start_s, double end_s) {
+std::string spell(Phase phase, double start_s, double end_s) {
     return fmt::format("{} from {} s to {} s", to_string(phase), start_s, end_s);
 }
 
@@ -99,23 +99,20 @@ compute::Configuration read_run(const TomlTable& run, const compute::ComputeMode
                          "the components are");
     // In the model's order, not the file's: sums of power are then the same however a mission is written.
     compute::Configuration configuration;
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        if (run.has(known[i])) {
+    for (std::size_t i = 0; i < known.size(); ++i)
+        if (run.has(known[i]))
             configuration.push_back(read_running(run, known[i], i, compute.components[i].profile));
-        }
-    }
     return configuration;
 }
 
 ScheduleEntry read_entry(const TomlTable& table, const compute::ComputeModel& compute,
-                         const flight::PerPhase<double>& duration_s) {
+                         const PerPhase<double>& duration_s) {
     table.refuse_keys_except({"phase", "from", "to", "middle", "otherwise", "run"});
     ScheduleEntry entry;
     entry.where = table.where();
     entry.otherwise = table.optional_boolean("otherwise").value_or(false);
-    if (table.has("otherwise") && !entry.otherwise) {
+    if (table.has("otherwise") && !entry.otherwise)
         throw InputError(table.where("otherwise"), "`otherwise = false` says nothing", "leave it out");
-    }
     if (table.has("phase")) entry.phase = read_flown_phase(table, duration_s);
     if (!entry.phase && !entry.otherwise) {
         throw InputError(entry.where, "this entry does not say when",
@@ -133,8 +130,7 @@ ScheduleEntry read_entry(const TomlTable& table, const compute::ComputeModel& co
 }
 
 /// The `otherwise` of a phase, or of the mission.
-const ScheduleEntry* otherwise_of(const std::vector<ScheduleEntry>& entries,
-                                  std::optional<flight::Phase> phase) {
+const ScheduleEntry* otherwise_of(const std::vector<ScheduleEntry>& entries, std::optional<Phase> phase) {
     const auto found = std::ranges::find_if(
         entries, [&](const ScheduleEntry& entry) { return entry.otherwise && entry.phase == phase; });
     return found == entries.end() ? nullptr : &*found;
@@ -173,14 +169,13 @@ struct PlacedEntry {
 };
 
 /// The explicit entries of a phase in order. Throws InputError where two overlap.
-std::vector<PlacedEntry> placed_entries(const std::vector<ScheduleEntry>& entries, flight::Phase phase,
+std::vector<PlacedEntry> placed_entries(const std::vector<ScheduleEntry>& entries, Phase phase,
                                         double duration_s) {
     const double tolerance_s = same_time_tolerance_s(duration_s);
     std::vector<PlacedEntry> placed;
-    for (const auto& entry : entries) {
+    for (const auto& entry : entries)
         if (!entry.otherwise && entry.phase == phase)
             placed.push_back({{phase, entry.start_s, entry.end_s}, &entry});
-    }
     std::ranges::stable_sort(placed, [](const PlacedEntry& a, const PlacedEntry& b) {
         return a.segment.start_s < b.segment.start_s;
     });
@@ -199,7 +194,7 @@ std::vector<PlacedEntry> placed_entries(const std::vector<ScheduleEntry>& entrie
 
 }  // namespace
 
-flight::Phase read_flown_phase(const TomlTable& entry, const flight::PerPhase<double>& duration_s) {
+Phase read_flown_phase(const TomlTable& entry, const PerPhase<double>& duration_s) {
     const auto name = entry.string("phase");
     const auto phase = flight::phase_from(name);
     if (!phase) {
@@ -215,33 +210,29 @@ double read_time_s(const TomlTable& entry, std::string_view key, double duration
 }
 
 std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const compute::ComputeModel& compute,
-                                         const flight::PerPhase<double>& duration_s) {
+                                         const PerPhase<double>& duration_s) {
     std::vector<ScheduleEntry> entries;
-    for (const auto& table : mission.tables("schedule")) {
+    for (const auto& table : mission.tables("schedule"))
         entries.push_back(read_entry(table, compute, duration_s));
-    }
     return entries;
 }
 
-std::vector<ScheduleSegment> resolve_schedule(const std::vector<ScheduleEntry>& entries,
-                                              const flight::PerPhase<double>& duration_s) {
+Schedule resolve_schedule(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s) {
     if (entries.empty()) throw std::invalid_argument("a schedule has at least one entry");
     refuse_second_otherwise(entries);
-    flight::PerPhase<std::vector<PlacedEntry>> placed;
-    for (const auto phase : flight::all_phases)
-        placed[phase] = placed_entries(entries, phase, duration_s[phase]);
-    std::vector<ScheduleSegment> segments;
+    PerPhase<std::vector<PlacedEntry>> placed;
+    for (const auto phase : all_phases) placed[phase] = placed_entries(entries, phase, duration_s[phase]);
+    Schedule segments;
     std::set<const ScheduleEntry*> used;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         double covered_s = 0.0;
         const auto fill_until = [&](double until_s, const ScheduleEntry& near) {
             const auto* filler = otherwise_of(entries, phase);
             if (filler == nullptr) filler = otherwise_of(entries, std::nullopt);
-            if (filler == nullptr) {
+            if (filler == nullptr)
                 throw InputError(near.where,
                                  fmt::format("nothing is scheduled for {}", spell(phase, covered_s, until_s)),
                                  "add an entry with `otherwise = true`; `run = {}` runs nothing");
-            }
             used.insert(filler);
             segments.push_back({phase, covered_s, until_s, filler->run});
         };
@@ -262,18 +253,17 @@ std::vector<ScheduleSegment> resolve_schedule(const std::vector<ScheduleEntry>& 
     return segments;
 }
 
-std::vector<ScheduleSegment> resolve_fixed_segments(const std::vector<ScheduleEntry>& entries,
-                                                    const flight::PerPhase<double>& duration_s) {
+Schedule resolve_fixed_segments(const std::vector<ScheduleEntry>& entries,
+                                const PerPhase<double>& duration_s) {
     for (const auto& entry : entries) {
         if (!entry.otherwise) continue;
         throw InputError(entry.where, "`otherwise` leaves nothing to plan",
                          "take it out: what no other entry fixes is planned");
     }
-    std::vector<ScheduleSegment> segments;
-    for (const auto phase : flight::all_phases) {
+    Schedule segments;
+    for (const auto phase : all_phases)
         for (const auto& [segment, entry] : placed_entries(entries, phase, duration_s[phase]))
             segments.push_back({segment, entry->run});
-    }
     return segments;
 }
 

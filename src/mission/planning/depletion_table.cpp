@@ -167,8 +167,7 @@ double greatest_bend_v(const VoltageCourse& course) {
 
 }  // namespace
 
-std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission,
-                                               const std::vector<ScheduleSegment>& schedule) {
+std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission, const Schedule& schedule) {
     const auto simulation = simulate(mission, schedule, {point_every_s, point_every_s, false});
     if (!simulation.summary.feasible) return std::nullopt;
     VoltageCourse course;
@@ -192,7 +191,7 @@ DepletionTable make_depletion_table(const MissionSetup& mission,
     table.depletions.resize(table.configurations.size());
     const auto battery = with_constant_source(mission);
     const auto flown = load_of(mission);
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
         for (std::size_t c = 0; c < table.configurations.size(); ++c) {
             const PhaseLoad load{battery,
@@ -219,7 +218,7 @@ std::optional<std::size_t> index_of(const DepletionTable& table, const compute::
     return static_cast<std::size_t>(found - known.begin());
 }
 
-std::vector<TabledSegment> tabled(const std::vector<ScheduleSegment>& schedule, const DepletionTable& table) {
+std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable& table) {
     std::vector<TabledSegment> result;
     result.reserve(schedule.size());
     for (const auto& segment : schedule) {
@@ -251,11 +250,9 @@ SlotDepletions make_slot_depletions(const DepletionTable& table, std::span<const
     depletions.choices = table.configurations.size();
     depletions.initial_soc_percent = table.initial_soc_percent;
     depletions.percent.reserve(depletions.slots * depletions.choices);
-    for (auto slot : slots) {
-        for (slot.configuration = 0; slot.configuration < depletions.choices; ++slot.configuration) {
+    for (auto slot : slots)
+        for (slot.configuration = 0; slot.configuration < depletions.choices; ++slot.configuration)
             depletions.percent.push_back(soc_depletion_percent(table, slot));
-        }
-    }
     return depletions;
 }
 

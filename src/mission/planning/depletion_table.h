@@ -20,8 +20,7 @@ struct VoltageCourse {
 
 /// The course of a mission with a schedule, simulated as if there was no cut-off; none if the battery does
 /// not last.
-std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission,
-                                               const std::vector<ScheduleSegment>& schedule);
+std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission, const Schedule& schedule);
 
 /// State of charge [points] that the battery has lost since a phase began, at evenly spread times, while one
 /// configuration runs; with its rate, so that cubics between the nodes are smooth.
@@ -43,7 +42,7 @@ struct PhaseDepletion {
 /// battery whose source follows its charge, that holds along one course of the source's voltage only.
 struct DepletionTable {
     std::vector<compute::Configuration> configurations;
-    std::vector<flight::PerPhase<PhaseDepletion>> depletions;  ///< one a configuration
+    std::vector<PerPhase<PhaseDepletion>> depletions;  ///< one a configuration
     double initial_soc_percent = 100.0;
     bool charges = false;  ///< somewhere: what a full battery then refuses depends on the state of charge
     bool depends_on_state = false;  ///< the source follows the charge: sums do not tell the end
@@ -69,7 +68,7 @@ std::optional<std::size_t> index_of(const DepletionTable& table, const compute::
 
 /// A schedule in terms of a table that holds its configurations. Throws std::invalid_argument for
 /// one that the table does not hold.
-std::vector<TabledSegment> tabled(const std::vector<ScheduleSegment>& schedule, const DepletionTable& table);
+std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable& table);
 
 /// The depletion by a segment [points]; infinite if the battery cannot deliver its power.
 double soc_depletion_percent(const DepletionTable& table, const TabledSegment& segment);

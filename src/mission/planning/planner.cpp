@@ -129,17 +129,16 @@ MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner
             more_percent = (start.mechanical_factor - 1.0) *
                            soc_depletion_percent(planner.mechanical_depletion, {slot, 0});
         }
-        for (std::size_t c = 0; c < planner.utility_per_s.size(); ++c) {
+        for (std::size_t c = 0; c < planner.utility_per_s.size(); ++c)
             choices.cost.push_back(soc_depletion_percent(planner.depletions, {slot, c}) + more_percent);
-        }
         knapsack.slots.push_back(std::move(choices));
     }
     return knapsack;
 }
 
-std::vector<ScheduleSegment> schedule_of(const Planner& planner, const std::vector<MissionSlot>& slots,
-                                         const std::vector<std::size_t>& choices) {
-    std::vector<ScheduleSegment> schedule;
+Schedule schedule_of(const Planner& planner, const std::vector<MissionSlot>& slots,
+                     const std::vector<std::size_t>& choices) {
+    Schedule schedule;
     for (std::size_t i = 0; i < slots.size(); ++i)
         append_merged(schedule, {slots[i], planner.depletions.configurations[choices[i]]});
     return schedule;
@@ -175,9 +174,8 @@ Planner make_planner(const PlanningProblem& problem) {
     }
     std::optional<VoltageCourse> highest;
     if (problem.battery.thevenin) highest = voltage_course_of(problem, minimum_energy_schedule(problem));
-    if (highest) {
+    if (highest)
         for (auto& voltage_v : highest->voltage_v) voltage_v += highest->error_v;
-    }
     return with_voltage_course(problem, std::move(planner), highest ? &*highest : nullptr);
 }
 
@@ -191,7 +189,7 @@ std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s)
     const auto timeline = timeline_of(problem.duration_s);
     require_few_slots(problem, timeline.duration_s);
     std::vector<MissionSlot> slots;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         const double duration_s = problem.duration_s[phase];
         const double tolerance_s = same_time_tolerance_s(duration_s);
         double covered_s = std::max(0.0, time_s - timeline.start_s[phase]);
@@ -209,9 +207,9 @@ std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s)
     return slots;
 }
 
-std::vector<ScheduleSegment> minimum_energy_schedule(const PlanningProblem& problem) {
+Schedule minimum_energy_schedule(const PlanningProblem& problem) {
     const auto least_power = least_power_configuration(problem);
-    std::vector<ScheduleSegment> schedule;
+    Schedule schedule;
     for (const auto& slot : slots_of(problem)) schedule.push_back({slot, slot.fixed.value_or(least_power)});
     return schedule;
 }

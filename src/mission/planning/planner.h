@@ -23,10 +23,9 @@ struct Planner {
 /// and those that the fixed segments run. Throws InputError if the mission states no utility, or has more than
 /// a million combinations.
 ///
-/// Of a battery whose source follows its charge, the tables are along the voltage that the schedule of least
-/// energy demand keeps, raised by the course's error. Where nothing charges, every other schedule is below it
-/// at any time, as less power leaves more charge and a smaller RC voltage: so none depletes the battery less
-/// than this table says.
+/// Of a battery whose source follows its charge, the tables are along the voltage that the schedule of least energy
+/// demand keeps, raised by the course's error. Where nothing charges, no schedule keeps more, and none depletes the
+/// battery less than this table says.
 Planner make_planner(const PlanningProblem& problem);
 
 /// The same choices, with their depletion along a course of the source's voltage, as make_depletion_table.
@@ -34,7 +33,7 @@ Planner with_voltage_course(const PlanningProblem& problem, Planner planner, con
 
 /// The schedule that demands least energy: the configuration that draws least wherever nothing is fixed (which
 /// any dwell time allows). Throws InputError as make_planner does for too many combinations.
-std::vector<ScheduleSegment> minimum_energy_schedule(const PlanningProblem& problem);
+Schedule minimum_energy_schedule(const PlanningProblem& problem);
 
 /// The mission with that schedule; one that has a schedule stays as it is.
 Mission with_minimum_energy_schedule(const AnyMission& mission);

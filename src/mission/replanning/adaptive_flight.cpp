@@ -31,7 +31,7 @@ double energy_equivalent_soc_percent(const AdaptivePlanner& planner, double soc_
 /// The times from one decision to the next, as planned.
 std::vector<PhaseSegment> intervals_of(const PlanningProblem& known) {
     std::vector<PhaseSegment> intervals;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         const double duration_s = known.duration_s[phase];
         const double every_s = known.adaptive->decide_every_s;
         const auto count =
@@ -61,11 +61,9 @@ struct Learned {
 /// One flight in the air.
 class Flight {
   public:
-    Flight(const AdaptivePlanner& planner, const MissionSetup& actual,
-           const std::vector<Disturbance>& disturbances)
+    Flight(const AdaptivePlanner& planner, const MissionSetup& actual, const Disturbances& disturbances)
         : adaptive_(planner),
           known_(planner.known),
-          planner_(planner.planner),
           actual_(actual),
           disturbances_(disturbances),
           battery_(disturbed(actual.battery, disturbances)),
@@ -76,10 +74,9 @@ class Flight {
         const auto& policy = *known_.adaptive;
         reach_ =
             policy.mechanical_sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
-        for (const auto phase : flight::all_phases) {
+        for (const auto phase : all_phases)
             if (known_.duration_s[phase] > 0.0)
                 rest_mechanical_percent_ += mechanical_percent({phase, 0.0, known_.duration_s[phase]});
-        }
     }
 
     void fly(const PhaseSegment& interval) {
@@ -89,8 +86,8 @@ class Flight {
             if (planned.phase != interval.phase || planned.start_s >= interval.end_s) break;
             auto segment = planned;
             segment.end_s = std::min(planned.end_s, interval.end_s);
-            predicted_percent +=
-                soc_depletion_percent(planner_.depletions, tabled({segment}, planner_.depletions).front());
+            const auto& table = adaptive_.planner.depletions;
+            predicted_percent += soc_depletion_percent(table, tabled({segment}, table).front());
             run(segment);
         }
         learn(interval, before_percent - soc_left_percent(), predicted_percent);
@@ -105,10 +102,10 @@ class Flight {
 
   private:
     double mechanical_percent(const PhaseSegment& time) const {
-        return soc_depletion_percent(planner_.mechanical_depletion, {time, 0});
+        return soc_depletion_percent(adaptive_.planner.mechanical_depletion, {time, 0});
     }
 
-    std::vector<ScheduleSegment> decide(const PhaseSegment& interval) {
+    Schedule decide(const PhaseSegment& interval) {
         const auto& policy = *known_.adaptive;
         PlanStart start{planned_.start_s[interval.phase] + interval.start_s, soc_left_percent(), running_,
                         running_for_s_};
@@ -118,20 +115,18 @@ class Flight {
                                 : 0.0;
         const double to_come = policy.learning_time_s / (planned_.duration_s - start.time_s);
         const double margin_percent = reach_ * rest_mechanical_percent_ * std::sqrt(seen + to_come);
-        const auto plan = plan_rest(known_, planner_, start, reserve_percent_ + margin_percent,
+        const auto plan = plan_rest(known_, adaptive_.planner, start, reserve_percent_ + margin_percent,
                                     effort_for((planned_.duration_s - start.time_s) / known_.plan.slot_s));
         ++flight_.decisions.made;
         if (!plan.feasible) ++flight_.decisions.without_plan;
-        if (plan.schedule.empty()) {
-            // Nothing that the battery can deliver is known: fly on with what demands least energy.
-            auto rest = minimum_energy_schedule(known_);
-            std::erase_if(rest, [&](const ScheduleSegment& s) {
-                return s.phase < interval.phase || (s.phase == interval.phase && s.end_s <= interval.start_s);
-            });
-            if (!rest.empty()) rest.front().start_s = std::max(rest.front().start_s, interval.start_s);
-            return rest;
-        }
-        return plan.schedule;
+        if (!plan.schedule.empty()) return plan.schedule;
+        // Nothing that the battery can deliver is known: fly on with what demands least energy.
+        auto rest = minimum_energy_schedule(known_);
+        std::erase_if(rest, [&](const ScheduleSegment& s) {
+            return s.phase < interval.phase || (s.phase == interval.phase && s.end_s <= interval.start_s);
+        });
+        if (!rest.empty()) rest.front().start_s = std::max(rest.front().start_s, interval.start_s);
+        return rest;
     }
 
     /// Runs a segment of the plan in the flight as it is.
@@ -159,9 +154,8 @@ class Flight {
 
     const AdaptivePlanner& adaptive_;
     const PlanningProblem& known_;
-    const Planner& planner_;
     const MissionSetup& actual_;
-    const std::vector<Disturbance>& disturbances_;
+    const Disturbances& disturbances_;
     battery::Battery battery_;  ///< as it really is
     MissionTimeline planned_;
     MissionLoad load_;  ///< of the mission as it really is
@@ -194,7 +188,7 @@ AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
 }
 
 AdaptiveFlight fly_adaptively(const AdaptivePlanner& planner, const MissionSetup& actual,
-                              const std::vector<Disturbance>& disturbances) {
+                              const Disturbances& disturbances) {
     Flight flight(planner, actual, disturbances);
     for (const auto& interval : intervals_of(planner.known)) flight.fly(interval);
     return flight.landed();

@@ -42,14 +42,13 @@ std::string basis_of(const LevelDeviation& deviation) {
     throw std::logic_error("basis_of: no such source of a deviation");
 }
 
-void find_duration(const MissionSetup& mission, flight::Phase phase, FlightSpreads& spreads) {
+void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spreads) {
     const auto source = fmt::format("{} duration", to_string(phase));
     auto& sd_s = spreads.duration_sd_s[phase];
     std::vector<double> flown_s;
     if (mission.mechanical) {
-        for (const auto& flight : mission.mechanical->flights) {
+        for (const auto& flight : mission.mechanical->flights)
             if (const auto& part = flight.phases[phase]) flown_s.push_back(part->duration_s);
-        }
     }
     std::string basis = "no flights that differ: state duration_sd_s";
     if (const auto stated_s = mission.uncertainty.duration_sd_s[phase]) {
@@ -182,7 +181,7 @@ void draw_compute(const Uncertainty& stated, Normals& normal, compute::ComputeMo
 
 FlightSpreads find_spreads(const MissionSetup& mission) {
     FlightSpreads spreads;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
         if (mission.mechanical) {
             const auto deviation = level_deviation(mission, phase);
@@ -201,7 +200,7 @@ MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& sprea
                          std::uint64_t index) {
     Normals normal(seed, index);
     auto flight = mission;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         const double level_z = normal();
         const double duration_z = normal();
         if (flight.mechanical)

@@ -10,8 +10,8 @@ namespace flightwatt::mission {
 
 /// How the flights of a mission differ, from what the mission states and else from what its models know.
 struct FlightSpreads {
-    flight::PerPhase<double> level_sd_w;  ///< of a phase's mean mechanical power
-    flight::PerPhase<double> duration_sd_s;
+    PerPhase<double> level_sd_w;  ///< of a phase's mean mechanical power
+    PerPhase<double> duration_sd_s;
     std::vector<std::string> drawn;      ///< what is drawn, and what that rests on
     std::vector<std::string> not_drawn;  ///< what is taken as it is, for want of a spread
 };

@@ -12,13 +12,12 @@ constexpr double edge_tolerance_s = 1e-9;
 constexpr double coarse_step_s = 1.0;
 
 /// Times at which something changes, in order, between the segment's start and its end.
-std::vector<double> cuts_of(const LoadSegment& segment, const std::vector<Disturbance>& disturbances) {
+std::vector<double> cuts_of(const LoadSegment& segment, const Disturbances& disturbances) {
     std::vector<double> cuts;
     for (const auto& disturbance : disturbances) {
-        for (const double time_s : {disturbance.start_s, disturbance.end_s}) {
+        for (const double time_s : {disturbance.start_s, disturbance.end_s})
             if (time_s > segment.start_s + edge_tolerance_s && time_s < segment.end_s - edge_tolerance_s)
                 cuts.push_back(time_s);
-        }
     }
     std::ranges::sort(cuts);
     cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
@@ -31,9 +30,8 @@ void disturb_power(const Disturbance& disturbance, LoadSegment& segment) {
     if (!segment.mechanical) return;
     auto& curve = *segment.mechanical;
     curve.a0_w = curve.a0_w * disturbance.mechanical_factor + disturbance.mechanical_w;
-    for (auto* terms_w : {&curve.cos_w, &curve.sin_w}) {
+    for (auto* terms_w : {&curve.cos_w, &curve.sin_w})
         for (auto& term_w : *terms_w) term_w *= disturbance.mechanical_factor;
-    }
 }
 
 /// A bound: no harmonic can be more negative than its amplitude.
@@ -42,9 +40,8 @@ bool never_charges(const LoadSegment& segment) {
     if (segment.mechanical) {
         const auto& curve = *segment.mechanical;
         least_w += curve.a0_w;
-        for (std::size_t n = 0; n < curve.cos_w.size(); ++n) {
+        for (std::size_t n = 0; n < curve.cos_w.size(); ++n)
             least_w -= std::hypot(curve.cos_w[n], curve.sin_w[n]);
-        }
     }
     return least_w >= 0.0;
 }
@@ -58,7 +55,7 @@ double depleted_percent(const battery::Battery& battery, const LoadSegment& segm
 
 MissionLoad load_of(const MissionSetup& mission) {
     MissionLoad load{mission, timeline_of(mission.duration_s), {}};
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         if (!mission.mechanical || mission.duration_s[phase] == 0.0) continue;
         load.mechanical[phase] =
             flown_model(mission.mechanical->phases[phase], mission.duration_s[phase], mission.phase_clock);
@@ -77,8 +74,7 @@ LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& schedul
     return segment;
 }
 
-std::vector<LoadSegment> load_segments(const MissionSetup& mission,
-                                       const std::vector<ScheduleSegment>& schedule) {
+std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule) {
     const auto load = load_of(mission);
     std::vector<LoadSegment> segments;
     segments.reserve(schedule.size());
@@ -87,7 +83,7 @@ std::vector<LoadSegment> load_segments(const MissionSetup& mission,
 }
 
 std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments,
-                                   const std::vector<Disturbance>& disturbances) {
+                                   const Disturbances& disturbances) {
     std::vector<LoadSegment> result;
     result.reserve(segments.size() + 2 * disturbances.size());
     for (const auto& segment : segments) {

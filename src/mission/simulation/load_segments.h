@@ -12,7 +12,7 @@ namespace flightwatt::mission {
 /// What a mission demands from one jump of power to the next: smooth mechanical power and constant computing.
 /// Times are those of the mission.
 struct LoadSegment {
-    flight::Phase phase = flight::Phase::takeoff;
+    Phase phase = Phase::takeoff;
     double phase_start_s = 0.0;
     double start_s = 0.0;
     double end_s = 0.0;
@@ -26,20 +26,19 @@ struct MissionLoad {
     const MissionSetup& mission;
     MissionTimeline timeline;
     /// Of the phases that are flown, in their own time; none without a mechanical model.
-    flight::PerPhase<std::optional<mechanical::FourierModel>> mechanical;
+    PerPhase<std::optional<mechanical::FourierModel>> mechanical;
 };
 
 MissionLoad load_of(const MissionSetup& mission);
 LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& scheduled);
 
 /// The load of a schedule, in order and without gaps: each segment starts exactly where the one before ends.
-std::vector<LoadSegment> load_segments(const MissionSetup& mission,
-                                       const std::vector<ScheduleSegment>& schedule);
+std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule);
 
 /// The segments, cut where a disturbance starts or ends and changed in between. Without mechanical power
 /// there is none to disturb.
 std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments,
-                                   const std::vector<Disturbance>& disturbances);
+                                   const Disturbances& disturbances);
 
 double mechanical_w(const LoadSegment& segment, double time_s);
 double power_w(const LoadSegment& segment, double time_s);
