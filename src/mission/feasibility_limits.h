@@ -8,8 +8,7 @@
 
 namespace flightwatt::mission {
 
-/// The mission as it is with a cruise of so many seconds. May throw InputError where its schedule does not
-/// fit.
+/// The mission with a cruise of so many seconds. May throw InputError where its schedule does not fit.
 using MissionOfCruise = std::function<AnyMission(double cruise_s)>;
 
 /// What forbids more.
@@ -30,8 +29,8 @@ struct FeasibilityLimit {
     FeasibilityBound limited_by = FeasibilityBound::charge;
 };
 
-/// The longest cruise [s] with the mission's schedule, or if it is yet to be planned with the one that
-/// demands least energy. Throws NoAnswerError if no cruise that the schedule fits into is short enough, or none is too long.
+/// The longest cruise [s] with the mission's schedule, or if it is yet to be planned with the one that demands least
+/// energy. Throws NoAnswerError if no cruise that the schedule fits into is short enough, or none is too long.
 FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of);
 
 /// The greatest constant power [W] that the mission can feed besides, all the way. Throws NoAnswerError if it

@@ -41,9 +41,8 @@ struct SocBand {
 
 inline constexpr std::array<int, 5> shown_quantiles_percent{5, 25, 50, 75, 95};
 
-/// How flights that were drawn end. Flights that run empty, are cut off or ask for more than the battery can
-/// deliver have the state of charge of that moment, and land below the reserve whatever that is, also if it
-/// is 0.
+/// How flights that were drawn end. Those that run empty, are cut off or ask for more than the battery can deliver have
+/// the state of charge of that moment, and land below the reserve even if that is 0.
 struct SampledFlights {
     std::string mission;
     std::size_t samples = 0;
@@ -62,8 +61,7 @@ struct SampledFlights {
     std::vector<SocBand> bands;
 };
 
-/// What a mission comes to. Energies are what the whole mission demands of the battery, also beyond the
-/// battery's end.
+/// What a mission comes to. Energies are what the whole mission demands, also beyond the battery's end.
 struct MissionSummary {
     std::string mission;
     ScheduleOrigin schedule = ScheduleOrigin::given;
@@ -96,8 +94,8 @@ std::string describe(const MissionSummary& summary);
 /// power it cannot deliver last. Equals keep their order.
 std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries);
 
-/// A row for each mission; "-" where there is no number. Utility has a column if any mission states one, and
-/// the probability to land below the reserve if flights were drawn.
+/// A row for each mission; "-" where there is no number. Cut-off, utility and the probability to land below the reserve
+/// have a column if any mission has them.
 TextTable comparison_table(const std::vector<MissionSummary>& ranked);
 
 }  // namespace flightwatt::mission

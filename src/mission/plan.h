@@ -26,10 +26,11 @@ struct MissionPlan {
     double margin_percent = 0.0;  ///< kept above the reserve for the sake of the probability
 };
 
-/// Plans a mission and simulates the result; where that ends below the reserve (by rounding, or because a
-/// full battery refused charge, which tables do not know), plans anew with more to spare. The tables deplete
-/// the battery no more than the simulation, so the bound holds nevertheless. With `probability`, the reserve is
-/// kept with that chance: see sampling/level_deviation.h. Infeasible plans are returned as such. Throws InputError if the mission states no utility, or too many choices.
+/// Plans a mission and simulates the result; where that ends below the reserve (by rounding, or because a full battery
+/// refused charge, which tables do not know), plans anew with more to spare. The bound holds nevertheless, as tables
+/// deplete the battery no more than the simulation. With `probability`, the reserve is kept with that chance: see
+/// sampling/level_deviation.h. Infeasible plans are returned as such. Throws InputError if the mission states no
+/// utility, or too many choices.
 MissionPlan plan_mission(const PlanningProblem& problem,
                          const std::optional<double>& probability = std::nullopt);
 

@@ -39,11 +39,10 @@ struct SimulationSteps {
     bool cuts_off = true;        ///< false: the battery goes on below the mission's cut-off voltage
 };
 
-/// Runs a mission with a schedule: mechanical and computing power, added, deplete the battery (Eqs. 8-10).
-/// Energies are exact integrals; state of charge is integrated numerically and empties once: power that flows
-/// back later does not revive it, and neither does the voltage that recovers after a cut-off. `disturbances`
-/// happen in its course. Throws UsageError for an output step that is not positive or makes too many rows, and
-/// std::invalid_argument for an empty schedule.
+/// Runs a mission with a schedule: mechanical and computing power, added, deplete the battery (Eqs. 8-10). Energies are
+/// exact integrals; state of charge is integrated numerically and empties once: neither power that flows back later nor
+/// a voltage that recovers after a cut-off revives it. `disturbances` happen in its course. Throws UsageError for an
+/// output step that is not positive or makes too many rows, and std::invalid_argument for an empty schedule.
 Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationSteps& steps = {},
                     const Disturbances& disturbances = {});
 

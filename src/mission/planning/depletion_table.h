@@ -37,9 +37,9 @@ struct PhaseDepletion {
     double error_percent = 0.0;  ///< the greatest seen halfway between nodes, and that of the quadrature
 };
 
-/// Cumulative depletion by every configuration over every phase of a mission. Where the internal current
-/// depends on the power alone (Eq. 10), the depletion by any schedule is a sum of differences of its entries; with a
-/// battery whose source follows its charge, that holds along one course of the source's voltage only.
+/// Cumulative depletion by every configuration over every phase of a mission. Where the current depends on the power
+/// alone, a schedule depletes a sum of differences of its entries; with a battery whose source follows its charge, that
+/// holds along one course of the source's voltage only.
 struct DepletionTable {
     std::vector<compute::Configuration> configurations;
     std::vector<PerPhase<PhaseDepletion>> depletions;  ///< one a configuration
@@ -66,20 +66,17 @@ DepletionTable make_depletion_table(const MissionSetup& mission,
 /// None if the table does not hold the configuration.
 std::optional<std::size_t> index_of(const DepletionTable& table, const compute::Configuration& run);
 
-/// A schedule in terms of a table that holds its configurations. Throws std::invalid_argument for
-/// one that the table does not hold.
+/// A schedule in terms of a table. Throws std::invalid_argument for a configuration that it does not hold.
 std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable& table);
 
 /// The depletion by a segment [points]; infinite if the battery cannot deliver its power.
 double soc_depletion_percent(const DepletionTable& table, const TabledSegment& segment);
 
-/// State of charge after a whole schedule from the table's initial one, as if the battery went on below
-/// empty: negative where it is short. None where the table does not hold: it charges, depends on the state,
-/// or cannot be delivered.
+/// State of charge after a whole schedule, as if the battery went on below empty. None where the table does not hold:
+/// it charges, depends on the state, or cannot be delivered.
 std::optional<double> soc_after(const DepletionTable& table, std::span<const TabledSegment> schedule);
 
-/// The differences themselves, where many schedules share their slots: the depletion by every
-/// configuration in each.
+/// Where many schedules share their slots: the depletion by every configuration in each.
 struct SlotDepletions {
     std::size_t slots = 0;
     std::size_t choices = 0;      ///< the configurations of the table
@@ -90,9 +87,8 @@ struct SlotDepletions {
 /// Ignores slots[i].configuration.
 SlotDepletions make_slot_depletions(const DepletionTable& table, std::span<const TabledSegment> slots);
 
-/// Final state of charge of the schedule that runs choices[i] in slot i; minus infinity where that cannot be
-/// delivered. Not for a table that charges or depends on the state. Throws std::invalid_argument for another
-/// number of choices than slots.
+/// Final state of charge of the schedule that runs choices[i] in slot i; minus infinity where that cannot be delivered.
+/// Not for a table that charges or depends on the state. Throws std::invalid_argument for too few or many choices.
 double soc_after(const SlotDepletions& depletions, std::span<const std::uint16_t> choices);
 
 }  // namespace flightwatt::mission

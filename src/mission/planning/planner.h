@@ -10,8 +10,7 @@
 
 namespace flightwatt::mission {
 
-/// What all plans of a problem have in common, whenever they are made: configurations with their utility, and
-/// how they deplete the battery.
+/// What all plans of a problem have in common: configurations with their utility, and how they deplete the battery.
 struct Planner {
     DepletionTable depletions;            ///< its configurations are the choices
     std::vector<double> utility_per_s;    ///< of each of them
@@ -19,10 +18,9 @@ struct Planner {
     DepletionTable mechanical_depletion;  ///< of one configuration, in which nothing runs
 };
 
-/// The configurations that [plan] allows, without those that draw more than another one of as much utility,
-/// and those that the fixed segments run. Throws InputError if the mission states no utility, or has more than
-/// a million combinations.
-///
+/// The configurations that [plan] allows, without those that draw more than another one of as much utility, and those
+/// that the fixed segments run. Throws InputError if the mission states no utility, or has more than a million
+/// combinations.
 /// Of a battery whose source follows its charge, the tables are along the voltage that the schedule of least energy
 /// demand keeps, raised by the course's error. Where nothing charges, no schedule keeps more, and none depletes the
 /// battery less than this table says.
@@ -46,9 +44,8 @@ struct MissionSlot : PhaseSegment {
     std::optional<compute::Configuration> fixed;
 };
 
-/// The mission from `time_s` on: fixed segments, and between them slots that end at multiples of slot_s
-/// since their phase began, or where a fixed segment or the phase does. Throws InputError for more than 20000
-/// slots.
+/// The mission from `time_s` on: fixed segments, and between them slots that end at multiples of slot_s since their
+/// phase began, or where a fixed segment or the phase does. Throws InputError for more than 20000 slots.
 std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s = 0.0);
 
 /// Where a plan starts: before the flight, or in it.
@@ -61,8 +58,7 @@ struct PlanStart {
     double mechanical_factor = 1.0;  ///< of mechanical depletion to what the model predicts
 };
 
-/// The schedule of most utility of those that end with the reserve. Takes milliseconds, so that it can be
-/// called anew in flight.
+/// The schedule of most utility of those that end with the reserve; takes milliseconds, for calls in flight.
 Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
                double reserve_soc_percent, const KnapsackEffort& effort = {});
 

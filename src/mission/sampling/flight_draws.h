@@ -21,11 +21,10 @@ struct FlightSpreads {
 /// Battery: capacity_sd_percent, and the 95 % intervals of its file.
 FlightSpreads find_spreads(const MissionSetup& mission);
 
-/// The mission as flight number `index` flies it: all normal, independent of each other, and of `seed` and
-/// `index` alone. Levels move a phase's whole curve; a component's nodes move together, unless they have
-/// standard errors of their own; an interval that is not symmetric has a deviation for each side; a time
-/// constant is normal in its logarithm; the knots of an open-circuit voltage move together. Durations stop at
-/// a tenth of the planned, other quantities that cannot be negative at 0 (or a thousandth of their value).
+/// The mission as flight number `index` flies it: all normal, independent of each other, and of `seed` and `index`
+/// alone. Levels move a phase's whole curve; a component's nodes move together, unless they have standard errors of
+/// their own, as the knots of an open-circuit voltage do; an interval has a deviation for each side; a time constant is
+/// normal in its logarithm. Durations stop at a tenth of the planned, what cannot be negative at 0 (or a thousandth).
 MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,
                          std::uint64_t index);
 

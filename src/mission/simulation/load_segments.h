@@ -35,8 +35,7 @@ LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& schedul
 /// The load of a schedule, in order and without gaps: each segment starts exactly where the one before ends.
 std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule);
 
-/// The segments, cut where a disturbance starts or ends and changed in between. Without mechanical power
-/// there is none to disturb.
+/// The segments, cut where a disturbance starts or ends and changed in between.
 std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments,
                                    const Disturbances& disturbances);
 
@@ -50,9 +49,8 @@ double compute_energy_j(const LoadSegment& segment, double time_s);
 /// The battery after the charge that it loses at once as a segment starts.
 battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segment);
 
-/// The state of a battery after a segment, for flights that are flown by the thousand. Where the depletion
-/// does not depend on the state of charge and power is never negative, without resistance, it is the closed
-/// integral that depletion tables hold; elsewhere Runge-Kutta with steps of a second. A battery that has
+/// The battery after a segment, for flights that are flown by the thousand: the closed integral where the source is
+/// constant, without resistance, and nothing charges; elsewhere Runge-Kutta with steps of a second. A battery that has
 /// ended, or cannot deliver, stays as it is.
 battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v,
                                  const LoadSegment& segment, battery::Discharge state);
