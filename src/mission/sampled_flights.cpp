@@ -18,7 +18,6 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double lasted_tolerance_s = 1e-6;  ///< as in simulation.cpp: empty at the very end has lasted
 constexpr double most_samples = 1e7;
 
 /// How one flight ended.
@@ -57,10 +56,10 @@ Landing land(const DrawnFlight& flight, const std::vector<double>& times_s) {
     }
     noted_percent.resize(times_s.size(), charge.soc_percent);
     landing.final_soc_percent = charge.soc_percent;
-    const double lasted_s = flight.segments.back().end_s - lasted_tolerance_s;
+    const double lasted_s = flight.segments.back().end_s - lasting_tolerance_s;
     landing.depleted = charge.empty_at_s && *charge.empty_at_s < lasted_s;
     landing.battery_failure =
-        landing.depleted || charge.undeliverable || (charge.cut_off_at_s && *charge.cut_off_at_s < lasted_s);
+        charge.undeliverable || (charge.ended_at_s() && *charge.ended_at_s() < lasted_s);
     return landing;
 }
 

@@ -15,7 +15,6 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double most_rows = 1e7;
-constexpr double lasting_tolerance_s = 1e-6;  ///< a battery that is empty this near to the end has lasted
 
 void require_output_step(double output_s, double duration_s) {
     if (!(output_s > 0.0) || !std::isfinite(output_s)) {

@@ -9,6 +9,9 @@
 
 namespace flightwatt::mission {
 
+/// A battery that ends this near to the end of its mission has lasted.
+inline constexpr double lasting_tolerance_s = 1e-6;
+
 /// What a mission demands from one jump of power to the next: smooth mechanical power and constant computing.
 /// Times are those of the mission.
 struct LoadSegment {
