@@ -6,7 +6,7 @@
 #include "cli/output/mission_json.h"
 #include "cli/output/sampling_output.h"
 #include "cli/stage.h"
-#include "mission/disturbance_file.h"
+#include "mission/disturbance.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 

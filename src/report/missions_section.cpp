@@ -1,7 +1,7 @@
 #include "report/missions_section.h"
 
 #include "mechanical/table_one.h"
-#include "mission/comparison.h"
+#include "mission/mission_summary.h"
 #include "report/figures/profile_figure.h"
 #include "report/figures/qos_map_figure.h"
 #include "report/figures/schedule_figure.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/output/json_text.h"
-#include "mission/infeasibility_report.h"
+#include "mission/feasibility_limits.h"
 
 namespace flightwatt::cli {
 

@@ -1,13 +1,11 @@
 // Plans for batteries whose source follows their charge, and for those that may be cut off.
 
-#include "mission/planning/plan_by_simulation.h"
-
 #include "base/error.h"
 #include "helpers/paper_missions.h"
 #include "mission/feasibility_limits.h"
-#include "mission/infeasibility_report.h"
-#include "mission/planning/plan_rest.h"
-#include "mission/planning/voltage_course.h"
+#include "mission/plan.h"
+#include "mission/planning/planner.h"
+#include "mission/planning/depletion_table.h"
 #include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
@@ -113,7 +111,7 @@ TEST(SimulatedPlan, IsNotCutOff) {
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     for (const auto& row : simulate(plan.flown).curve.rows) ASSERT_GE(row.terminal_voltage_v, 11.0);
-    // What is worth most without a cut-off would be.
+    // What has most utility without a cut-off would be.
     auto careless = plan_mission(thevenin_plan(20.0, 0.0)(1800.0)).flown;
     careless.cutoff_voltage_v = 11.0;
     EXPECT_TRUE(simulate(careless).summary.cut_off_at_s);
@@ -145,7 +143,7 @@ TEST(Planner, HasATableThatHoldsAlongACourse) {
     const auto plan = plan_mission(problem);
     const auto course = voltage_course_of(problem, plan.flown.schedule);
     ASSERT_TRUE(course);
-    const auto table = with_voltage_course(problem, make_planner(problem), *course).depletions;
+    const auto table = with_voltage_course(problem, make_planner(problem), &*course).depletions;
     const auto segments = tabled(plan.flown.schedule, table);
     EXPECT_FALSE(soc_after(table, segments)) << "along other schedules it does not hold";
     double soc_percent = 100.0;

@@ -1,4 +1,4 @@
-#include "mission/file/schedule_entries.h"
+#include "mission/file/schedule_toml.h"
 
 #include "helpers/rejected.h"
 
@@ -121,7 +121,7 @@ TEST(ScheduleEntries, RefusesOverlaps) {
               "phase `otherwise = true`, and it takes what the others leave");
 }
 
-TEST(ScheduleEntries, RefusesAStretchWithinAnother) {
+TEST(ScheduleEntries, RefusesASegmentWithinAnother) {
     EXPECT_EQ(rejected([] {
                   resolve_schedule({part(flight::Phase::cruise, 0.0, 500.0, 1, 2),
                                     part(flight::Phase::cruise, 100.0, 200.0, 1, 3)},

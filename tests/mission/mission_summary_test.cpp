@@ -1,4 +1,4 @@
-#include "mission/comparison.h"
+#include "mission/mission_summary.h"
 
 #include <gtest/gtest.h>
 
