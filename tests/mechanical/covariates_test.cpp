@@ -29,5 +29,10 @@ TEST(CovariatesOf, TakesWhatWasKnownBeforeTheCruiseAndEarlyInIt) {
     EXPECT_FALSE(covariates[Covariate::airspeed]);
 }
 
+TEST(Covariate, IsFoundByItsName) {
+    for (const auto covariate : all_covariates) EXPECT_EQ(covariate_from(to_string(covariate)), covariate);
+    EXPECT_FALSE(covariate_from("height"));
+}
+
 }  // namespace
 }  // namespace flightwatt::mechanical

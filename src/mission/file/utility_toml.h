@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/toml_reader.h"
-#include "compute/power_profile.h"
+#include "compute/compute_model.h"
 #include "mission/utility.h"
 
 namespace flightwatt::mission {
