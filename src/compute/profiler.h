@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compute/leave_one_out.h"
+#include "compute/profile_interpolation.h"
 #include "compute/profile_specification.h"
 #include "compute/profiling/profile_runs.h"
 

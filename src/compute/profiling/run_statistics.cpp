@@ -1,5 +1,7 @@
 #include "compute/profiling/run_statistics.h"
 
+#include "base/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,11 +18,7 @@ std::vector<double> intervals_of(const PowerTrace& run) {
     return intervals_s;
 }
 
-double mean_of(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// 1 + 2 sum rho: how many samples of the series are worth one independent one; at least 1.
+/// 1 + 2 sum rho: how many samples of the series count as one independent one; at least 1.
 double correlation_time(const std::vector<double>& deviations) {
     const auto covariance = [&](std::size_t lag) {
         double sum = 0.0;
@@ -40,11 +38,11 @@ double correlation_time(const std::vector<double>& deviations) {
 
 double standard_error_of(const std::vector<double>& values) {
     if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
-    const double mean = mean_of(values);
+    const double average = mean(values);
     std::vector<double> deviations;
     double squares = 0.0;
     for (const double value : values) {
-        deviations.push_back(value - mean);
+        deviations.push_back(value - average);
         squares += deviations.back() * deviations.back();
     }
     const auto n = static_cast<double>(values.size());
@@ -60,7 +58,7 @@ SamplingJitter jitter_of(const std::vector<PowerTrace>& runs) {
         all.insert(all.end(), intervals.begin(), intervals.end());
     }
     if (all.empty()) return {};
-    SamplingJitter jitter{mean_of(all), 0.0, *std::max_element(all.begin(), all.end())};
+    SamplingJitter jitter{mean(all), 0.0, *std::max_element(all.begin(), all.end())};
     for (const double interval : all) jitter.sd_s += (interval - jitter.mean_s) * (interval - jitter.mean_s);
     jitter.sd_s = std::sqrt(jitter.sd_s / static_cast<double>(all.size()));
     return jitter;

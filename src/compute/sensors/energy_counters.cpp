@@ -1,10 +1,10 @@
 #include "compute/sensors/energy_counters.h"
 
 #include "base/units.h"
-#include "compute/sensors/power_rail.h"
-#include "compute/sensors/sysfs_file.h"
+#include "compute/sensors/power_rails.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
@@ -44,16 +44,14 @@ std::vector<PowerReading> read_counters(CounterState& state) {
 std::vector<EnergyCounter> counters_of_total(const std::vector<EnergyCounter>& counters,
                                              const std::vector<std::string>& wanted) {
     std::vector<EnergyCounter> chosen;
-    if (!wanted.empty()) {
-        std::vector<std::string> names;
-        names.reserve(counters.size());
-        for (const auto& counter : counters) names.push_back(counter.name);
-        for (const auto index : rails_of_total(names, wanted)) chosen.push_back(counters[index]);
-        return chosen;
+    if (wanted.empty()) {
+        std::ranges::copy_if(counters, std::back_inserter(chosen), &EnergyCounter::is_package);
+        return chosen.empty() ? std::vector{counters.front()} : chosen;
     }
-    std::copy_if(counters.begin(), counters.end(), std::back_inserter(chosen),
-                 [](const auto& counter) { return counter.is_package; });
-    return chosen.empty() ? std::vector{counters.front()} : chosen;
+    std::vector<std::string> names;
+    for (const auto& counter : counters) names.push_back(counter.name);
+    for (const auto index : rails_of_total(names, wanted)) chosen.push_back(counters[index]);
+    return chosen;
 }
 
 }  // namespace
@@ -86,7 +84,7 @@ PowerSampler sampler_of_counters(const std::vector<EnergyCounter>& counters,
         sources.push_back(fmt::format("{} ({})", counter.name, counter.file.string()));
     }
     PowerSampler sampler;
-    sampler.kind = "rapl";
+    sampler.kind = SamplerKind::rapl;
     sampler.source = fmt::format("{}", fmt::join(sources, " + "));
     sampler.read = [state] { return read_counters(*state); };
     return sampler;

@@ -1,34 +1,37 @@
-#include "compute/sensors/sensor_rails.h"
+#include "compute/sensors/power_rails.h"
 
+#include "base/error.h"
+#include "base/number.h"
 #include "base/units.h"
-#include "compute/sensors/sysfs_file.h"
 
+#include <algorithm>
 #include <cmath>
-#include <set>
+#include <fstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::compute {
 namespace {
+
+/// The input of the whole module: TX2, Xavier NX, Orin NX and Nano; Nano; Nano under newer kernels.
+constexpr std::string_view total_rails[] = {"VDD_IN", "POM_5V_IN", "5V_IN"};
+/// Behind another rail that is measured too: AGX Orin's is made from VIN_SYS_5V0; NC is not connected.
+constexpr std::string_view derived_rails[] = {"VDDQ_VDD2_1V8AO", "NC"};
 
 using std::filesystem::path;
 
 constexpr int channels = 3;  // of an INA3221
 
-/// Folders that exist, each once: sysfs shows the same device at several places.
-class DeviceFolders {
-  public:
-    void add(const path& folder) {
-        std::error_code none;
-        const auto real = std::filesystem::canonical(folder, none);
-        if (!none && seen_.insert(real).second) folders_.push_back(folder);
-    }
-    const std::vector<path>& folders() const { return folders_; }
-
-  private:
-    std::set<path> seen_;
-    std::vector<path> folders_;
-};
+/// Takes a folder that exists, once: sysfs shows the same device at several places.
+void add_device(std::vector<path>& devices, const path& folder) {
+    std::error_code none;
+    const auto is_same = [&](const path& device) {
+        return std::filesystem::equivalent(device, folder, none);
+    };
+    if (!std::filesystem::exists(folder, none) || std::ranges::any_of(devices, is_same)) return;
+    devices.push_back(folder);
+}
 
 PowerRail product_rail(const std::string& name, const path& voltage_mv, const path& current_ma) {
     return {name, fmt::format("{} x {}", voltage_mv.string(), current_ma.filename().string()),
@@ -68,34 +71,87 @@ void add_hwmon_channels(const path& folder, std::vector<PowerRail>& rails) {
 
 }  // namespace
 
+std::optional<std::string> sysfs_text(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::string line;
+    if (!std::getline(stream, line)) return std::nullopt;
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    return line;
+}
+
+std::optional<double> sysfs_number(const std::filesystem::path& file) {
+    const auto text = sysfs_text(file);
+    return text ? parse_number(*text) : std::nullopt;
+}
+
+double require_sysfs_number(const std::filesystem::path& file) {
+    const auto text = sysfs_text(file);
+    if (!text) throw InputError({file.string()}, "the sensor cannot be read");
+    if (const auto value = parse_number(*text)) return *value;
+    throw InputError({file.string(), 1}, fmt::format("the sensor says '{}', expected a number", *text));
+}
+
+std::vector<std::filesystem::path> sysfs_entries(const std::filesystem::path& folder,
+                                                 std::string_view prefix) {
+    std::vector<std::filesystem::path> found;
+    std::error_code none;
+    for (std::filesystem::directory_iterator it(folder, none), end; it != end; it.increment(none)) {
+        if (it->path().filename().string().starts_with(prefix)) found.push_back(it->path());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names,
+                                        const std::vector<std::string>& wanted) {
+    std::vector<std::size_t> chosen;
+    for (const auto& name : wanted) {
+        const auto found = std::ranges::find(names, name);
+        if (found == names.end()) {
+            throw NoAnswerError(
+                fmt::format("there is no rail '{}'; there are {}", name, fmt::join(names, ", ")));
+        }
+        chosen.push_back(static_cast<std::size_t>(found - names.begin()));
+    }
+    if (!chosen.empty()) return chosen;
+    for (const auto total : total_rails) {
+        const auto found = std::ranges::find(names, total);
+        if (found != names.end()) return {static_cast<std::size_t>(found - names.begin())};
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (std::ranges::find(derived_rails, names[i]) == std::end(derived_rails)) chosen.push_back(i);
+    }
+    return chosen;
+}
+
 std::vector<PowerRail> iio_rails(const path& sysfs) {
-    DeviceFolders devices;
+    std::vector<path> devices;
     for (const auto& driver : sysfs_entries(sysfs / "bus/i2c/drivers", "ina3221")) {
         for (const auto& chip : sysfs_entries(driver)) {
-            for (const auto& device : sysfs_entries(chip, "iio")) devices.add(device);
+            for (const auto& device : sysfs_entries(chip, "iio")) add_device(devices, device);
         }
     }
     for (const auto& device : sysfs_entries(sysfs / "bus/iio/devices", "iio:device")) {
         const auto name = sysfs_text(device / "name").value_or("");
-        if (name.starts_with("ina3221") || sysfs_text(device / "rail_name_0")) devices.add(device);
+        if (name.starts_with("ina3221") || sysfs_text(device / "rail_name_0")) add_device(devices, device);
     }
     std::vector<PowerRail> rails;
-    for (const auto& folder : devices.folders()) add_iio_channels(folder, rails);
+    for (const auto& folder : devices) add_iio_channels(folder, rails);
     return rails;
 }
 
 std::vector<PowerRail> hwmon_rails(const path& sysfs) {
-    DeviceFolders devices;
+    std::vector<path> devices;
     for (const auto& driver : sysfs_entries(sysfs / "bus/i2c/drivers", "ina3221")) {
         for (const auto& chip : sysfs_entries(driver)) {
-            for (const auto& device : sysfs_entries(chip / "hwmon", "hwmon")) devices.add(device);
+            for (const auto& device : sysfs_entries(chip / "hwmon", "hwmon")) add_device(devices, device);
         }
     }
     for (const auto& device : sysfs_entries(sysfs / "class/hwmon", "hwmon")) {
-        if (sysfs_text(device / "name").value_or("").starts_with("ina3221")) devices.add(device);
+        if (sysfs_text(device / "name").value_or("").starts_with("ina3221")) add_device(devices, device);
     }
     std::vector<PowerRail> rails;
-    for (const auto& folder : devices.folders()) add_hwmon_channels(folder, rails);
+    for (const auto& folder : devices) add_hwmon_channels(folder, rails);
     return rails;
 }
 
