@@ -104,7 +104,7 @@ compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatc
         const auto what = run.was_done ? "up to date"
                           : run.status == compute::RunStatus::ok
                               ? fmt::format("{:.4g} W", run.estimate.power_w)
-                              : to_string(run.status);
+                              : std::string(to_string(run.status));
         cli::note(call, fmt::format("[{}/{}] {} repeat {}: {}{}", count, of, name, run.repeat, what,
                                     run.note.empty() ? "" : ": " + run.note));
     };

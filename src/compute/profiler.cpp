@@ -145,8 +145,7 @@ PowerEstimate idle_of(const std::vector<ProfileRun>& runs) {
     throw NoAnswerError(fmt::format("no idle power: {} {}", to_string(idle.status), idle.note));
 }
 
-}  // namespace
-
+/// Layer 2 from the runs; configurations that were not to be run are interpolated, those that failed are not in it.
 ComponentEstimate estimate_component(const ProfiledComponent& component, std::size_t index,
                                      const std::vector<ProfileRun>& runs) {
     ComponentEstimate estimate{
@@ -169,6 +168,8 @@ ComponentEstimate estimate_component(const ProfiledComponent& component, std::si
     interpolate(missing, estimate);
     return estimate;
 }
+
+}  // namespace
 
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options) {
     ProfileOutcome outcome;

@@ -154,15 +154,9 @@ LevelLaw read_airspeed_of_0_1(const TomlTable& table) {
     const double coefficient = positive(table, "coefficient_w_s3_per_m3");
     const double relative_sd = not_negative(table, "relative_sd");
     table.refuse_unknown_keys();
-    return {.covariate = Covariate::airspeed_cubed,
-            .flights = flights,
-            .mean = 1.0,
-            .sd = 1.0,
-            .least = 0.0,
-            .most = std::numeric_limits<double>::max(),
-            .mean_power_w = coefficient,
-            .slope_w = coefficient,
-            .residual_sd_w = coefficient * relative_sd};
+    constexpr double most = std::numeric_limits<double>::max();
+    return {Covariate::airspeed_cubed, flights, 1.0, 1.0, 0.0, most, coefficient, coefficient,
+            coefficient * relative_sd};
 }
 
 PhaseModel read_phase(const TomlTable& table) {
@@ -178,8 +172,8 @@ PhaseModel read_phase(const TomlTable& table) {
                                      phase.fourier.sin_w.size(), phase.fourier.cos_w.size()));
     }
     if (table.has("rms_w")) phase.rms_w = not_negative(table, "rms_w");
-    if (table.has("samples")) phase.samples = count_in(table, "samples");
-    if (table.has("flights")) phase.flights = count_in(table, "flights");
+    phase.samples = count_in_or(table, "samples", 0, 0);
+    phase.flights = count_in_or(table, "flights", 0, 0);
     if (const auto range = table.optional_table("omega_duration")) phase.range = read_range(*range);
     const auto order = phase.fourier.cos_w.size();
     if (const auto errors = table.optional_table("errors")) phase.errors = read_errors(*errors, order);

@@ -57,13 +57,8 @@ std::string key_of(const std::string& component, const std::string& configuratio
     return fmt::format("{}\n{}\n{}", component, configuration, repeat);
 }
 
-/// What an earlier call said of a run.
-struct Record {
-    std::string status;
-    std::string note;
-    std::string fingerprint;
-    std::string duration_s;
-};
+/// What an earlier call said of a run, by column.
+using Record = std::map<std::string, std::string>;
 
 std::map<std::string, Record> read_records(const std::filesystem::path& folder) {
     std::map<std::string, Record> records;
@@ -71,23 +66,24 @@ std::map<std::string, Record> read_records(const std::filesystem::path& folder) 
     if (!std::filesystem::exists(folder / runs_name, none)) return records;
     const auto table = read_csv(folder / runs_name);
     for (const auto& row : table.rows) {
-        const auto text = [&](std::string_view name) { return row.cells[column_index(table, name)].text; };
-        records[key_of(text("component"), text("configuration"), text("repeat"))] = {
-            text("status"), text("note"), text("fingerprint"), text("duration_s")};
+        Record record;
+        for (std::size_t i = 0; i < row.cells.size(); ++i) record[table.columns[i]] = row.cells[i].text;
+        records[key_of(record["component"], record["configuration"], record["repeat"])] = record;
     }
     return records;
 }
 
 /// Whether the run could be taken over from its record and its layer 1.
-bool recall(ProfileRun& run, const Record& record, const std::filesystem::path& folder) {
-    const auto duration_s = parse_number(record.duration_s);
-    if (record.fingerprint != run.fingerprint || record.status != to_string(RunStatus::ok) || !duration_s) {
+bool recall(ProfileRun& run, Record& record, const std::filesystem::path& folder) {
+    const auto duration_s = parse_number(record["duration_s"]);
+    if (record["fingerprint"] != run.fingerprint || record["status"] != to_string(RunStatus::ok) ||
+        !duration_s) {
         return false;
     }
     run.trace = read_power_trace(folder / run.layer1, std::nullopt);
     run.estimate = estimate_run(run.trace, *duration_s);
     run.status = RunStatus::ok;
-    run.note = record.note;
+    run.note = record["note"];
     return true;
 }
 

@@ -58,7 +58,7 @@ SamplingJitter jitter_of(const std::vector<PowerTrace>& runs) {
         all.insert(all.end(), intervals.begin(), intervals.end());
     }
     if (all.empty()) return {};
-    SamplingJitter jitter{mean(all), 0.0, *std::max_element(all.begin(), all.end())};
+    SamplingJitter jitter{mean(all), 0.0, std::ranges::max(all)};
     for (const double interval : all) jitter.sd_s += (interval - jitter.mean_s) * (interval - jitter.mean_s);
     jitter.sd_s = std::sqrt(jitter.sd_s / static_cast<double>(all.size()));
     return jitter;
@@ -67,17 +67,11 @@ SamplingJitter jitter_of(const std::vector<PowerTrace>& runs) {
 PowerEstimate estimate_run(const PowerTrace& run, double duration_s) {
     auto weights = intervals_of(run);
     auto sorted = weights;
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     weights.insert(weights.begin(), sorted.empty() ? 1.0 : sorted[sorted.size() / 2]);
-    PowerEstimate estimate;
-    estimate.power_w = std::inner_product(weights.begin(), weights.end(), run.power_w.begin(), 0.0) /
-                       std::accumulate(weights.begin(), weights.end(), 0.0);
-    estimate.standard_error_w = standard_error_of(run.power_w);
-    estimate.duration_s = duration_s;
-    estimate.energy_j = estimate.power_w * duration_s;
-    estimate.samples = run.power_w.size();
-    estimate.repeats = 1;
-    return estimate;
+    const double power_w = std::inner_product(weights.begin(), weights.end(), run.power_w.begin(), 0.0) /
+                           std::accumulate(weights.begin(), weights.end(), 0.0);
+    return {power_w, standard_error_of(run.power_w), duration_s, power_w * duration_s, run.power_w.size(), 1};
 }
 
 PowerEstimate combine_repeats(const std::vector<PowerEstimate>& repeats) {

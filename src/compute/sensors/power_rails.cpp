@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,6 +24,38 @@ constexpr std::string_view derived_rails[] = {"VDDQ_VDD2_1V8AO", "NC"};
 using std::filesystem::path;
 
 constexpr int channels = 3;  // of an INA3221
+
+/// The first line without its end; std::nullopt if it cannot be read.
+std::optional<std::string> sysfs_text(const path& file) {
+    std::ifstream stream(file);
+    std::string line;
+    if (!std::getline(stream, line)) return std::nullopt;
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    return line;
+}
+
+std::optional<double> sysfs_number(const path& file) {
+    const auto text = sysfs_text(file);
+    return text ? parse_number(*text) : std::nullopt;
+}
+
+double require_sysfs_number(const path& file) {
+    const auto text = sysfs_text(file);
+    if (!text) throw InputError({file.string()}, "the sensor cannot be read");
+    if (const auto value = parse_number(*text)) return *value;
+    throw InputError({file.string(), 1}, fmt::format("the sensor says '{}', expected a number", *text));
+}
+
+/// The entries whose names begin with `prefix`, sorted; none if there is no such folder.
+std::vector<path> sysfs_entries(const path& folder, std::string_view prefix = "") {
+    std::vector<path> found;
+    std::error_code none;
+    for (std::filesystem::directory_iterator it(folder, none), end; it != end; it.increment(none)) {
+        if (it->path().filename().string().starts_with(prefix)) found.push_back(it->path());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
 
 /// Takes a folder that exists, once: sysfs shows the same device at several places.
 void add_device(std::vector<path>& devices, const path& folder) {
@@ -70,37 +104,6 @@ void add_hwmon_channels(const path& folder, std::vector<PowerRail>& rails) {
 }
 
 }  // namespace
-
-std::optional<std::string> sysfs_text(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    std::string line;
-    if (!std::getline(stream, line)) return std::nullopt;
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-    return line;
-}
-
-std::optional<double> sysfs_number(const std::filesystem::path& file) {
-    const auto text = sysfs_text(file);
-    return text ? parse_number(*text) : std::nullopt;
-}
-
-double require_sysfs_number(const std::filesystem::path& file) {
-    const auto text = sysfs_text(file);
-    if (!text) throw InputError({file.string()}, "the sensor cannot be read");
-    if (const auto value = parse_number(*text)) return *value;
-    throw InputError({file.string(), 1}, fmt::format("the sensor says '{}', expected a number", *text));
-}
-
-std::vector<std::filesystem::path> sysfs_entries(const std::filesystem::path& folder,
-                                                 std::string_view prefix) {
-    std::vector<std::filesystem::path> found;
-    std::error_code none;
-    for (std::filesystem::directory_iterator it(folder, none), end; it != end; it.increment(none)) {
-        if (it->path().filename().string().starts_with(prefix)) found.push_back(it->path());
-    }
-    std::sort(found.begin(), found.end());
-    return found;
-}
 
 std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names,
                                         const std::vector<std::string>& wanted) {
@@ -178,6 +181,25 @@ std::vector<PowerRail> power_supply_rails(const path& sysfs) {
         }
     }
     return rails;
+}
+
+std::vector<EnergyCounter> energy_counters(const path& sysfs) {
+    std::vector<EnergyCounter> counters;
+    // Not intel-rapl-mmio:0, which counts the package once more.
+    for (const auto& zone : sysfs_entries(sysfs / "class/powercap", "intel-rapl:")) {
+        const auto file = zone / "energy_uj";
+        const auto range_uj = sysfs_number(zone / "max_energy_range_uj");
+        if (!sysfs_number(file) || !range_uj) continue;
+        const auto name = sysfs_text(zone / "name").value_or(zone.filename().string());
+        counters.push_back({name, file.string(), [file] { return require_sysfs_number(file); }, *range_uj,
+                            name.starts_with("package")});
+    }
+    return counters;
+}
+
+double power_of_counter_w(double last_uj, double now_uj, double range_uj, double time_s) {
+    const double energy_uj = now_uj - last_uj + (now_uj < last_uj ? range_uj : 0.0);
+    return units::joule_from_microjoule(energy_uj) / time_s;
 }
 
 }  // namespace flightwatt::compute

@@ -2,31 +2,25 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace flightwatt::compute {
-
-/// The first line of a sysfs file without its end; std::nullopt if it cannot be read.
-std::optional<std::string> sysfs_text(const std::filesystem::path& file);
-
-/// The number that a sysfs file holds; std::nullopt if there is none.
-std::optional<double> sysfs_number(const std::filesystem::path& file);
-
-/// The same of a file that must have one. Throws InputError naming it.
-double require_sysfs_number(const std::filesystem::path& file);
-
-/// The entries of a folder whose names begin with `prefix`, sorted; none if there is no such folder.
-std::vector<std::filesystem::path> sysfs_entries(const std::filesystem::path& folder,
-                                                 std::string_view prefix = "");
 
 /// A supply line of a board, and how its power now is read [W]. `read` throws InputError naming the file.
 struct PowerRail {
     std::string name;    ///< the board's name for it, "VDD_IN"
     std::string source;  ///< the files
     std::function<double()> read;
+};
+
+/// A counter of the energy that a part of the processor has used. `read_uj` throws InputError naming the file.
+struct EnergyCounter {
+    std::string name;    ///< "package-0"
+    std::string source;  ///< its energy_uj
+    std::function<double()> read_uj;
+    double range_uj = 0.0;    ///< where it begins at 0 again
+    bool is_package = false;  ///< a whole processor, whose parts have counters of their own
 };
 
 /// Which of the rails (by name) add up to the power of the board: those `wanted`; else the one that is known
@@ -49,5 +43,13 @@ std::vector<PowerRail> hwmon_rails(const std::filesystem::path& sysfs);
 /// Batteries and supplies: class/power_supply/BAT0 with power_now [uW], else voltage_now [uV] times
 /// current_now [uA]. Those whose status is Charging or Full do not show the load, and are passed over.
 std::vector<PowerRail> power_supply_rails(const std::filesystem::path& sysfs);
+
+/// The counters that can be read below class/powercap (Intel and AMD RAPL through the kernel's powercap
+/// driver): intel-rapl:0 and below.
+std::vector<EnergyCounter> energy_counters(const std::filesystem::path& sysfs);
+
+/// Two readings of a counter as power [W]: energy since the last, over time. `range_uj` is where the counter
+/// begins at 0 again.
+double power_of_counter_w(double last_uj, double now_uj, double range_uj, double time_s);
 
 }  // namespace flightwatt::compute

@@ -56,15 +56,6 @@ void check_samples(flight::Phase phase, const PhaseSamples& samples) {
     }
 }
 
-void check_count(flight::Phase phase, const PhaseSamples& samples, int order) {
-    if (samples.tau.size() >= samples_needed(order)) return;
-    throw NoAnswerError(
-        fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: "
-                    "exclude its {}, or lower the order",
-                    samples.flight, samples.tau.size(), to_string(phase), order, samples_needed(order),
-                    to_string(phase)));
-}
-
 struct Scaling {
     std::vector<ScaledSamples> flights;
     std::vector<double> mean_w;  ///< a flight
@@ -104,21 +95,18 @@ FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
     return FrequencyBound::none;
 }
 
-/// Order 0: the values less their means are 0 but for noise, whatever the frequency.
-JointFit means_of(const Scaling& scaling, const FrequencyRange& range) {
+JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range) {
+    if (order > 0) {
+        return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range));
+    }
+    // The values less their means are 0 but for noise, whatever the frequency.
     JointFit joint;
     joint.theta_rad = std::clamp(units::rad_per_turn, range.low_rad, range.high_rad);
-    for (const auto& flight : scaling.flights) {
-        const auto& value = flight.value;
+    for (const auto& [tau, value, name] : scaling.flights) {
         joint.coefficients.emplace_back(Eigen::VectorXd::Zero(1));
         joint.square_sum.push_back(std::inner_product(value.begin(), value.end(), value.begin(), 0.0));
     }
     return joint;
-}
-
-JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range) {
-    if (order == 0) return means_of(scaling, range);
-    return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range));
 }
 
 PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling, const JointFit& joint,
@@ -174,7 +162,12 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights,
     if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
     for (const auto& flight : flights) {
         check_samples(phase, flight);
-        check_count(phase, flight, options.order);
+        if (flight.tau.size() >= samples_needed(options.order)) continue;
+        throw NoAnswerError(
+            fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: "
+                        "exclude its {}, or lower the order",
+                        flight.flight, flight.tau.size(), to_string(phase), options.order,
+                        samples_needed(options.order), to_string(phase)));
     }
     const auto scaling = scaled(flights);
     try {

@@ -2,7 +2,7 @@
 
 #include "compute/sensors/open_sampler.h"
 
-#include "compute/sensors/energy_counters.h"
+#include "compute/sensors/power_rails.h"
 #include "helpers/rejected.h"
 
 #include <thread>
