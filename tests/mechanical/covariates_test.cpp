@@ -1,5 +1,6 @@
 #include "mechanical/covariates.h"
 
+#include "flight/segmentation.h"
 #include "helpers/sample_columns.h"
 
 #include <gtest/gtest.h>
