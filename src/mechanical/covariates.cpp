@@ -5,7 +5,7 @@
 #include "flight/chosen_track.h"
 #include "flight/segmentation.h"
 
-#include <utility>
+#include <algorithm>
 #include <vector>
 
 #include <fmt/ranges.h>
@@ -41,7 +41,10 @@ std::optional<double> resting_voltage_v(const flight::FlightSeries& series, doub
         voltages.push_back(voltage_v[i]);
     }
     if (voltages.empty()) return std::nullopt;
-    return median(std::move(voltages));
+    // Of an even number the higher of the middle two: a voltage that was measured.
+    const auto middle = voltages.begin() + static_cast<std::ptrdiff_t>(voltages.size() / 2);
+    std::ranges::nth_element(voltages, middle);
+    return *middle;
 }
 
 }  // namespace
