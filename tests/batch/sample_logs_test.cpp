@@ -9,8 +9,8 @@
 #include "flight/phase_statistics.h"
 #include "flight/series_file.h"
 #include "helpers/rejected.h"
+#include "mechanical/mechanical_model.h"
 #include "mechanical/model_fit.h"
-#include "mechanical/phase_curve.h"
 
 #include <filesystem>
 #include <stdexcept>
@@ -37,7 +37,7 @@ mechanical::MechanicalModel fit_of(const std::vector<BatchFlight>& flights) {
     for (const auto& flight : flights) {
         for (const auto& measured : flight.selection.flights) samples.push_back(measured.samples);
     }
-    return fit_mechanical_model(samples);
+    return fit_model(samples).model;
 }
 
 void expect_weights_that_sum_to_one(const mechanical::MechanicalModel& model) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/text_table.h"
-#include "mechanical/validation_score.h"
+#include "mechanical/validation.h"
 
 #include <string>
 #include <vector>

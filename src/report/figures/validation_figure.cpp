@@ -1,6 +1,6 @@
 #include "report/figures/validation_figure.h"
 
-#include "mechanical/validation_score.h"
+#include "mechanical/validation.h"
 
 #include <optional>
 

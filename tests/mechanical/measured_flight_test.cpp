@@ -1,8 +1,9 @@
-#include "mechanical/flight_samples.h"
+#include "mechanical/measured_flight.h"
 
 #include "helpers/sample_columns.h"
 
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,14 +43,22 @@ flight::Sortie whole_sortie(double start_s) {
     return sortie;
 }
 
-FlightSelection select(const std::vector<flight::Sortie>& sorties) {
+struct Selection {
+    std::vector<FlightSamples> flights;
+    std::vector<Exclusion> exclusions;
+};
+
+Selection select(const std::vector<flight::Sortie>& sorties) {
     flight::FlightPhases phases;
     phases.sorties = sorties;
     for (std::size_t s = 0; s < sorties.size(); ++s) phases.sorties[s].number = s + 1;
-    return select_samples(series_of_300_s(), phases, needed);
+    auto measured = measure_flights(series_of_300_s(), phases, needed);
+    Selection selection{{}, std::move(measured.exclusions)};
+    for (auto& flight : measured.flights) selection.flights.push_back(std::move(flight.samples));
+    return selection;
 }
 
-TEST(FlightSamples, AreThePowerOfEachPhaseOnItsOwnTime) {
+TEST(MeasuredFlights, AreThePowerOfEachPhaseOnItsOwnTime) {
     const auto selection = select({whole_sortie(10)});
     EXPECT_THAT(selection.exclusions, IsEmpty());
     ASSERT_EQ(selection.flights.size(), 1U);
@@ -70,7 +79,7 @@ TEST(FlightSamples, AreThePowerOfEachPhaseOnItsOwnTime) {
     EXPECT_EQ(selection.flights[0].phases[flight::Phase::landing].value().power_w.front(), 1090.0);
 }
 
-TEST(FlightSamples, LieWithinEdgesBetweenTwoOfThem) {
+TEST(MeasuredFlights, LieWithinEdgesBetweenTwoOfThem) {
     flight::Sortie sortie;
     sortie.phases = {span(flight::Phase::takeoff, 10.25, 30.75)};
     const auto selection = select({sortie});
@@ -82,7 +91,7 @@ TEST(FlightSamples, LieWithinEdgesBetweenTwoOfThem) {
     EXPECT_FALSE(selection.flights[0].phases[flight::Phase::cruise].has_value());
 }
 
-TEST(FlightSamples, CountEverySortieAsAFlight) {
+TEST(MeasuredFlights, CountEverySortieAsAFlight) {
     const auto selection = select({whole_sortie(0), whole_sortie(150)});
     ASSERT_EQ(selection.flights.size(), 2U);
     EXPECT_EQ(selection.flights[0].flight, "flight");
@@ -91,7 +100,7 @@ TEST(FlightSamples, CountEverySortieAsAFlight) {
     EXPECT_EQ(selection.flights[1].phases[flight::Phase::takeoff]->power_w.front(), 1150.0);
 }
 
-TEST(FlightSamples, ExcludeWhatTheLogCuts) {
+TEST(MeasuredFlights, ExcludeWhatTheLogCuts) {
     auto sortie = whole_sortie(10);
     sortie.phases[2].complete = false;
     const auto selection = select({sortie});
@@ -104,7 +113,7 @@ TEST(FlightSamples, ExcludeWhatTheLogCuts) {
     EXPECT_FALSE(selection.flights[0].phases[flight::Phase::landing].has_value());
 }
 
-TEST(FlightSamples, ExcludeWhatBeginsOrEndsInALongGap) {
+TEST(MeasuredFlights, ExcludeWhatBeginsOrEndsInALongGap) {
     auto sortie = whole_sortie(10);
     sortie.phases[0].start.gap_s = 5.0;   // a quarter of its 20 s: just short enough
     sortie.phases[1].end.gap_s = 15.01;   // of 60 s
@@ -118,7 +127,7 @@ TEST(FlightSamples, ExcludeWhatBeginsOrEndsInALongGap) {
     EXPECT_TRUE(selection.flights[0].phases[flight::Phase::takeoff].has_value());
 }
 
-TEST(FlightSamples, ExcludeWhatHasTooFew) {
+TEST(MeasuredFlights, ExcludeWhatHasTooFew) {
     flight::Sortie sortie;
     sortie.phases = {span(flight::Phase::takeoff, 10, 17), span(flight::Phase::cruise, 17, 23)};
     const auto selection = select({sortie});
@@ -128,7 +137,7 @@ TEST(FlightSamples, ExcludeWhatHasTooFew) {
     EXPECT_EQ(selection.exclusions[0].reason, "7 samples, 8 are needed");
 }
 
-TEST(FlightSamples, AreNoneWhereNothingIsLeft) {
+TEST(MeasuredFlights, AreNoneWhereNothingIsLeft) {
     auto first = whole_sortie(10);
     for (auto& phase : first.phases) phase.complete = false;
     const auto selection = select({first, whole_sortie(150)});

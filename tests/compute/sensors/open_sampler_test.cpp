@@ -1,8 +1,8 @@
 // Sensor trees as the boards' kernels lay them out, made by the test.
 
-#include "compute/sensors/power_sampler.h"
+#include "compute/sensors/open_sampler.h"
 
-#include "compute/sensors/energy_counters.h"
+#include "compute/sensors/power_rails.h"
 #include "helpers/rejected.h"
 
 #include <thread>
@@ -25,7 +25,7 @@ class SensorTree : public testing::Test {
         std::filesystem::create_directories((root / file).parent_path());
         test::write_text(root / file, text + "\n");
     }
-    SamplerSettings settings(const std::string& kind = "auto") const {
+    SamplerSettings settings(SamplerKind kind = SamplerKind::automatic) const {
         SamplerSettings result;
         result.kind = kind;
         result.sysfs = root;
@@ -58,11 +58,11 @@ TEST_F(SensorTree, JetsonNanoThroughIio) {
     std::filesystem::create_directories(root / "bus/iio/devices");
     std::filesystem::create_directory_symlink(root / device, root / "bus/iio/devices/iio:device0");
     const auto sampler = open_sampler(settings());
-    EXPECT_EQ(sampler.kind, "ina3221-iio");
+    EXPECT_EQ(sampler.kind, SamplerKind::ina3221_iio);
     EXPECT_THAT(sampler.source, HasSubstr("POM_5V_IN"));
     EXPECT_THAT(sampler.found, ElementsAre("ina3221-iio: POM_5V_IN, POM_5V_GPU, POM_5V_CPU"));
     EXPECT_DOUBLE_EQ(power_w(settings()), 2.545);
-    auto chosen = settings("ina3221");
+    auto chosen = settings(SamplerKind::ina3221);
     chosen.rails = {"POM_5V_GPU", "POM_5V_CPU"};
     EXPECT_DOUBLE_EQ(power_w(chosen), 0.575);
     chosen.rails = {"VDD_CPU"};
@@ -94,10 +94,10 @@ TEST_F(SensorTree, JetsonOrinNxThroughHwmon) {
     std::filesystem::create_directories(root / "class/hwmon");
     std::filesystem::create_directory_symlink(root / device, root / "class/hwmon/hwmon3");
     const auto sampler = open_sampler(settings());
-    EXPECT_EQ(sampler.kind, "ina3221-hwmon");
+    EXPECT_EQ(sampler.kind, SamplerKind::ina3221_hwmon);
     EXPECT_THAT(sampler.found, ElementsAre("ina3221-hwmon: VDD_IN, VDD_CPU_GPU_CV, VDD_SOC"));
     EXPECT_DOUBLE_EQ(power_w(settings()), 4.8);
-    EXPECT_DOUBLE_EQ(power_w(settings("ina3221")), 4.8);
+    EXPECT_DOUBLE_EQ(power_w(settings(SamplerKind::ina3221)), 4.8);
 }
 
 TEST_F(SensorTree, JetsonAgxOrinAddsItsRails) {
@@ -133,7 +133,7 @@ TEST_F(SensorTree, RaplCountsPackagesOnce) {
     zone("intel-rapl:2", "psys", "0");
     zone("intel-rapl-mmio:0", "package-0", "0");
     const auto sampler = open_sampler(settings());
-    EXPECT_EQ(sampler.kind, "rapl");
+    EXPECT_EQ(sampler.kind, SamplerKind::rapl);
     const auto before = std::chrono::steady_clock::now();
     EXPECT_TRUE(sampler.read().empty());  // a counter says nothing alone
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -161,7 +161,7 @@ TEST_F(SensorTree, PowerSupply) {
 
 TEST_F(SensorTree, AFolderAboveSysWillDo) {
     put("class/power_supply/BAT0/power_now", "1500000");
-    auto given = settings("power_supply");
+    auto given = settings(SamplerKind::power_supply);
     given.sysfs = root.parent_path();
     EXPECT_DOUBLE_EQ(power_w(given), 1.5);
 }
@@ -170,7 +170,7 @@ TEST_F(SensorTree, NoSensorAndBrokenSensors) {
     std::filesystem::create_directories(root);
     EXPECT_THROW(open_sampler(settings()), NoAnswerError);
     put("class/power_supply/BAT0/power_now", "1500000");
-    EXPECT_THROW(open_sampler(settings("rapl")), NoAnswerError);
+    EXPECT_THROW(open_sampler(settings(SamplerKind::rapl)), NoAnswerError);
     const auto sampler = open_sampler(settings());
     put("class/power_supply/BAT0/power_now", "broken");
     EXPECT_EQ(test::rejected([&] { sampler.read(); }, root),
@@ -191,7 +191,7 @@ std::vector<PowerReading> read_some(const PowerSampler& sampler, std::size_t cou
 TEST(CommandSampler, TakesAProgramThatGoesOnAndOneThatPrintsOnce) {
     for (const std::string script : {"while :; do echo ' 7.5 '; sleep 0.01; done", "echo 7.5"}) {
         SamplerSettings settings;
-        settings.kind = "command";
+        settings.kind = SamplerKind::command;
         settings.interval_s = 0.01;
         settings.command = {"sh", "-c", script};
         const auto readings = read_some(open_sampler(settings), 3);
@@ -203,7 +203,7 @@ TEST(CommandSampler, TakesAProgramThatGoesOnAndOneThatPrintsOnce) {
 
 TEST(CommandSampler, RefusesWhatIsNoPower) {
     SamplerSettings settings;
-    settings.kind = "command";
+    settings.kind = SamplerKind::command;
     settings.command = {"sh", "-c", "echo 3,5 W; sleep 60"};
     EXPECT_THAT(test::rejected([&] { read_some(open_sampler(settings), 1); }),
                 HasSubstr("the sampler printed '3,5 W', expected watts, a number a line"));
