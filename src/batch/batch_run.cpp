@@ -7,7 +7,7 @@
 #include "batch/fit_selection.h"
 #include "batch/interruption.h"
 #include "flight/load_flight.h"
-#include "flight/phase_statistics.h"
+#include "flight/phases_file.h"
 #include "flight/series_file.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "telemetry/telemetry_log.h"
+#include "telemetry/log_notes.h"
 
 #include <limits>
 #include <map>
@@ -24,15 +24,7 @@ struct Track {
     bool operator==(const Track&) const = default;
 };
 
-/// Where the autopilot's current came from.
-enum class CurrentOrigin {
-    unknown,
-    sensor,   ///< the airframe converts an ADC reading
-    throttle  ///< computed from throttle: a power model fitted to it is circular
-};
-
-/// "measured by a sensor", "computed from throttle" or "unknown".
-std::string_view to_string(CurrentOrigin origin);
+using telemetry::CurrentOrigin;
 
 /// The log's clock began anew: what stands behind is another recording.
 struct ClockRestart {
@@ -70,5 +62,12 @@ struct FlightSeries {
 /// Every name that a track can have, in the order of the series file's columns: altitude_m,
 /// throttle_percent, voltage_v, current_a, power_w, charge_ah, energy_wh, east_m, north_m, ...
 const std::vector<std::string>& track_names();
+
+/// Puts a track into the series in place of all of its name.
+void replace_track(FlightSeries& series, Track track);
+
+/// The series as it would have been read from a log that ends at `until_s` (the log's own seconds), in every
+/// field: nothing later is left. What is known before a flight stays.
+FlightSeries cut_series(const FlightSeries& series, double until_s);
 
 }  // namespace flightwatt::flight

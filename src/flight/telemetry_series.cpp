@@ -3,22 +3,11 @@
 #include "flight/sources/logged_tracks.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 namespace flightwatt::flight {
 namespace {
-
-CurrentOrigin origin_of(telemetry::CurrentOrigin origin) {
-    switch (origin) {
-        case telemetry::CurrentOrigin::sensor:
-            return CurrentOrigin::sensor;
-        case telemetry::CurrentOrigin::throttle:
-            return CurrentOrigin::throttle;
-        case telemetry::CurrentOrigin::unknown:
-            break;
-    }
-    return CurrentOrigin::unknown;
-}
 
 void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log) {
     series.lacks_log = !log.configuration;
@@ -31,27 +20,29 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
     series.aircraft_name = aircraft.name;
     series.block_names = aircraft.block_names;
     series.planned_ground_altitude_m = aircraft.ground_altitude_m;
-    series.current_origin = origin_of(aircraft.current_origin);
+    series.current_origin = aircraft.current_origin;
 }
 
 /// Times may come a little late; a jump back of a minute is another log, or another boot, behind the first
 /// one. Of all that show it, the pair of times that shows it first.
-void find_restart(ClockRestart& restart, const telemetry::MessageTable& table) {
+std::optional<ClockRestart> restart_in(const telemetry::MessageTable& table) {
     constexpr double late_s = 60.0;
     double latest_s = -std::numeric_limits<double>::infinity();
     const bool none = std::none_of(table.time_s.begin(), table.time_s.end(), [&](double time_s) {
         latest_s = std::max(latest_s, time_s);
         return latest_s - time_s > late_s;
     });
-    if (none) return;
+    std::optional<ClockRestart> restart;
+    if (none) return restart;
     std::set<double> seen_s;
     for (const double time_s : table.time_s) {
         const auto first = seen_s.upper_bound(time_s + late_s);
-        if (first != seen_s.end() && *first < restart.known_s) {
+        if (first != seen_s.end() && (!restart || *first < restart->known_s)) {
             restart = {*first, *seen_s.rbegin(), time_s, table.message};
         }
         seen_s.insert(time_s);
     }
+    return restart;
 }
 
 }  // namespace
@@ -79,14 +70,13 @@ std::vector<telemetry::MessageRequest> flight_messages() {
 }
 
 std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log) {
+    const auto is_telemetry = [](const telemetry::MessageTable& table) {
+        return table.message != "TAKEOFF" && table.message != "PPRZ_MODE" &&
+               table.message != "NAVIGATION_REF";
+    };
     std::vector<std::string> ids;
     for (const auto& sender : log.senders) {
-        const bool sends_telemetry =
-            std::any_of(sender.tables.begin(), sender.tables.end(), [](const auto& table) {
-                return table.message != "TAKEOFF" && table.message != "PPRZ_MODE" &&
-                       table.message != "NAVIGATION_REF";
-            });
-        if (sends_telemetry) ids.push_back(sender.id);
+        if (std::ranges::any_of(sender.tables, is_telemetry)) ids.push_back(sender.id);
     }
     return ids;
 }
@@ -101,9 +91,12 @@ FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string
                                      [&](const telemetry::SenderLog& s) { return s.id == aircraft_id; });
     if (sender == log.senders.end()) return series;
     series.tracks = logged_tracks(*sender, !log.configuration);
-    ClockRestart restart{std::numeric_limits<double>::infinity(), 0.0, 0.0, ""};
-    for (const auto& table : sender->tables) find_restart(restart, table);
-    if (!restart.message.empty()) series.clock_restart = restart;
+    for (const auto& table : sender->tables) {
+        const auto restart = restart_in(table);
+        if (restart && (!series.clock_restart || restart->known_s < series.clock_restart->known_s)) {
+            series.clock_restart = restart;
+        }
+    }
     return series;
 }
 

@@ -1,7 +1,7 @@
 #include "mechanical/covariates.h"
 
-#include "flight/airspeed.h"
 #include "flight/chosen_track.h"
+#include "flight/phase_statistics.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "mechanical/flight_samples.h"
 
-#include "flight/airspeed.h"
 #include "flight/chosen_track.h"
+#include "flight/phase_statistics.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "batch/stored_flights.h"
 
-#include "flight/phase_statistics.h"
+#include "flight/phases_file.h"
 #include "flight/series_file.h"
 #include "helpers/rejected.h"
 #include "helpers/sample_logs.h"

@@ -1,4 +1,4 @@
-#include "flight/cut_series.h"
+#include "flight/flight_series.h"
 
 #include "flight/chosen_track.h"
 #include "helpers/cut_logs.h"
@@ -109,6 +109,18 @@ TEST(CutSeries, ForgetsAClockThatBeginsAnewLater) {
     EXPECT_EQ(series.clock_restart->known_s, 500.0);
     EXPECT_FALSE(cut_series(series, 499.0).clock_restart);
     expect_no_hindsight(text.substr(0, text.find("500 20")), std::nullopt);
+}
+
+TEST(FlightSeries, HoldsAReplacedTrackOnceWhereItStood) {
+    FlightSeries series;
+    series.tracks = {{.name = "altitude_m"},
+                     {.name = "power_w", .source = "a"},
+                     {.name = "block"},
+                     {.name = "power_w", .source = "b"}};
+    replace_track(series, {.name = "power_w", .source = "c"});
+    ASSERT_EQ(series.tracks.size(), 3U);
+    EXPECT_EQ(series.tracks[1].source, "c");
+    EXPECT_EQ(series.tracks[2].name, "block");
 }
 
 }  // namespace
