@@ -1,8 +1,8 @@
 #include "flight/chosen_track.h"
 
 #include "base/error.h"
+#include "flight/flight_series.h"
 #include "flight/sources/power_source.h"
-#include "flight/track.h"
 
 #include <algorithm>
 

@@ -1,9 +1,26 @@
 #include "flight/flight_series.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flightwatt::flight {
 namespace {
+
+double interpolate(const Track& track, std::size_t after, double time_s) {
+    if (after == 0) return track.value.front();
+    if (after == track.time_s.size()) return track.value.back();
+    const double begin_s = track.time_s[after - 1];
+    const double part = (time_s - begin_s) / (track.time_s[after] - begin_s);
+    return std::lerp(track.value[after - 1], track.value[after], part);
+}
+
+/// Most messages come in the order of their times, each a time of its own.
+bool is_track(const std::vector<double>& time_s, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (!std::isfinite(values[i]) || (i > 0 && time_s[i] <= time_s[i - 1])) return false;
+    }
+    return true;
+}
 
 Track cut_track(const Track& track, double until_s) {
     const auto end = std::upper_bound(track.time_s.begin(), track.time_s.end(), until_s);
@@ -26,6 +43,62 @@ void cut_skipped(std::vector<telemetry::SkippedLines>& skipped, double until_s) 
 }
 
 }  // namespace
+
+Track make_track(const std::vector<double>& time_s, const std::vector<double>& values, Merge merge) {
+    Track track;
+    if (is_track(time_s, values)) {
+        track.time_s = time_s;
+        track.value = values;
+        return track;
+    }
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isfinite(values[i])) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
+    std::size_t merged = 0;  // how many rows the last point is made of
+    for (const auto i : order) {
+        if (!track.empty() && track.time_s.back() == time_s[i]) {
+            ++merged;
+            auto& value = track.value.back();
+            value = merge == Merge::latest ? values[i]
+                                           : value + (values[i] - value) / static_cast<double>(merged);
+            continue;
+        }
+        merged = 1;
+        track.time_s.push_back(time_s[i]);
+        track.value.push_back(values[i]);
+    }
+    return track;
+}
+
+double value_at(const Track& track, double time_s) {
+    const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), time_s);
+    return interpolate(track, static_cast<std::size_t>(after - track.time_s.begin()), time_s);
+}
+
+double state_at(const Track& track, double time_s) {
+    const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), time_s);
+    const auto index = static_cast<std::size_t>(after - track.time_s.begin());
+    return track.value[index == 0 ? 0 : index - 1];
+}
+
+std::vector<double> resample(const Track& track, const std::vector<double>& time_s) {
+    std::vector<double> values;
+    values.reserve(time_s.size());
+    std::size_t after = 0;
+    for (const double t : time_s) {
+        while (after < track.time_s.size() && track.time_s[after] <= t) ++after;
+        values.push_back(interpolate(track, after, t));
+    }
+    return values;
+}
+
+bool is_constant(const Track& track) {
+    return std::all_of(track.value.begin(), track.value.end(),
+                       [&](double value) { return value == track.value.front(); });
+}
 
 const std::vector<std::string>& track_names() {
     static const std::vector<std::string> names{"altitude_m",

@@ -4,10 +4,10 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/chosen_track.h"
+#include "flight/flight_series.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/sources/power_source.h"
-#include "flight/track.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "flight/chosen_track.h"
+#include "flight/flight_series.h"
 #include "flight/segmentation/flight_grid.h"
-#include "flight/track.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/chosen_track.h"
-#include "flight/track.h"
+#include "flight/flight_series.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "flight/flight_series.h"
-#include "flight/track.h"
 #include "telemetry/telemetry_log.h"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "flight/sources/power_source.h"
 
-#include "flight/track.h"
+#include "flight/flight_series.h"
 
 #include <algorithm>
 #include <cmath>
