@@ -72,7 +72,7 @@ constexpr Sign signs[] = {
     {EdgeKind::touchdown, "mode", [](const BlockNames&, const Change& c) { return c.to == manual_mode; }},
 };
 
-std::string describe(const FlightSeries& series, std::string_view track, const Change& change) {
+std::string event_text(const FlightSeries& series, std::string_view track, const Change& change) {
     if (track == "takeoff") return "TAKEOFF";
     if (track == "mode") return fmt::format("mode {} -> {}", change.from, change.to);
     const auto name = [&](int block) {
@@ -99,7 +99,7 @@ std::vector<EdgeWitness> events_of(const FlightSeries& series, EdgeKind kind, do
         });
         if (changes.empty()) continue;
         const auto nearest = *std::ranges::min_element(changes, {}, distance_s);
-        events.push_back({describe(series, sign.track, nearest), nearest.time_s, nearest.time_s - edge_s});
+        events.push_back({event_text(series, sign.track, nearest), nearest.time_s, nearest.time_s - edge_s});
     }
     return events;
 }

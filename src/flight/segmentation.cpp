@@ -8,8 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
@@ -228,11 +231,6 @@ struct Witnesses {
     Track takeoff;
 };
 
-Witnesses witnesses_of(const FlightSeries& series) {
-    return {chosen_track(series, "altitude_m"), chosen_track(series, "mode"), chosen_track(series, "block"),
-            chosen_track(series, "takeoff")};
-}
-
 PhaseEdge describe_edge(const Witnesses& witnesses, const FlightGrid& grid, double exact_s) {
     PhaseEdge edge;
     const double time_s = to_millisecond(exact_s);
@@ -296,7 +294,8 @@ void validate(const SegmentationOptions& options) {
 FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options) {
     validate(options);
     const auto grid = make_grid(series);
-    const auto witnesses = witnesses_of(series);
+    const Witnesses witnesses{chosen_track(series, "altitude_m"), chosen_track(series, "mode"),
+                              chosen_track(series, "block"), chosen_track(series, "takeoff")};
     const auto ground_m = ground_altitude_m(series);
     FlightPhases phases;
     if (grid.throttle_percent.empty())
@@ -324,15 +323,13 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
 
 void require_sortie(const FlightSeries& series, const FlightPhases& phases, const std::string& file) {
     if (!phases.sorties.empty()) return;
-    std::string seen = "it stood still throughout";
-    if (!phases.ground_events.empty()) {
-        seen = "seen instead: ";
-        for (std::size_t i = 0; i < std::min<std::size_t>(phases.ground_events.size(), 3); ++i) {
-            const auto& other = phases.ground_events[i];
-            seen += fmt::format("{}{} ({:.0f} to {:.0f} s)", i > 0 ? "; " : "", other.what, other.start_s,
-                                other.end_s);
-        }
+    std::vector<std::string> events;
+    for (const auto& other :
+         std::span(phases.ground_events).first(std::min<std::size_t>(phases.ground_events.size(), 3))) {
+        events.push_back(fmt::format("{} ({:.0f} to {:.0f} s)", other.what, other.start_s, other.end_s));
     }
+    const auto seen = events.empty() ? std::string("it stood still throughout")
+                                     : fmt::format("seen instead: {}", fmt::join(events, "; "));
     const auto power = power_track(series);
     throw InputError(
         {file}, fmt::format("holds no flight in {:.0f} s", power.time_s.back() - power.time_s.front()), seen);
