@@ -57,7 +57,7 @@ TEST(SampleLogs, GiveTableOneBack) {
     const auto published =
         mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
     const auto flights = test::batch(test::source_dir() / "logs", test::scratch_dir() / "out");
-    ASSERT_EQ(flights.size(), 6U;
+    ASSERT_EQ(flights.size(), 6U);
     const auto model = fit_of(flights);
     const flight::PerPhase<double> largest_rms_w{{0.10, 0.10, 0.30}};
     for (const auto phase : flight::all_phases) {
