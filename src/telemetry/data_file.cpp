@@ -61,8 +61,8 @@ void skip_frame(ByteReader& reader) {
     reader.skip(checksum ? 4 : 0);
 }
 
-/// Whether `bytes` are whole zstd frames (RFC 8878, section 3.1): Boost's decompressor takes a frame that is cut
-/// off for the end of the file.
+/// Whether `bytes` are whole zstd frames (RFC 8878, section 3.1): Boost's decompressor takes a frame that is
+/// cut off for the end of the file.
 bool holds_whole_zstd_frames(std::string_view bytes) {
     ByteReader reader{bytes};
     while (!reader.bytes.empty()) {

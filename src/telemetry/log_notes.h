@@ -12,7 +12,7 @@ namespace flightwatt::telemetry {
 enum class CurrentOrigin {
     unknown,
     sensor,  ///< the airframe converts an ADC reading: MilliAmpereOfAdc
-    throttle,  ///< computed from throttle (MILLIAMP_AT_FULL_THROTTLE alone): a power model fitted to it is circular
+    throttle,  ///< computed from it (MILLIAMP_AT_FULL_THROTTLE alone): a power model fitted to it is circular
 };
 
 /// "measured by a sensor", "computed from throttle" or "unknown".

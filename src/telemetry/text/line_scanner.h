@@ -147,7 +147,7 @@ class WordCursor {
         const auto rest = static_cast<unsigned>(block + block_size - end_);
         return count + static_cast<std::size_t>(std::popcount(blanks << rest));
     }
-    /// Leaves out a carriage return at the end of the line.
+    /// Excludes a carriage return at the end of the line.
     void trim_return() {
         if (word_ < end_ && end_[-1] == '\r') --end_;
     }
