@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/signal_watch.h"
 #include "base/toml_reader.h"
-#include "batch/folder_lock.h"
+#include "batch/write_guard.h"
 #include "cli/output/json_text.h"
 #include "cli/output/profile_output.h"
 #include "cli/stage.h"

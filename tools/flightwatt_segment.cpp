@@ -6,7 +6,7 @@
 #include "cli/output/segment_json.h"
 #include "cli/output/terminal_pictures.h"
 #include "cli/stage.h"
-#include "flight/phase_statistics.h"
+#include "flight/phases_file.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "mechanical/covariates.h"
 
 #include "base/statistics.h"
-#include "flight/airspeed.h"
 #include "flight/chosen_track.h"
+#include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include "mechanical/measured_flight.h"
 
-#include "flight/airspeed.h"
 #include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "mechanical/covariates.h"

@@ -41,7 +41,7 @@ mechanical::PhaseModel deviated(flight::Phase phase, const mechanical::PhaseMode
         flown.fourier.sin_w[n] += sign * difference.sin_w[n];
     }
     flown.duration_s *= 1.0 + sign * deviation.duration;
-    flown.fourier.omega_rad_per_s *= model.duration_s / flown.duration_s;  // the curve is stretched with it
+    flown.fourier.omega_rad_per_s *= model.duration_s / flown.duration_s;  // the curve lasts as long
     return flown;
 }
 

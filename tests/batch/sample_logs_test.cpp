@@ -6,7 +6,7 @@
 #include "base/units.h"
 #include "flight/chosen_track.h"
 #include "flight/load_flight.h"
-#include "flight/phase_statistics.h"
+#include "flight/phases_file.h"
 #include "flight/series_file.h"
 #include "helpers/rejected.h"
 #include "mechanical/mechanical_model.h"

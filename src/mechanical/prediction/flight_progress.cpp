@@ -1,9 +1,8 @@
 #include "mechanical/prediction/flight_progress.h"
 
 #include "base/error.h"
-#include "flight/airspeed.h"
 #include "flight/chosen_track.h"
-#include "flight/cut_series.h"
+#include "flight/flight_series.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
 #include "mechanical/covariates.h"

@@ -1,8 +1,9 @@
-#include "flight/cut_series.h"
+#include "flight/flight_series.h"
 
 #include "flight/chosen_track.h"
 #include "helpers/cut_logs.h"
 
+#include <limits>
 #include <random>
 
 #include <fmt/format.h>
@@ -11,6 +12,8 @@
 
 namespace flightwatt::flight {
 namespace {
+
+using testing::ElementsAre;
 
 /// Which field differs, for a message.
 std::string difference(const FlightSeries& a, const FlightSeries& b) {
@@ -109,6 +112,41 @@ TEST(CutSeries, ForgetsAClockThatBeginsAnewLater) {
     EXPECT_EQ(series.clock_restart->known_s, 500.0);
     EXPECT_FALSE(cut_series(series, 499.0).clock_restart);
     expect_no_hindsight(text.substr(0, text.find("500 20")), std::nullopt);
+}
+
+TEST(FlightSeries, HoldsAReplacedTrackOnceWhereItStood) {
+    FlightSeries series;
+    series.tracks = {{.name = "altitude_m"},
+                     {.name = "power_w", .source = "a"},
+                     {.name = "block"},
+                     {.name = "power_w", .source = "b"}};
+    replace_track(series, {.name = "power_w", .source = "c"});
+    ASSERT_EQ(series.tracks.size(), 3U);
+    EXPECT_EQ(series.tracks[1].source, "c");
+    EXPECT_EQ(series.tracks[2].name, "block");
+}
+
+TEST(Track, IsSortedFiniteAndWithoutDuplicates) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double> time_s{3, 1, 2, 2, 2};
+    const std::vector<double> values{30, 10, 21, nan, 23};
+    const auto mean = make_track(time_s, values, Merge::mean);
+    EXPECT_THAT(mean.time_s, ElementsAre(1, 2, 3));
+    EXPECT_THAT(mean.value, ElementsAre(10, 22, 30));
+    EXPECT_THAT(make_track(time_s, values, Merge::latest).value, ElementsAre(10, 23, 30));
+}
+
+TEST(Track, IsLinearBetweenItsPointsAndConstantBeyond) {
+    const Track track{.time_s = {1, 2, 4}, .value = {10, 20, 0}};
+    EXPECT_EQ(value_at(track, 0), 10);
+    EXPECT_EQ(value_at(track, 1.5), 15);
+    EXPECT_EQ(value_at(track, 2), 20);
+    EXPECT_EQ(value_at(track, 3), 10);
+    EXPECT_EQ(value_at(track, 9), 0);
+    EXPECT_EQ(state_at(track, 3.9), 20);
+    EXPECT_EQ(state_at(track, 0), 10);
+    const std::vector<double> times{0, 1.5, 2, 3, 9};
+    EXPECT_THAT(resample(track, times), ElementsAre(10, 15, 20, 10, 0));
 }
 
 }  // namespace

@@ -1,9 +1,6 @@
-#pragma once
-
 #include "base/number.h"
 #include "telemetry/telemetry_log.h"
 #include "telemetry/text/line_scanner.h"
-#include "telemetry/text/row_storage.h"
 #include "telemetry/text/skip_counter.h"
 #include "telemetry/text/wanted_messages.h"
 
@@ -11,17 +8,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
 namespace flightwatt::telemetry {
+namespace {
 
-inline constexpr std::size_t max_fields = 64;
+constexpr std::size_t max_fields = 64;
 
 /// Which words of a message's line go into which columns, and by what factor.
 struct MessagePlan {
@@ -38,66 +33,60 @@ struct MessagePlan {
     std::size_t fields_wanted = max_fields;  ///< up to the last target's; all while no definition is chosen
 };
 
-inline bool choose_definition(MessagePlan& plan, std::size_t field_count) {
-    for (const auto& candidate : plan.candidates) {
-        if (candidate.fields.size() != field_count) continue;
-        plan.definition = &candidate;
-        plan.fields_wanted = 0;
-        for (const auto& field : plan.request.fields) {
-            if (const auto index = field_index(candidate, field)) {
-                const auto conversion = conversion_of(candidate.name, candidate.fields[*index]);
-                plan.targets.push_back({*index, conversion.quantity, conversion.factor});
-                plan.fields_wanted = std::max(plan.fields_wanted, *index + 1);
-            }
-        }
-        return true;
+MessagePlan plan_of(const MessageRequest& request, const std::optional<LogConfiguration>& configuration) {
+    MessagePlan plan;
+    plan.request = request;
+    plan.from_log = configuration.has_value();
+    if (!plan.from_log) {
+        plan.candidates = builtin_definitions(request.message);
+    } else if (const auto found = configuration->messages.find(request.message);
+               found != configuration->messages.end()) {
+        plan.candidates = {found->second};
     }
-    return false;
+    return plan;
 }
 
-/// Reads the lines of one log into its tables: the only state of the hot loop. Part of parse_telemetry.
+bool choose_definition(MessagePlan& plan, std::size_t field_count) {
+    const auto fits = [&](const MessageDefinition& candidate) {
+        return candidate.fields.size() == field_count;
+    };
+    const auto found = std::find_if(plan.candidates.begin(), plan.candidates.end(), fits);
+    if (found == plan.candidates.end()) return false;
+    plan.definition = &*found;
+    plan.fields_wanted = 0;
+    for (const auto& field : plan.request.fields) {
+        const auto index = field_index(*found, field);
+        if (!index) continue;
+        const auto conversion = conversion_of(found->name, found->fields[*index]);
+        plan.targets.push_back({*index, conversion.quantity, conversion.factor});
+        plan.fields_wanted = std::max(plan.fields_wanted, *index + 1);
+    }
+    return true;
+}
+
+/// Reads the lines of one log into its tables: the only state of the hot loop.
 class LogReader {
   public:
     LogReader(TelemetryLog& log, const std::vector<MessageRequest>& wanted, std::string_view text)
-        : log_(log), wanted_(names_of(wanted)), text_(text), skips_(text) {
+        : log_(log), text_(text), skips_(text) {
         for (const auto& request : wanted) {
-            MessagePlan plan;
-            plan.request = request;
-            if (log.configuration) {
-                const auto found = log.configuration->messages.find(request.message);
-                if (found != log.configuration->messages.end()) plan.candidates = {found->second};
-                plan.from_log = true;
-            } else {
-                plan.candidates = builtin_definitions(request.message);
-            }
-            plans_.push_back(std::move(plan));
+            plans_.push_back(plan_of(request, log.configuration));
+            wanted_.add(request.message);
         }
-        waiting_.resize(plans_.size());
     }
 
     void read_line(const ScannedLine& line) {
-        bytes_read_ += static_cast<std::size_t>(line.end - line.begin) + 1;
         const auto name = third_word(line);
         if (name.data() == nullptr) {
             if (line.end > line.begin) skips_.add_without_time({Reason::not_a_message, 0}, line);
             return;
         }
-        const auto index = wanted_.find(name);
-        if (index == WantedMessages::none) return;
-        auto& waiting = waiting_[index];
-        waiting.lines[waiting.count++] = line;
-        if (waiting.count == batch_size) read_waiting(index);
-    }
-
-    /// Reads the lines that wait, which must still be in memory.
-    void read_waiting() {
-        for (std::size_t index = 0; index < waiting_.size(); ++index) read_waiting(index);
+        if (const auto index = wanted_.find(name); index != WantedMessages::none) read_message(index, line);
     }
 
     /// Turns the counters into reasons for people. `ends_with_break`: whether the last line was whole.
     void finish(std::size_t lines, bool ends_with_break) {
         log_.lines = lines;
-        order_senders();
         for (auto& [kind, skipped] : skips_.take()) {
             const bool cut_off = !ends_with_break && skipped.count() == 1 && skipped.first_line() == lines &&
                                  kind.reason != Reason::not_a_number;
@@ -115,33 +104,6 @@ class LogReader {
   private:
     using Reason = SkipReason;
 
-    /// Lines of one wanted message. They are read in batches, so that the processor finds the same fields of
-    /// the same shape again and again.
-    static constexpr std::size_t batch_size = 16;
-    struct WaitingLines {
-        std::array<ScannedLine, batch_size> lines;
-        std::size_t count = 0;
-    };
-
-    static std::vector<std::string> names_of(const std::vector<MessageRequest>& wanted) {
-        std::vector<std::string> names;
-        names.reserve(wanted.size());
-        for (const auto& request : wanted) names.push_back(request.message);
-        return names;
-    }
-
-    /// Batches of different messages are read out of the order of the file.
-    void order_senders() {
-        std::vector<std::pair<std::size_t, SenderLog>> placed;
-        for (std::size_t i = 0; i < log_.senders.size(); ++i) {
-            placed.emplace_back(first_lines_[i], std::move(log_.senders[i]));
-        }
-        std::sort(placed.begin(), placed.end(),
-                  [](const auto& a, const auto& b) { return a.first < b.first; });
-        log_.senders.clear();
-        for (auto& [line, sender] : placed) log_.senders.push_back(std::move(sender));
-    }
-
     /// When any sender first sent the message.
     double first_time_s(const std::string& message) const {
         double first_s = std::numeric_limits<double>::infinity();
@@ -151,12 +113,6 @@ class LogReader {
             for (const double time_s : table->time_s) first_s = std::min(first_s, time_s);
         }
         return first_s;
-    }
-
-    void read_waiting(std::size_t index) {
-        auto& waiting = waiting_[index];
-        for (std::size_t i = 0; i < waiting.count; ++i) read_message(index, waiting.lines[i]);
-        waiting.count = 0;
     }
 
     void read_message(std::size_t index, const ScannedLine& line) {
@@ -186,11 +142,8 @@ class LogReader {
         if (count != plan.definition->fields.size()) {
             return skips_.add({Reason::other_field_count, index}, time_s, line.number);
         }
-        auto& table = table_of(sender, index, line.number);
-        const auto rows = table.time_s.size();
-        if (rows == table.time_s.capacity()) {
-            reserve_rows(table, rows_to_reserve(rows, bytes_read_, text_.size()));
-        }
+        auto& table = table_of(sender, index);
+        if (table.time_s.size() == table.time_s.capacity()) make_room(table, line);
         table.time_s.push_back(time_s);
         for (std::size_t i = 0; i < plan.targets.size(); ++i) {
             const auto& target = plan.targets[i];
@@ -204,7 +157,24 @@ class LogReader {
         }
     }
 
-    MessageTable& table_of(std::string_view sender, std::size_t plan_index, std::size_t line) {
+    /// For as many rows as the rest of the text promises at the rate so far, and a tenth more: memory that is
+    /// never written costs nothing, while columns that grow step by step are copied and faulted in again.
+    void make_room(MessageTable& table, const ScannedLine& line) const {
+        constexpr std::size_t too_few_for_a_rate = 1000;
+        const auto rows = table.time_s.size();
+        auto room = std::max<std::size_t>(64, 2 * rows);
+        if (rows >= too_few_for_a_rate) {
+            const bool in_place = line.begin >= text_.data() && line.begin < text_.data() + text_.size();
+            const auto read = in_place ? static_cast<std::size_t>(line.end - text_.data()) : text_.size();
+            const double promised =
+                static_cast<double>(rows) * static_cast<double>(text_.size()) / static_cast<double>(read);
+            room = std::max(static_cast<std::size_t>(1.1 * promised), rows + rows / 2);
+        }
+        table.time_s.reserve(room);
+        for (auto& column : table.columns) column.values.reserve(room);
+    }
+
+    MessageTable& table_of(std::string_view sender, std::size_t plan_index) {
         // Neighbouring lines mostly come from the same sender.
         if (last_sender_ >= log_.senders.size() || log_.senders[last_sender_].id != sender) {
             const auto found = std::find_if(log_.senders.begin(), log_.senders.end(),
@@ -213,57 +183,67 @@ class LogReader {
             if (found == log_.senders.end()) {
                 log_.senders.push_back({std::string(sender), {}});
                 slots_.emplace_back(plans_.size(), no_table);
-                first_lines_.push_back(line);
             }
         }
-        first_lines_[last_sender_] = std::min(first_lines_[last_sender_], line);
         auto& slot = slots_[last_sender_][plan_index];
         auto& tables = log_.senders[last_sender_].tables;
         if (slot == no_table) {
             slot = tables.size();
-            MessageTable table{plans_[plan_index].request.message, {}, {}};
-            for (const auto& target : plans_[plan_index].targets) {
-                const auto& field = plans_[plan_index].definition->fields[target.field].name;
-                table.columns.push_back({field, target.quantity, {}});
+            const auto& plan = plans_[plan_index];
+            tables.push_back({plan.request.message, {}, {}});
+            for (const auto& target : plan.targets) {
+                tables.back().columns.push_back(
+                    {plan.definition->fields[target.field].name, target.quantity, {}});
             }
-            tables.push_back(std::move(table));
         }
         return tables[slot];
     }
 
     std::string describe(const SkipKind& skip) const {
-        const auto plan_index = skip.reason == Reason::not_a_number ? skip.detail / max_fields : skip.detail;
-        const auto& plan = plans_[plan_index];
+        const auto& plan =
+            plans_[skip.reason == Reason::not_a_number ? skip.detail / max_fields : skip.detail];
+        const auto& message = plan.request.message;
         switch (skip.reason) {
             case Reason::not_a_message:
-                return "not a message (TIME SENDER NAME ...)";
+                break;
             case Reason::no_time:
-                return fmt::format("{}: the time is not a number", plan.request.message);
+                return message + ": the time is not a number";
             case Reason::unknown_message:
-                return fmt::format("{}: {}", plan.request.message,
-                                   plan.from_log ? "not defined in the .log" : "its fields are not known");
+                return message + (plan.from_log ? ": not defined in the .log" : ": its fields are not known");
             case Reason::other_field_count:
-                return fmt::format("{}: another number of fields than {}", plan.request.message,
+                return fmt::format("{}: another number of fields than {}", message,
                                    plan.from_log ? "the .log defines" : "is known");
             case Reason::not_a_number:
-                return fmt::format("{}.{}: not a finite number", plan.request.message,
+                return fmt::format("{}.{}: not a finite number", message,
                                    plan.definition->fields[skip.detail % max_fields].name);
         }
-        return "";
+        return "not a message (TIME SENDER NAME ...)";
     }
 
     static constexpr std::size_t no_table = std::numeric_limits<std::size_t>::max();
 
     TelemetryLog& log_;
-    WantedMessages wanted_;
     std::string_view text_;
-    std::size_t bytes_read_ = 0;
+    WantedMessages wanted_;
     std::vector<MessagePlan> plans_;
-    std::vector<WaitingLines> waiting_;  ///< by plan
     SkipCounter skips_;
-    std::vector<std::size_t> first_lines_;         ///< by sender, of its first wanted line
     std::vector<std::vector<std::size_t>> slots_;  ///< by sender and plan: index of the table
     std::size_t last_sender_ = no_table;
 };
+
+}  // namespace
+
+TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
+                             std::optional<LogConfiguration> configuration,
+                             const std::vector<MessageRequest>& wanted) {
+    TelemetryLog log;
+    log.data_file = data_file;
+    log.flight = flight_name(data_file);
+    log.configuration = std::move(configuration);
+    LogReader reader(log, wanted, text);
+    const auto lines = scan_lines(text, [&](const ScannedLine& line) { reader.read_line(line); });
+    reader.finish(lines, text.ends_with('\n'));
+    return log;
+}
 
 }  // namespace flightwatt::telemetry

@@ -3,13 +3,29 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
 
+/// What keeps a folder of results whole: from other runs, and from the program's own end.
 namespace flightwatt::batch {
+
+/// Keeps other runs of batch or profile out of a folder while it lives: two at once would remove each other's
+/// results. Leaves nothing behind, not even when the program is killed. Throws OutputError where another one
+/// holds it, or the folder cannot be opened. File systems without locks are taken as they are.
+class FolderLock {
+  public:
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+  private:
+    int folder_ = -1;
+};
 
 /// Lets files be written whole before the program ends: those who write are inside, whoever ends the program
 /// closes it first.

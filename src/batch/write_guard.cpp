@@ -1,10 +1,16 @@
-#include "batch/interruption.h"
+#include "batch/write_guard.h"
 
+#include "base/error.h"
 #include "base/signal_watch.h"
 
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <utility>
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace flightwatt::batch {
@@ -26,6 +32,20 @@ void change_mask(int how, const std::vector<int>& signals) {
 }
 
 }  // namespace
+
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (folder_ < 0) {
+        throw OutputError(
+            fmt::format("cannot open the folder {}: {}", folder.string(), std::strerror(errno)));
+    }
+    if (::flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    ::close(folder_);
+    throw OutputError(fmt::format("another run is writing into {}; wait for it, or choose another folder",
+                                  folder.string()));
+}
+
+FolderLock::~FolderLock() { ::close(folder_); }
 
 WriteGate::Pass::Pass(WriteGate& gate) : gate_(gate) {
     std::unique_lock lock(gate_.mutex_);
