@@ -1,9 +1,7 @@
 // Several mission files to a table, ranked by what they leave in the battery.
 
 #include "cli/output/json_text.h"
-#include "cli/output/mission_json.h"
-#include "cli/output/sampling_output.h"
-#include "cli/output/terminal_pictures.h"
+#include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "mission/comparison.h"
 #include "mission/disturbance_file.h"
@@ -111,17 +109,14 @@ int compare_missions(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "compare";
-    stage.arguments = "MISSION.toml...";
-    stage.description =
+    cli::StageDefinition stage{
+        "compare", "MISSION.toml...",
         R"(Runs several missions and ranks them by final state of charge; of those that run empty, the one that
 lasts longer comes first. A mission without a schedule is planned first, one with an adaptive policy in
-flight. --json lists the summaries in that order.)";
-    stage.options.add_options()("markdown", "write the table as Markdown")(
-        "disturb", po::value<std::string>()->value_name("FILE"),
-        "let the disturbances of FILE happen to all (missions/disturbances/)");
+flight. --json lists the summaries in that order.)"};
+    auto add = stage.options.add_options();
+    add("markdown", "write the table as Markdown");
+    add("disturb", cli::value("FILE"), "let the disturbances of FILE happen to all (missions/disturbances/)");
     add_sampling_options(stage);
     return cli::run_stage(argc, argv, stage, compare_missions);
 }

@@ -2,11 +2,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "cli/output/fit_error_output.h"
 #include "cli/output/fit_options.h"
+#include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
-#include "cli/output/table_one_output.h"
 #include "cli/stage.h"
 #include "mechanical/measured_flight.h"
 
@@ -125,28 +124,26 @@ int fit(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "fit";
-    stage.arguments = "FLIGHT.data|SERIES.csv...";
-    stage.description =
+    cli::StageDefinition stage{
+        "fit", "FLIGHT.data|SERIES.csv...",
         R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
-as TOML; with -o it goes to the file and Table I is shown.)";
+as TOML; with -o it goes to the file and Table I is shown.)"};
     add_fit_options(stage.options, cli::AutoOrder::accepted);
-    stage.options.add_options()("name", po::value<std::string>()->value_name("NAME"), "the model's name")(
-        "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
-        "table", po::value<std::string>()->value_name("FILE"), "write Table I as .txt, .csv, .md or .tex")(
-        "errors",
+    auto add = stage.options.add_options();
+    add("name", cli::value("NAME"), "the model's name");
+    add("published", cli::value("MODEL.toml"), "show Table I beside this model's");
+    add("table", cli::value("FILE"), "write Table I as .txt, .csv, .md or .tex");
+    add("errors",
         "analyse the fit: standard errors, R2, condition, autocorrelation, frequency profile, spread "
-        "between flights, into the model and the JSON")(
-        "intervals", "Table I with half widths of 95 % intervals; implies --errors")(
-        "curves", po::value<std::string>()->value_name("FILE.csv"),
-        "write the curves with their band and the flights' envelope; implies --errors")(
-        "level-covariate", po::value<std::string>()->value_name("NAME"),
+        "between flights, into the model and the JSON");
+    add("intervals", "Table I with half widths of 95 % intervals; implies --errors");
+    add("curves", cli::value("FILE.csv"),
+        "write the curves with their band and the flights' envelope; implies --errors");
+    add("level-covariate", cli::value("NAME"),
         "let the cruise level follow what 'flightwatt validate --covariate all' found to predict it: "
-        "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]")(
-        "loss", po::value<std::string>()->value_name("HOW")->default_value("none"),
+        "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]");
+    add("loss", cli::value("HOW")->default_value("none"),
         "none or huber: how outliers count in the last refinement");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, fit);

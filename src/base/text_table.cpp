@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include <fmt/format.h>
+
 namespace flightwatt {
 namespace {
 
@@ -51,6 +53,10 @@ std::string padded(const std::string& cell, std::size_t width, bool right) {
 }
 
 }  // namespace
+
+std::string fixed(const std::optional<double>& number, int decimals) {
+    return number ? fmt::format("{:.{}f}", *number, decimals) : "-";
+}
 
 std::string to_text(const TextTable& raw) {
     const auto table = without_controls(raw);

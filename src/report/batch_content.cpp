@@ -2,12 +2,16 @@
 
 #include "batch/fit_selection.h"
 #include "batch/stored_flights.h"
-#include "cli/output/table_one_output.h"
 
 #include <algorithm>
 #include <iterator>
 
 namespace flightwatt::report {
+
+std::string_view fitted_part(const ReportFlight& flight) {
+    if (flight.exclusions.empty()) return "all";
+    return flight.unusable_power.empty() ? "in part" : "no";
+}
 
 BatchContent read_batch_content(const std::filesystem::path& out) {
     BatchContent content;
@@ -37,14 +41,6 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
     std::stable_partition(content.flights.begin(), content.flights.end(),
                           [](const ReportFlight& flight) { return flight.unusable_power.empty(); });
     return content;
-}
-
-ReportModel model_of(const batch::BatchFit& fit,
-                     const std::optional<mechanical::MechanicalModel>& published) {
-    ReportModel model{fit.model, "Fitted by flightwatt batch to the flights above."};
-    model.bands = fit.bands;
-    model.table_one = cli::table_of(fit.model, published, mechanical::TableIntervals::present);
-    return model;
 }
 
 }  // namespace flightwatt::report

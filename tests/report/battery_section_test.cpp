@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "helpers/synthetic_discharge.h"
-#include "report/figures/battery_figures.h"
+#include "report/figures/flight_figures.h"
 
 #include <algorithm>
 

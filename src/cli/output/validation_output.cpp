@@ -24,10 +24,6 @@ std::vector<ValidatedPart> validated_parts() {
     return parts;
 }
 
-std::string shown(const std::optional<double>& value, int digits) {
-    return value ? fmt::format("{:.{}f}", *value, digits) : "-";
-}
-
 }  // namespace
 
 TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights) {
@@ -42,15 +38,14 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
                 const auto& [measured_wh, estimate] = *energy;
                 const double error_wh = estimate.energy_wh - measured_wh;
                 const auto interval = interval_95(estimate);
-                table.rows.push_back({flight.flight, part.name, model, fmt::format("{:.3f}", measured_wh),
-                                      shown(part.phase ? flight.counter_wh[*part.phase] : std::nullopt, 3),
-                                      fmt::format("{:.3f}", estimate.energy_wh),
-                                      fmt::format("{:+.3f}", error_wh),
+                table.rows.push_back({flight.flight, part.name, model, fixed(measured_wh, 3),
+                                      fixed(part.phase ? flight.counter_wh[*part.phase] : std::nullopt, 3),
+                                      fixed(estimate.energy_wh, 3), fmt::format("{:+.3f}", error_wh),
                                       part.phase == flight::Phase::landing
                                           ? "-"
                                           : fmt::format("{:+.1f}", units::percent_of(error_wh, measured_wh)),
-                                      interval ? fmt::format("{:.3f}", interval->low_wh) : "-",
-                                      interval ? fmt::format("{:.3f}", interval->high_wh) : "-"});
+                                      interval ? fixed(interval->low_wh, 3) : "-",
+                                      interval ? fixed(interval->high_wh, 3) : "-"});
             }
         }
     }
@@ -66,9 +61,8 @@ TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) 
             const auto score = score_of(flights, model, part.phase);
             if (!score) continue;
             table.rows.push_back(
-                {part.name, model, fmt::format("{}", score->flights),
-                 fmt::format("{:.3f}", score->mean_absolute_error_wh),
-                 shown(score->mean_absolute_error_percent, 1), fmt::format("{:+.3f}", score->bias_wh),
+                {part.name, model, fmt::format("{}", score->flights), fixed(score->mean_absolute_error_wh, 3),
+                 fixed(score->mean_absolute_error_percent, 1), fmt::format("{:+.3f}", score->bias_wh),
                  score->coverage_95 ? fmt::format("{:.0f} %", units::percent_of(*score->coverage_95, 1.0))
                                     : "-"});
         }

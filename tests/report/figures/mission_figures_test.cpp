@@ -1,4 +1,4 @@
-#include "report/figures/profile_figure.h"
+#include "report/figures/mission_figures.h"
 
 #include "compute/profile_reader.h"
 #include "helpers/rejected.h"
