@@ -137,8 +137,8 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights,
         write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights));
     }
     if (!call.json) cli::print(to_text(flights_table(flights)));
-    const auto rejected = std::count_if(flights.begin(), flights.end(),
-                                        [](const auto& flight) { return !flight.record.accepted; });
+    const auto rejected =
+        std::ranges::count_if(flights, [](const auto& flight) { return !flight.record.accepted; });
     if (static_cast<std::size_t>(rejected) == flights.size()) {
         remove_model(options.out);
         throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", rejected));
@@ -164,9 +164,7 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights,
 int run_over_logs(const cli::StageCall& call) {
     const auto fit_options = read_fit_options(call);  // refuses bad options before the work
     auto options = read_batch_options(call, fit_options);
-    std::optional<mechanical::MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published"))
-        published = mechanical::read_mechanical_model(*file);
+    const auto published = cli::read_published(call);
     const auto logs = batch::find_logs(call.inputs);
     std::vector<std::string> names;
     for (const auto& log : logs) names.push_back(log.flight);

@@ -4,7 +4,6 @@
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "mission/comparison.h"
-#include "mission/disturbance_file.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
@@ -30,9 +29,7 @@ std::string ranking_json(const std::vector<mission::MissionSummary>& ranking, bo
 mission::Simulation simulation_of(const cli::StageCall& call, const mission::AnyMission& mission,
                                   const std::optional<mission::SamplingOptions>& sampling) {
     const auto& setup = setup_of(mission);
-    std::vector<mission::Disturbance> disturbances;
-    if (const auto file = call.maybe<std::string>("disturb"))
-        disturbances = mission::read_disturbances(*file, setup.duration_s);
+    const auto disturbances = cli::read_disturb_option(call, setup);
     const auto prepared = prepare(mission);
     auto simulation = fly(prepared, {}, disturbances).simulation;
     if (sampling && has_spread(setup))
@@ -47,11 +44,10 @@ std::string soc_picture(const cli::StageCall& call, const std::vector<mission::S
     if (!plot || call.has("markdown")) return "";
     std::vector<cli::TerminalLine> lines;
     for (const auto& simulation : simulations) {
-        const auto place =
-            std::find_if(ranking.begin(), ranking.end(), [&](const mission::MissionSummary& summary) {
-                return summary.mission == simulation.summary.mission &&
-                       summary.final_soc_percent == simulation.summary.final_soc_percent;
-            });
+        const auto place = std::ranges::find_if(ranking, [&](const mission::MissionSummary& summary) {
+            return summary.mission == simulation.summary.mission &&
+                   summary.final_soc_percent == simulation.summary.final_soc_percent;
+        });
         const auto rank = static_cast<std::size_t>(place - ranking.begin()) + 1;
         if (!simulation.curve.rows.empty()) lines.push_back(cli::soc_line(simulation.curve, rank));
     }
@@ -95,7 +91,7 @@ int compare_missions(const cli::StageCall& call) {
         simulations.push_back(simulation_of(call, mission, sampling));
         summaries.push_back(simulations.back().summary);
     }
-    if (sampling && std::none_of(missions.begin(), missions.end(), has_spread_of)) {
+    if (sampling && std::ranges::none_of(missions, has_spread_of)) {
         require_spread(setup_of(missions.front()));  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));

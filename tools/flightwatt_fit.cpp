@@ -87,9 +87,7 @@ int fit(const cli::StageCall& call) {
     auto options = read_options(call);
     const auto table_file = call.maybe<std::string>("table");
     if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
-    std::optional<mechanical::MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published"))
-        published = mechanical::read_mechanical_model(*file);
+    const auto published = cli::read_published(call);
     const auto flights =
         read_flights(call, request.auto_order ? mechanical::highest_tried_order : options.phases.order);
     std::optional<flight::PerPhase<mechanical::OrderChoice>> choices;

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/numeric_options.h"
+#include "cli/output/fit_output.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
@@ -69,10 +70,8 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
         page.head.notes.push_back("There is no model of these flights: the batch could not fit them.");
         return;
     }
-    std::optional<mechanical::MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published"))
-        published = mechanical::read_mechanical_model(*file);
-    page.sections.push_back(model_section(report::model_of(*content.fit, published), figures, "model"));
+    page.sections.push_back(
+        model_section(report::model_of(*content.fit, cli::read_published(call)), figures, "model"));
     const auto most = cli::count_option(call, "max-validation-flights");
     if (content.measured.size() < 2 || content.measured.size() > most) {
         page.head.notes.push_back(fmt::format(

@@ -5,7 +5,6 @@
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
-#include "mission/disturbance_file.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 
@@ -16,12 +15,6 @@
 namespace {
 
 using namespace flightwatt;
-
-std::vector<mission::Disturbance> disturbances(const cli::StageCall& call,
-                                               const mission::MissionSetup& mission) {
-    const auto file = call.maybe<std::string>("disturb");
-    return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
-}
 
 /// The mission with the schedule that was flown, wherever it came from.
 void write_schedule(const cli::StageCall& call, const std::string& text,
@@ -48,7 +41,7 @@ void sample(const cli::StageCall& call, const mission::PreparedMission& prepared
 int simulate_mission(const cli::StageCall& call) {
     const auto text = read_file(call.inputs.front());
     const auto mission = mission::parse_mission(text, call.inputs.front());
-    const auto disturbed_by = disturbances(call, setup_of(mission));
+    const auto disturbed_by = cli::read_disturb_option(call, setup_of(mission));
     const auto prepared = prepare(mission);
     mission::SimulationSteps steps;
     steps.output_s = call.get<double>("step");

@@ -73,7 +73,7 @@ std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
             throw UsageError(
                 fmt::format("--covariate {}: expected all, {}", name, mechanical::covariate_names()));
         }
-        if (std::find(covariates.begin(), covariates.end(), *covariate) == covariates.end()) {
+        if (std::ranges::find(covariates, *covariate) == covariates.end()) {
             covariates.push_back(*covariate);
         }
     }

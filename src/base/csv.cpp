@@ -89,7 +89,7 @@ CsvTable read_csv(const std::filesystem::path& path, CsvHeader header) {
 }
 
 std::size_t column_index(const CsvTable& table, std::string_view name) {
-    const auto found = std::find(table.columns.begin(), table.columns.end(), name);
+    const auto found = std::ranges::find(table.columns, name);
     if (found == table.columns.end()) {
         throw InputError({table.file, 1}, fmt::format("has no column '{}'", name),
                          fmt::format("its columns are {}", fmt::join(table.columns, ", ")));

@@ -13,12 +13,12 @@ namespace flightwatt {
 namespace {
 
 std::size_t width_of(std::string_view text) {
-    return static_cast<std::size_t>(std::count_if(
-        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 bool is_numeric_column(const TextTable& table, std::size_t column) {
-    return std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+    return std::ranges::all_of(table.rows, [&](const auto& row) {
         std::string_view cell = row[column];
         if (!cell.empty() && (cell.back() == '%' || cell.back() == '*')) cell.remove_suffix(1);
         return cell.empty() || cell == "-" || parse_number(cell).has_value();
@@ -29,8 +29,8 @@ bool is_numeric_column(const TextTable& table, std::size_t column) {
 TextTable without_controls(TextTable table) {
     const auto clean = [](std::vector<std::string>& cells) {
         for (auto& cell : cells) {
-            std::replace_if(
-                cell.begin(), cell.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+            std::ranges::replace_if(
+                cell, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
         }
     };
     clean(table.header);

@@ -45,8 +45,10 @@ constexpr std::array<int, 6> color_codes{33, 166, 36, 175, 214, 74};
 struct Canvas {
     std::size_t columns = 0;
     std::size_t rows = 0;
-    std::vector<unsigned> dots;
-    std::vector<std::size_t> line;
+    double x_low = 0.0;
+    double x_high = 0.0;
+    std::vector<unsigned> dots = std::vector<unsigned>(columns * rows);
+    std::vector<std::size_t> line = std::vector<std::size_t>(columns * rows);
 
     void set(std::size_t x, std::size_t y, std::size_t who) {
         // Unicode numbers the dots of a cell down its left column, then its right, and the lowest two last.
@@ -69,12 +71,12 @@ std::size_t dot_row(const TerminalPlot& plot, const Canvas& canvas, double y) {
     return static_cast<std::size_t>(std::lround(part * static_cast<double>(canvas.rows * dots_down - 1)));
 }
 
-void draw_line(const TerminalPlot& plot, Canvas& canvas, const TerminalLine& line, std::size_t who,
-               double x_low, double x_high) {
+void draw_line(const TerminalPlot& plot, Canvas& canvas, const TerminalLine& line, std::size_t who) {
     const auto across = canvas.columns * dots_across;
     std::optional<double> last_y;
     for (std::size_t dot = 0; dot < across; ++dot) {
-        const double x = std::lerp(x_low, x_high, static_cast<double>(dot) / static_cast<double>(across - 1));
+        const double part = static_cast<double>(dot) / static_cast<double>(across - 1);
+        const double x = std::lerp(canvas.x_low, canvas.x_high, part);
         const auto y = value_at(line, x);
         if (y) {
             const auto [from, to] =
@@ -161,12 +163,10 @@ std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) 
         x_high = std::max(x_high, line.x.back());
     }
     if (x_high <= x_low) return "";
-    Canvas canvas{plot.columns - axis_columns - label_columns, plot.rows, {}, {}};
-    canvas.dots.assign(canvas.columns * canvas.rows, 0U);
-    canvas.line.assign(canvas.columns * canvas.rows, 0U);
+    Canvas canvas{plot.columns - axis_columns - label_columns, plot.rows, x_low, x_high};
     std::vector<std::string> labels(plot.rows);
     for (std::size_t who = 0; who < lines.size(); ++who) {
-        draw_line(plot, canvas, lines[who], who, x_low, x_high);
+        draw_line(plot, canvas, lines[who], who);
         auto& label = labels[dot_row(plot, canvas, lines[who].y.back()) / dots_down];
         if (!lines[who].label.empty()) label += " " + colored(plot, lines[who].label, who);
     }

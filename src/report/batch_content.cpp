@@ -38,8 +38,8 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         content.flights.push_back(std::move(flight));
     }
     // Readers look at the first ones first.
-    std::stable_partition(content.flights.begin(), content.flights.end(),
-                          [](const ReportFlight& flight) { return flight.unusable_power.empty(); });
+    std::ranges::stable_partition(content.flights,
+                                  [](const ReportFlight& flight) { return flight.unusable_power.empty(); });
     return content;
 }
 

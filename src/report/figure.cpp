@@ -79,8 +79,8 @@ std::vector<std::size_t> visible_rows(const std::vector<double>& time_s, const s
         const auto [least, greatest] = std::minmax_element(
             first, end, [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
         std::vector<std::size_t> chosen{*first, *least, *greatest, *std::prev(end)};
-        std::sort(chosen.begin(), chosen.end());
-        std::unique_copy(chosen.begin(), chosen.end(), std::back_inserter(kept));
+        std::ranges::sort(chosen);
+        std::ranges::unique_copy(chosen, std::back_inserter(kept));
         first = end;
     }
     return kept;

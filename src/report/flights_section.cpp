@@ -76,8 +76,8 @@ std::string flights_table_html(std::span<const ReportFlight> flights) {
 std::string excluded_html(std::span<const ReportFlight> flights) {
     TextTable table{{"flights", "excluded", "reason"}, {}};
     const auto add = [&](const std::string& flight, const std::string& what, const std::string& reason) {
-        const auto same = std::find_if(table.rows.begin(), table.rows.end(),
-                                       [&](const auto& row) { return row[1] == what && row[2] == reason; });
+        const auto same = std::ranges::find_if(
+            table.rows, [&](const auto& row) { return row[1] == what && row[2] == reason; });
         if (same == table.rows.end()) {
             table.rows.push_back({flight, what, reason});
         } else {
@@ -134,8 +134,8 @@ void add_flight(Section& section, const ReportFlight& flight,
 Section flights_section(std::span<const ReportFlight> flights,
                         const std::optional<mechanical::MechanicalModel>& model) {
     Section section{"flights", "Flights"};
-    const auto rejected = std::count_if(flights.begin(), flights.end(),
-                                        [](const ReportFlight& flight) { return !flight.rejected.empty(); });
+    const auto rejected =
+        std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
     section.html +=
         paragraph(fmt::format("{} logs, {} of them rejected. Durations, mean power and energy are those of "
                               "the power samples between lift-off and touchdown; counter is the autopilot's "

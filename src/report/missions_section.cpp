@@ -22,7 +22,7 @@ template <typename Same>
 std::vector<const SimulatedMission*> first_of_each(Missions missions, const Same& same) {
     std::vector<const SimulatedMission*> firsts;
     for (const auto& simulated : missions) {
-        if (std::none_of(firsts.begin(), firsts.end(), [&](const SimulatedMission* first) {
+        if (std::ranges::none_of(firsts, [&](const SimulatedMission* first) {
                 return same(first->mission, simulated.mission);
             })) {
             firsts.push_back(&simulated);
@@ -102,8 +102,8 @@ Section map_section(Missions missions, const PublishedFigures& published) {
         const auto map = qos_map(mission);
         if (!map) continue;
         std::vector<SimulatedMission> alike;
-        std::copy_if(missions.begin(), missions.end(), std::back_inserter(alike),
-                     [&](const auto& other) { return have_same_map(mission, other.mission); });
+        std::ranges::copy_if(missions, std::back_inserter(alike),
+                             [&](const auto& other) { return have_same_map(mission, other.mission); });
         section.html +=
             fmt::format("<h3>{}</h3>\n", mission.mechanical ? "Flight and computing" : "Computing alone");
         const bool is_published = !mission.mechanical;  // the paper's Fig. 4 is without the flight
@@ -172,8 +172,8 @@ TextTable running_table(const mission::Mission& mission) {
 }
 
 TextTable utility_table(std::vector<UtilityPoint> points) {
-    std::stable_sort(points.begin(), points.end(),
-                     [](const UtilityPoint& a, const UtilityPoint& b) { return a.utility > b.utility; });
+    std::ranges::stable_sort(
+        points, [](const UtilityPoint& a, const UtilityPoint& b) { return a.utility > b.utility; });
     TextTable table{{"mission", "schedule", "utility", "final SoC [%]"}, {}};
     for (const auto& point : points) {
         table.rows.push_back({point.mission, point.planned ? "planned" : "given", fixed(point.utility, 4),
@@ -204,8 +204,8 @@ void add_plan(Section& section, const SimulatedMission& planned, Missions missio
 
 Section plan_section(Missions missions) {
     Section section{"plan", "Plan"};
-    const bool any = std::any_of(missions.begin(), missions.end(),
-                                 [](const SimulatedMission& mission) { return mission.planned.has_value(); });
+    const bool any = std::ranges::any_of(
+        missions, [](const SimulatedMission& mission) { return mission.planned.has_value(); });
     if (!any) return section;
     section.html += paragraph(
         "Missions without a schedule of their own are planned: most utility of what keeps the reserve. The "

@@ -66,6 +66,11 @@ nlohmann::ordered_json to_json(const mechanical::PhaseSpread& spread) {
 
 }  // namespace
 
+std::optional<mechanical::MechanicalModel> read_published(const StageCall& call) {
+    const auto file = call.maybe<std::string>("published");
+    return file ? std::optional(mechanical::read_mechanical_model(*file)) : std::nullopt;
+}
+
 TextTable table_of(const mechanical::MechanicalModel& model,
                    const std::optional<mechanical::MechanicalModel>& published,
                    mechanical::TableIntervals intervals) {

@@ -15,6 +15,9 @@
 /// What a fit says: Table I, and as JSON the model with its errors, its outliers and its order.
 namespace flightwatt::cli {
 
+/// The model that --published names.
+std::optional<mechanical::MechanicalModel> read_published(const StageCall& call);
+
 /// Table I of a model, beside a published one where there is one.
 TextTable table_of(const mechanical::MechanicalModel& model,
                    const std::optional<mechanical::MechanicalModel>& published,

@@ -24,7 +24,7 @@ std::set<std::string> names_of(const StageCall& call, const std::string& option)
 void refuse_unknown(const std::set<std::string>& names, const std::string& option,
                     const std::vector<std::string>& flights) {
     for (const auto& name : names) {
-        if (std::find(flights.begin(), flights.end(), name) != flights.end()) continue;
+        if (std::ranges::find(flights, name) != flights.end()) continue;
         const auto near = nearest_word(name, flights);
         throw UsageError(fmt::format("--{} {}: there is no such flight{}", option, name,
                                      near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
@@ -100,7 +100,7 @@ void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
     for (const auto& file : call.inputs) {
         auto loaded = flight::load_flight(std::filesystem::path(file), options);
         const auto& name = loaded.series.flight;
-        if (std::find(flights.begin(), flights.end(), name) != flights.end()) {
+        if (std::ranges::find(flights, name) != flights.end()) {
             throw UsageError(fmt::format("flight '{}' is given twice", name));
         }
         flights.push_back(name);

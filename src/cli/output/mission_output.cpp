@@ -52,6 +52,12 @@ std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, 
     return options;
 }
 
+std::vector<mission::Disturbance> read_disturb_option(const StageCall& call,
+                                                      const mission::MissionSetup& mission) {
+    const auto file = call.maybe<std::string>("disturb");
+    return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
+}
+
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary) {
     nlohmann::ordered_json json;
     json["mission"] = summary.mission;

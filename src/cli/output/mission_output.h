@@ -2,12 +2,14 @@
 
 #include "cli/stage.h"
 #include "cli/terminal.h"
+#include "mission/disturbance_file.h"
 #include "mission/infeasibility_report.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -20,6 +22,10 @@ void add_sampling_options(StageDefinition& stage);
 /// None without --samples. Throws UsageError for what is no whole number, or belongs to --samples and stands
 /// without it.
 std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, bool with_bands);
+
+/// What --disturb says of a mission.
+std::vector<mission::Disturbance> read_disturb_option(const StageCall& call,
+                                                      const mission::MissionSetup& mission);
 
 /// The summary as simulate and compare print it; null stands for "never".
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary);

@@ -165,7 +165,7 @@ std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& seri
     const auto time_s = power_track(series).time_s;
     const auto altitude_m = chosen_at(series, "altitude_m", time_s);
     if (altitude_m.empty()) return "";
-    const auto [low, high] = std::minmax_element(altitude_m.begin(), altitude_m.end());
+    const auto [low, high] = std::ranges::minmax_element(altitude_m);
     if (*high - *low < 1.0) return "";
     plot.rows = 7;
     plot.y_low = *low;

@@ -94,7 +94,7 @@ Figure voltage_figure(const battery::Battery& battery, std::span<const battery::
         fmt::format("Terminal voltage of {} flights over time, measured and modelled.", records.size());
     auto panels = VegaJson::array();
     for (const auto& record : records) {
-        const auto [low, high] = std::minmax_element(record.voltage_v.begin(), record.voltage_v.end());
+        const auto [low, high] = std::ranges::minmax_element(record.voltage_v);
         description += fmt::format(" {}: {:.2f} to {:.2f} V.", record.flight, *low, *high);
         panels.push_back(voltage_panel(battery, record));
     }

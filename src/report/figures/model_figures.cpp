@@ -108,7 +108,7 @@ std::string model_described(const mechanical::MechanicalModel& model) {
         std::vector<double> curve_w;
         for (std::size_t i = 0; i < curve_points; ++i)
             curve_w.push_back(power_w(fitted.fourier, time_at(i, fitted.duration_s)));
-        const auto [least, greatest] = std::minmax_element(curve_w.begin(), curve_w.end());
+        const auto [least, greatest] = std::ranges::minmax_element(curve_w);
         text += fmt::format(" {}: {:.1f} to {:.1f} W over {:.0f} s.", phase_word(phase), *least, *greatest,
                             fitted.duration_s);
     }

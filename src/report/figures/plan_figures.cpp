@@ -45,16 +45,15 @@ VegaJson points_layer(const std::vector<UtilityPoint>& points) {
 std::vector<UtilityPoint> named_together(const std::vector<UtilityPoint>& points) {
     constexpr double near_part = 0.02;  // of what the points span
     const auto span_of = [&](double UtilityPoint::*value) {
-        const auto [low, high] = std::minmax_element(
-            points.begin(), points.end(),
-            [&](const UtilityPoint& a, const UtilityPoint& b) { return a.*value < b.*value; });
+        const auto [low, high] = std::ranges::minmax_element(
+            points, [&](const UtilityPoint& a, const UtilityPoint& b) { return a.*value < b.*value; });
         return (*high).*value - (*low).*value;
     };
     const double soc_span = span_of(&UtilityPoint::soc_percent);
     const double utility_span = span_of(&UtilityPoint::utility);
     std::vector<UtilityPoint> together;
     for (const auto& point : points) {
-        const auto twin = std::find_if(together.begin(), together.end(), [&](const UtilityPoint& other) {
+        const auto twin = std::ranges::find_if(together, [&](const UtilityPoint& other) {
             return std::abs(other.soc_percent - point.soc_percent) <= near_part * soc_span &&
                    std::abs(other.utility - point.utility) <= near_part * utility_span;
         });

@@ -34,8 +34,7 @@ bool is_measured(const compute::PowerProfile& profile, std::size_t node) {
 }
 
 bool all_measured(const compute::PowerProfile& profile) {
-    return std::all_of(profile.is_measured.begin(), profile.is_measured.end(),
-                       [](bool measured) { return measured; });
+    return std::ranges::all_of(profile.is_measured, [](bool measured) { return measured; });
 }
 
 /// The nodes: interpolated ones are hollow where there are any.
@@ -90,7 +89,7 @@ VegaJson panel_of(const compute::Component& component) {
 std::string profile_described(const compute::ComputeModel& compute) {
     std::string text = "Profiled power of the software on board.";
     for (const auto& [name, profile] : compute.components) {
-        const auto [least, greatest] = std::minmax_element(profile.power_w.begin(), profile.power_w.end());
+        const auto [least, greatest] = std::ranges::minmax_element(profile.power_w);
         text += fmt::format(" {}: {:.2f} to {:.2f} W in {} configurations.", name, *least, *greatest,
                             profile.power_w.size());
     }
@@ -99,8 +98,9 @@ std::string profile_described(const compute::ComputeModel& compute) {
 
 std::string profile_caption(const compute::ComputeModel& compute) {
     const auto any = [&](const auto& holds) {
-        return std::any_of(compute.components.begin(), compute.components.end(),
-                           [&](const compute::Component& component) { return holds(component.profile); });
+        return std::ranges::any_of(compute.components, [&](const compute::Component& component) {
+            return holds(component.profile);
+        });
     };
     const bool interpolated = any([](const auto& profile) { return !all_measured(profile); });
     std::string text =

@@ -149,10 +149,10 @@ VegaJson published_layer(const QosMap& map, const std::vector<PublishedCell>& ce
 /// The least and the greatest of what can be delivered; both 0 if nothing can.
 std::pair<double, double> range_of(const QosMap& map) {
     std::vector<double> known;
-    std::copy_if(map.soc_percent.begin(), map.soc_percent.end(), std::back_inserter(known),
-                 [](double soc) { return std::isfinite(soc); });
+    std::ranges::copy_if(map.soc_percent, std::back_inserter(known),
+                         [](double soc) { return std::isfinite(soc); });
     if (known.empty()) return {0.0, 0.0};
-    const auto [least, greatest] = std::minmax_element(known.begin(), known.end());
+    const auto [least, greatest] = std::ranges::minmax_element(known);
     return {*least, *greatest};
 }
 

@@ -104,9 +104,8 @@ VegaJson published_layer(Missions missions, const PublishedFigures& published, c
 
 VegaJson phase_layers(Missions missions) {
     const auto& durations_s = missions.front().mission.duration_s;
-    const bool all_alike = std::all_of(missions.begin(), missions.end(), [&](const auto& other) {
-        return other.mission.duration_s.values == durations_s.values;
-    });
+    const bool all_alike = std::ranges::all_of(
+        missions, [&](const auto& other) { return other.mission.duration_s.values == durations_s.values; });
     if (!all_alike) return VegaJson::array();
     FigureData data({"start_s", "end_s", "middle_s"}, {"word"});
     const auto timeline = mission::timeline_of(durations_s);
