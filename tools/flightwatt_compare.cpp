@@ -76,8 +76,6 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
     return code;
 }
 
-bool has_spread_of(const mission::AnyMission& mission) { return has_spread(setup_of(mission)); }
-
 int compare_missions(const cli::StageCall& call) {
     const auto sampling = sampling_options(call, false);
     // All are read before the first is run: a bad file leaves no half answer.
@@ -91,7 +89,8 @@ int compare_missions(const cli::StageCall& call) {
         simulations.push_back(simulation_of(call, mission, sampling));
         summaries.push_back(simulations.back().summary);
     }
-    if (sampling && std::ranges::none_of(missions, has_spread_of)) {
+    if (sampling &&
+        std::ranges::none_of(missions, [](const auto& mission) { return has_spread(setup_of(mission)); })) {
         require_spread(setup_of(missions.front()));  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));

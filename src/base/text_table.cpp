@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <string_view>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt {
 namespace {
@@ -36,15 +39,6 @@ TextTable without_controls(TextTable table) {
     clean(table.header);
     for (auto& row : table.rows) clean(row);
     return table;
-}
-
-std::string escaped_bars(const std::string& cell) {
-    std::string escaped;
-    for (const char c : cell) {
-        if (c == '|') escaped += '\\';
-        escaped += c;
-    }
-    return escaped;
 }
 
 std::string padded(const std::string& cell, std::size_t width, bool right) {
@@ -88,7 +82,7 @@ std::string to_markdown(const TextTable& raw) {
     std::string text;
     const auto add_row = [&](const std::vector<std::string>& row) {
         text += '|';
-        for (const auto& cell : row) text += ' ' + escaped_bars(cell) + " |";
+        for (const auto& cell : row) text += ' ' + boost::replace_all_copy(cell, "|", "\\|") + " |";
         text += '\n';
     };
     add_row(table.header);
@@ -102,16 +96,13 @@ std::string to_markdown(const TextTable& raw) {
 }
 
 std::string to_csv(const TextTable& table) {
-    std::string text;
-    const auto add_row = [&](const std::vector<std::string>& row) {
-        for (std::size_t column = 0; column < row.size(); ++column) {
-            if (column > 0) text += ',';
-            text += csv_cell(row[column]);
-        }
-        text += '\n';
+    const auto line_of = [](const std::vector<std::string>& row) {
+        std::vector<std::string> cells;
+        std::ranges::transform(row, std::back_inserter(cells), csv_cell);
+        return fmt::format("{}\n", fmt::join(cells, ","));
     };
-    add_row(table.header);
-    for (const auto& row : table.rows) add_row(row);
+    auto text = line_of(table.header);
+    for (const auto& row : table.rows) text += line_of(row);
     return text;
 }
 
