@@ -22,23 +22,6 @@ namespace {
 
 using namespace flightwatt;
 
-/// What goes beyond a plain fit.
-struct FitRequest {
-    bool auto_order = false;
-    bool errors = false;
-    mechanical::TableIntervals intervals = mechanical::TableIntervals::absent;
-    std::optional<std::string> curves_file;
-};
-
-FitRequest read_request(const cli::StageCall& call) {
-    FitRequest request;
-    request.auto_order = !read_order(call, cli::AutoOrder::accepted);
-    request.curves_file = call.maybe<std::string>("curves");
-    if (call.has("intervals")) request.intervals = mechanical::TableIntervals::present;
-    request.errors = call.has("errors") || call.has("intervals") || request.curves_file;
-    return request;
-}
-
 mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     auto options = read_fit_options(call, cli::AutoOrder::accepted);
     options.name = call.maybe<std::string>("name").value_or(
@@ -71,37 +54,42 @@ std::vector<mechanical::FlightSamples> read_flights(const cli::StageCall& call, 
 /// Chooses each phase's order and says why.
 flight::PerPhase<mechanical::OrderChoice> choose_orders(const cli::StageCall& call,
                                                         std::span<const mechanical::FlightSamples> flights,
-                                                        mechanical::ModelFitOptions& options) {
+                                                        const mechanical::ModelFitOptions& options) {
     flight::PerPhase<mechanical::OrderChoice> choices;
     for (const auto phase : flight::all_phases) {
         choices[phase] =
             choose_order(phase, samples_of_phase(flights, phase), options.phases, options.weights);
-        options.orders[phase] = choices[phase].order;
         note_order(call, phase, choices[phase]);
     }
     return choices;
 }
 
 int fit(const cli::StageCall& call) {
-    const auto request = read_request(call);
+    const bool auto_order = !read_order(call, cli::AutoOrder::accepted);
     auto options = read_options(call);
     const auto table_file = call.maybe<std::string>("table");
     if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
+    const auto curves_file = call.maybe<std::string>("curves");
     const auto published = cli::read_published(call);
     const auto flights =
-        read_flights(call, request.auto_order ? mechanical::highest_tried_order : options.phases.order);
+        read_flights(call, auto_order ? mechanical::highest_tried_order : options.phases.order);
     std::optional<flight::PerPhase<mechanical::OrderChoice>> choices;
-    if (request.auto_order) choices = choose_orders(call, flights, options);
+    if (auto_order) {
+        choices = choose_orders(call, flights, options);
+        for (const auto phase : flight::all_phases) options.orders[phase] = (*choices)[phase].order;
+    }
 
     auto fitted = fit_model(flights, options);
     std::optional<flight::PerPhase<mechanical::PhaseErrorReport>> reports;
-    if (request.errors) reports = mechanical::add_errors(fitted);
+    if (call.has("errors") || call.has("intervals") || curves_file) reports = mechanical::add_errors(fitted);
     const bool robust = options.phases.loss != mechanical::Loss::none;
     if (robust) note_down_weighted(call, fitted);
 
-    const auto table = cli::table_of(fitted.model, published, request.intervals);
+    const auto table = cli::table_of(
+        fitted.model, published,
+        call.has("intervals") ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
-    if (request.curves_file) write_file_atomically(*request.curves_file, curves_csv(fitted, *reports));
+    if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, *reports));
     cli::write_result(call, to_toml(fitted.model));
     warn_of_bounds(call, fitted.model);
     warn_of_given_frequencies(call, fitted.model);

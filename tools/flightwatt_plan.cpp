@@ -29,12 +29,6 @@ struct MissionFile {
     }
 };
 
-/// Where the result will stand, as the files that it names are found from there.
-std::filesystem::path folder_of_result(const cli::StageCall& call) {
-    return call.output ? std::filesystem::absolute(*call.output).parent_path()
-                       : std::filesystem::current_path();
-}
-
 std::optional<double> probability(const cli::StageCall& call) {
     const auto given = call.maybe<double>("probability");
     if (given && !(*given >= 0.5 && *given < 1.0)) {
@@ -82,9 +76,11 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
     const auto plan = plan_mission(*problem, probability(call));
     if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
     const auto text = describe(plan, *problem);
-    cli::write_result(call, fmt::format("# {}\n", cli::one_line(text)) +
-                                planned_mission_toml(file.text, file.path, problem->compute,
-                                                     plan.flown.schedule, folder_of_result(call)));
+    // The files that the result names are found from where it will stand.
+    const auto folder = std::filesystem::absolute(call.output.value_or("result")).parent_path();
+    cli::write_result(
+        call, fmt::format("# {}\n", cli::one_line(text)) +
+                  planned_mission_toml(file.text, file.path, problem->compute, plan.flown.schedule, folder));
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(plan, *problem)));
     } else {

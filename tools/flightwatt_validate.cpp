@@ -1,7 +1,6 @@
 // flightwatt validate: leaves each flight out, fits the others and predicts its energy.
 
 #include "base/error.h"
-#include "base/units.h"
 #include "cli/numeric_options.h"
 #include "cli/output/fit_options.h"
 #include "cli/output/flight_options.h"
@@ -80,51 +79,13 @@ std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
     return covariates;
 }
 
-/// Which covariates beat the constant mean in cruise, and which cannot be judged.
-std::string verdicts_on(const std::vector<mechanical::Covariate>& covariates,
-                        const std::vector<mechanical::ValidatedFlight>& flights) {
-    std::string text;
-    const auto mean = score_of(flights, "constant_mean", flight::Phase::cruise);
-    for (const auto covariate : covariates) {
-        const auto model = fmt::format("by_{}", to_string(covariate));
-        const auto score = score_of(flights, model, flight::Phase::cruise);
-        if (!score || !mean) {
-            text += fmt::format("cruise: {} is not known of all flights\n", model);
-            continue;
-        }
-        text += fmt::format(
-            "cruise: {} {} constant_mean: {:.3f} Wh against {:.3f} Wh\n", model,
-            score->mean_absolute_error_wh < mean->mean_absolute_error_wh ? "beats" : "does not beat",
-            score->mean_absolute_error_wh, mean->mean_absolute_error_wh);
-    }
-    if (!covariates.empty() && flights.size() <= 3) {
-        text +=
-            "a line through 2 flights or fewer fits any covariate: what beats the mean here may be chance\n";
-    }
-    return text;
-}
-
-std::string report(const std::vector<mechanical::ValidatedFlight>& flights,
-                   const std::vector<mechanical::Covariate>& covariates, bool in_flight) {
-    auto text = to_text(cli::flights_table(flights)) + "\n" + to_text(cli::scores_table(flights)) + "\n" +
-                cli::verdict(flights, "fourier", "constant_mean");
-    if (in_flight) text += cli::verdict(flights, "in_flight", "fourier");
-    text += verdicts_on(covariates, flights);
-    constexpr std::size_t few = 20;
-    if (flights.size() < few) {
-        text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n",
-                            flights.size(), units::percent_of(1.0, static_cast<double>(flights.size())));
-    }
-    return text;
-}
-
 int validate_flights(const cli::StageCall& call) {
     const auto options = read_fit_options(call);
     const auto until_s = cli::positive_option(call, "until", "s since lift-off");
     const auto covariates = read_covariates(call);
     const auto flights = read_flights(call, mechanical::samples_needed(options.phases.order));
     const auto validated = leave_one_out(flights, options, covariates);
-    cli::write_result(call, report(validated, covariates, until_s.has_value()));
+    cli::write_result(call, cli::validation_text(validated, covariates, until_s.has_value()));
     if (call.json) cli::print(cli::json_text(cli::scores_json(validated)));
     return cli::ok;
 }

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-/// The vocabulary of all figures: what they are, their data, and the parts of a Vega-Lite specification that they share.
+/// The vocabulary of all figures: their data, and the parts that their Vega-Lite specifications share.
 namespace flightwatt::report {
 
 using VegaJson = nlohmann::ordered_json;

@@ -5,6 +5,7 @@
 #include "flight/load_flight.h"
 #include "helpers/test_paths.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
