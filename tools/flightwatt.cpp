@@ -44,17 +44,14 @@ constexpr StageLine stages[] = {
     {"synthesize", "synthetic Paparazzi logs of flights after a model"},
 };
 
-std::string overview() {
-    std::string text =
-        "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
-        "usage: flightwatt STAGE [arguments]; flightwatt help tells more\n\nStages:\n";
+std::string stage_list() {
+    std::string text = "\nStages:\n";
     for (const auto& [name, summary] : stages) text += fmt::format("  {:<11} {}\n", name, summary);
     return text;
 }
 
 bool is_stage(std::string_view name) {
-    return std::any_of(std::begin(stages), std::end(stages),
-                       [&](const StageLine& stage) { return stage.name == name; });
+    return std::ranges::find(stages, name, &StageLine::name) != std::end(stages);
 }
 
 std::vector<std::string> stage_names() {
@@ -100,8 +97,7 @@ void list_topics() {
     for (const auto& page : cli::help_pages(documentation())) {
         text += fmt::format("  {:<11} {}\n", page.topic, page.title);
     }
-    cli::print(text + "\nStages:\n");
-    for (const auto& [name, summary] : stages) cli::print(fmt::format("  {:<11} {}\n", name, summary));
+    cli::print(text + stage_list());
 }
 
 void help(const std::string& topic) {
@@ -122,7 +118,10 @@ void help(const std::string& topic) {
 int run(int argc, char** argv) {
     const std::string stage = argc > 1 ? argv[1] : "--help";
     if (stage == "--help" || stage == "-h") {
-        cli::print(overview());
+        cli::print(
+            "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
+            "usage: flightwatt STAGE [arguments]; flightwatt help tells more\n" +
+            stage_list());
     } else if (stage == "--version") {
         cli::print("flightwatt " FLIGHTWATT_VERSION "\n");
     } else if (stage != "help") {

@@ -7,19 +7,18 @@
 #include "batch/batch_fit.h"
 #include "batch/batch_run.h"
 #include "batch/write_guard.h"
+#include "cli/numeric_options.h"
 #include "cli/output/fit_options.h"
+#include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
-#include "cli/output/table_one_output.h"
 #include "cli/progress.h"
 #include "cli/stage.h"
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
 #include <filesystem>
 #include <functional>
-#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -64,9 +63,7 @@ void report_notes(const cli::StageCall& call, const std::vector<batch::BatchFlig
         for (const auto& warning : flight.record.warnings) {
             cli::warn(call, fmt::format("{}: {}", flight.record.flight, warning));
         }
-        for (const auto& exclusion : flight.selection.exclusions) {
-            cli::warn(call, to_string(exclusion));
-        }
+        for (const auto& exclusion : flight.selection.exclusions) cli::warn(call, to_string(exclusion));
         if (!flight.record.accepted) {
             cli::note(call, fmt::format("{}: rejected: {}", flight.record.flight, flight.record.error));
         }
@@ -110,29 +107,13 @@ nlohmann::ordered_json summary_json(const std::vector<batch::BatchFlight>& fligh
     return json;
 }
 
-unsigned read_jobs(const cli::StageCall& call) {
-    constexpr int most_jobs = 256;  // threads
-    const auto jobs = call.get<int>("jobs");
-    if (jobs < 0 || jobs > most_jobs) {
-        throw UsageError(fmt::format("--jobs is {}, expected 1 to {}, or 0 for one a core", jobs, most_jobs));
-    }
-    return static_cast<unsigned>(jobs);
-}
-
-std::vector<std::string> names_of(const std::vector<batch::LogFile>& logs) {
-    std::vector<std::string> names;
-    names.reserve(logs.size());
-    for (const auto& log : logs) names.push_back(log.flight);
-    return names;
-}
-
 batch::BatchOptions read_batch_options(const cli::StageCall& call,
                                        const mechanical::ModelFitOptions& fit_options) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
     batch::BatchOptions options;
     options.out = *call.output;
     options.load = cli::read_flight_options(call);
-    options.jobs = read_jobs(call);
+    options.jobs = static_cast<unsigned>(cli::count_option(call, "jobs", 0, 256));
     options.needed_samples = mechanical::samples_needed(fit_options.phases.order);
     return options;
 }
@@ -155,8 +136,8 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights,
         write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights));
     }
     if (!call.json) cli::print(to_text(flights_table(flights)));
-    const auto rejected = std::count_if(flights.begin(), flights.end(),
-                                        [](const auto& flight) { return !flight.record.accepted; });
+    const auto rejected =
+        std::ranges::count_if(flights, [](const auto& flight) { return !flight.record.accepted; });
     if (static_cast<std::size_t>(rejected) == flights.size()) {
         remove_model(options.out);
         throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", rejected));
@@ -182,11 +163,11 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights,
 int run_over_logs(const cli::StageCall& call) {
     const auto fit_options = read_fit_options(call);  // refuses bad options before the work
     auto options = read_batch_options(call, fit_options);
-    std::optional<mechanical::MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published"))
-        published = mechanical::read_mechanical_model(*file);
+    const auto published = cli::read_published(call);
     const auto logs = batch::find_logs(call.inputs);
-    cli::refuse_unknown_flights(options.load, names_of(logs));
+    std::vector<std::string> names;
+    for (const auto& log : logs) names.push_back(log.flight);
+    cli::refuse_unknown_flights(options.load, names);
     make_directories(options.out);
     const batch::FolderLock lock(options.out);
     for (const auto& dropped : batch::find_dropped(logs, options.out)) {
@@ -206,11 +187,8 @@ int run_over_logs(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "batch";
-    stage.arguments = "LOG|FOLDER... -o OUT";
-    stage.description =
+    cli::StageDefinition stage{
+        "batch", "LOG|FOLDER... -o OUT",
         R"(Parses and segments every .data log (folders are searched to the bottom) into OUT/flights, several at a
 time, and fits them: OUT/model.toml, OUT/table1.txt, .csv, .md, and OUT/flights.csv, a row a flight and
 phase. Logs whose results are up to date are not done again. A log that cannot be used is reported and the
@@ -218,13 +196,13 @@ others go on; the exit code is then 3. Flights whose log is gone are dropped. Lo
 that holds a file not-fitted.txt are listed and excluded from the fit; its first line says why.
 
 SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. However it
-ended, the same command goes on where it stopped and comes to the same results.)";
+ended, the same command goes on where it stopped and comes to the same results.)"};
     stage.output_help = "the folder of the results";
     cli::add_fit_options(stage.options);
-    stage.options.add_options()("name", po::value<std::string>()->value_name("NAME")->default_value("batch"),
-                                "the model's name")(
-        "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
-        "jobs", po::value<int>()->value_name("N")->default_value(0, "one a core"), "logs at a time");
+    auto add = stage.options.add_options();
+    add("name", cli::value("NAME")->default_value("batch"), "the model's name");
+    add("published", cli::value("MODEL.toml"), "show Table I beside this model's");
+    add("jobs", cli::value("N")->default_value("0", "one a core"), "logs at a time");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, run_over_logs);
 }

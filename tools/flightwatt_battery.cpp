@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "battery/identification.h"
+#include "cli/numeric_options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -20,17 +20,8 @@ using namespace flightwatt;
 
 battery::IdentificationOptions read_options(const cli::StageCall& call) {
     battery::IdentificationOptions options;
-    options.capacity_ah = call.maybe<double>("capacity");
-    options.cells = call.maybe<int>("cells");
-    constexpr double most_ah = 1e4;
-    if (options.capacity_ah && !(*options.capacity_ah > 0.0 && *options.capacity_ah <= most_ah)) {
-        throw UsageError(fmt::format("--capacity is {} Ah, expected more than 0 and at most {:g}",
-                                     *options.capacity_ah, most_ah));
-    }
-    constexpr int most_cells = 24;
-    if (options.cells && (*options.cells < 1 || *options.cells > most_cells)) {
-        throw UsageError(fmt::format("--cells is {}, expected 1 to {}", *options.cells, most_cells));
-    }
+    options.capacity_ah = cli::positive_option(call, "capacity", "Ah", 1e4);
+    if (call.has("cells")) options.cells = static_cast<int>(cli::count_option(call, "cells", 1, 24));
     options.name = call.maybe<std::string>("name").value_or(
         call.output ? std::filesystem::path(*call.output).stem().string() : "identified");
     return options;
@@ -100,7 +91,7 @@ int identify(const cli::StageCall& call) {
     const auto identified = identify_battery(records, options);
     const auto left_out = leave_each_out(records, options);
     note_what_it_rests_on(call, identified);
-    if (left_out.empty()) cli::note(call, "a single flight: none can be left out to check the battery");
+    if (left_out.empty()) cli::note(call, "a single flight: there is no other one to check the battery with");
     cli::write_result(call, cli::provenance(identified) + to_toml(identified.battery));
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(identified, left_out)));
@@ -114,23 +105,20 @@ int identify(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "battery";
-    stage.arguments = "FLIGHT.data|SERIES.csv...";
-    stage.description =
+    cli::StageDefinition stage{
+        "battery", "FLIGHT.data|SERIES.csv...",
         R"(Identifies the battery from the flights' own voltage, current and charge: open-circuit voltage over
 state of charge, series resistance and one RC pair, with 95 % intervals, for missions (model =
 "thevenin"). The battery goes to the standard output as TOML; with -o it goes to the file, and its
 parameters and flights are shown: how well each flight's voltage is met, and how well the others
 predict it. The fullest flight begins at 100 %, the others where their resting voltage lies. Flights
-whose current was computed from throttle are refused.)";
-    stage.options.add_options()("capacity", po::value<double>()->value_name("AH"),
-                                "the pack's capacity; without it, what a flight drew from full to empty, or "
-                                "else a guess after the usual chart of LiPo cells")(
-        "cells", po::value<int>()->value_name("N"),
-        "cells in series; default: by the highest resting voltage")(
-        "name", po::value<std::string>()->value_name("NAME"), "the battery's name; default: FILE's");
+whose current was computed from throttle are refused.)"};
+    auto add = stage.options.add_options();
+    add("capacity", cli::value<double>("AH"),
+        "the pack's capacity; without it, what a flight drew from full to empty, or "
+        "else a guess after the usual chart of LiPo cells");
+    add("cells", cli::value("N"), "cells in series; default: by the highest resting voltage");
+    add("name", cli::value("NAME"), "the battery's name; default: FILE's");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, identify);
 }

@@ -1,13 +1,10 @@
 // Several mission files to a table, ranked by what they leave in the battery.
 
 #include "cli/output/json_text.h"
-#include "cli/output/mission_json.h"
-#include "cli/output/sampling_output.h"
-#include "cli/output/terminal_pictures.h"
+#include "cli/output/mission_output.h"
 #include "cli/stage.h"
-#include "mission/mission_summary.h"
-#include "mission/disturbance.h"
 #include "mission/mission_file.h"
+#include "mission/mission_summary.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
 
@@ -32,9 +29,7 @@ std::string ranking_json(const std::vector<mission::MissionSummary>& ranking, bo
 mission::Simulation simulation_of(const cli::StageCall& call, const mission::AnyMission& mission,
                                   const std::optional<mission::SamplingOptions>& sampling) {
     const auto& setup = setup_of(mission);
-    std::vector<mission::Disturbance> disturbances;
-    if (const auto file = call.maybe<std::string>("disturb"))
-        disturbances = mission::read_disturbances(*file, setup.duration_s);
+    const auto disturbances = cli::read_disturb_option(call, setup);
     const auto prepared = prepare(mission);
     auto simulation = fly(prepared, {}, disturbances).simulation;
     if (sampling && has_spread(setup))
@@ -49,11 +44,10 @@ std::string soc_picture(const cli::StageCall& call, const std::vector<mission::S
     if (!plot || call.has("markdown")) return "";
     std::vector<cli::TerminalLine> lines;
     for (const auto& simulation : simulations) {
-        const auto place =
-            std::find_if(ranking.begin(), ranking.end(), [&](const mission::MissionSummary& summary) {
-                return summary.mission == simulation.summary.mission &&
-                       summary.final_soc_percent == simulation.summary.final_soc_percent;
-            });
+        const auto place = std::ranges::find_if(ranking, [&](const mission::MissionSummary& summary) {
+            return summary.mission == simulation.summary.mission &&
+                   summary.final_soc_percent == simulation.summary.final_soc_percent;
+        });
         const auto rank = static_cast<std::size_t>(place - ranking.begin()) + 1;
         if (!simulation.curve.rows.empty()) lines.push_back(cli::soc_line(simulation.curve, rank));
     }
@@ -82,8 +76,6 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
     return code;
 }
 
-bool has_spread_of(const mission::AnyMission& mission) { return has_spread(setup_of(mission)); }
-
 int compare_missions(const cli::StageCall& call) {
     const auto sampling = sampling_options(call, false);
     // All are read before the first is run: a bad file leaves no half answer.
@@ -97,7 +89,8 @@ int compare_missions(const cli::StageCall& call) {
         simulations.push_back(simulation_of(call, mission, sampling));
         summaries.push_back(simulations.back().summary);
     }
-    if (sampling && std::none_of(missions.begin(), missions.end(), has_spread_of)) {
+    if (sampling &&
+        std::ranges::none_of(missions, [](const auto& mission) { return has_spread(setup_of(mission)); })) {
         require_spread(setup_of(missions.front()));  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));
@@ -111,17 +104,14 @@ int compare_missions(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "compare";
-    stage.arguments = "MISSION.toml...";
-    stage.description =
+    cli::StageDefinition stage{
+        "compare", "MISSION.toml...",
         R"(Runs several missions and ranks them by final state of charge; of those that run empty, the one that
 lasts longer comes first. A mission without a schedule is planned first, one with an adaptive policy in
-flight. --json lists the summaries in that order.)";
-    stage.options.add_options()("markdown", "write the table as Markdown")(
-        "disturb", po::value<std::string>()->value_name("FILE"),
-        "let the disturbances of FILE happen to all (missions/disturbances/)");
+flight. --json lists the summaries in that order.)"};
+    auto add = stage.options.add_options();
+    add("markdown", "write the table as Markdown");
+    add("disturb", cli::value("FILE"), "let the disturbances of FILE happen to all (missions/disturbances/)");
     add_sampling_options(stage);
     return cli::run_stage(argc, argv, stage, compare_missions);
 }

@@ -2,11 +2,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "cli/output/fit_error_output.h"
 #include "cli/output/fit_options.h"
+#include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
-#include "cli/output/table_one_output.h"
 #include "cli/stage.h"
 #include "mechanical/measured_flight.h"
 
@@ -22,23 +21,6 @@
 namespace {
 
 using namespace flightwatt;
-
-/// What goes beyond a plain fit.
-struct FitRequest {
-    bool auto_order = false;
-    bool errors = false;
-    mechanical::TableIntervals intervals = mechanical::TableIntervals::absent;
-    std::optional<std::string> curves_file;
-};
-
-FitRequest read_request(const cli::StageCall& call) {
-    FitRequest request;
-    request.auto_order = !read_order(call, cli::AutoOrder::accepted);
-    request.curves_file = call.maybe<std::string>("curves");
-    if (call.has("intervals")) request.intervals = mechanical::TableIntervals::present;
-    request.errors = call.has("errors") || call.has("intervals") || request.curves_file;
-    return request;
-}
 
 mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     auto options = read_fit_options(call, cli::AutoOrder::accepted);
@@ -72,39 +54,42 @@ std::vector<mechanical::FlightSamples> read_flights(const cli::StageCall& call, 
 /// Chooses each phase's order and says why.
 flight::PerPhase<mechanical::OrderChoice> choose_orders(const cli::StageCall& call,
                                                         std::span<const mechanical::FlightSamples> flights,
-                                                        mechanical::ModelFitOptions& options) {
+                                                        const mechanical::ModelFitOptions& options) {
     flight::PerPhase<mechanical::OrderChoice> choices;
     for (const auto phase : flight::all_phases) {
         choices[phase] =
             choose_order(phase, samples_of_phase(flights, phase), options.phases, options.weights);
-        options.orders[phase] = choices[phase].order;
         note_order(call, phase, choices[phase]);
     }
     return choices;
 }
 
 int fit(const cli::StageCall& call) {
-    const auto request = read_request(call);
+    const bool auto_order = !read_order(call, cli::AutoOrder::accepted);
     auto options = read_options(call);
     const auto table_file = call.maybe<std::string>("table");
     if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
-    std::optional<mechanical::MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published"))
-        published = mechanical::read_mechanical_model(*file);
+    const auto curves_file = call.maybe<std::string>("curves");
+    const auto published = cli::read_published(call);
     const auto flights =
-        read_flights(call, request.auto_order ? mechanical::highest_tried_order : options.phases.order);
+        read_flights(call, auto_order ? mechanical::highest_tried_order : options.phases.order);
     std::optional<flight::PerPhase<mechanical::OrderChoice>> choices;
-    if (request.auto_order) choices = choose_orders(call, flights, options);
+    if (auto_order) {
+        choices = choose_orders(call, flights, options);
+        for (const auto phase : flight::all_phases) options.orders[phase] = (*choices)[phase].order;
+    }
 
     auto fitted = fit_model(flights, options);
     std::optional<flight::PerPhase<mechanical::PhaseErrorReport>> reports;
-    if (request.errors) reports = mechanical::add_errors(fitted);
+    if (call.has("errors") || call.has("intervals") || curves_file) reports = mechanical::add_errors(fitted);
     const bool robust = options.phases.loss != mechanical::Loss::none;
     if (robust) note_down_weighted(call, fitted);
 
-    const auto table = cli::table_of(fitted.model, published, request.intervals);
+    const auto table = cli::table_of(
+        fitted.model, published,
+        call.has("intervals") ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
-    if (request.curves_file) write_file_atomically(*request.curves_file, curves_csv(fitted, *reports));
+    if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, *reports));
     cli::write_result(call, to_toml(fitted.model));
     warn_of_bounds(call, fitted.model);
     warn_of_given_frequencies(call, fitted.model);
@@ -125,28 +110,26 @@ int fit(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "fit";
-    stage.arguments = "FLIGHT.data|SERIES.csv...";
-    stage.description =
+    cli::StageDefinition stage{
+        "fit", "FLIGHT.data|SERIES.csv...",
         R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
-as TOML; with -o it goes to the file and Table I is shown.)";
+as TOML; with -o it goes to the file and Table I is shown.)"};
     add_fit_options(stage.options, cli::AutoOrder::accepted);
-    stage.options.add_options()("name", po::value<std::string>()->value_name("NAME"), "the model's name")(
-        "published", po::value<std::string>()->value_name("MODEL.toml"), "show Table I beside this model's")(
-        "table", po::value<std::string>()->value_name("FILE"), "write Table I as .txt, .csv, .md or .tex")(
-        "errors",
+    auto add = stage.options.add_options();
+    add("name", cli::value("NAME"), "the model's name");
+    add("published", cli::value("MODEL.toml"), "show Table I beside this model's");
+    add("table", cli::value("FILE"), "write Table I as .txt, .csv, .md or .tex");
+    add("errors",
         "analyse the fit: standard errors, R2, condition, autocorrelation, frequency profile, spread "
-        "between flights, into the model and the JSON")(
-        "intervals", "Table I with half widths of 95 % intervals; implies --errors")(
-        "curves", po::value<std::string>()->value_name("FILE.csv"),
-        "write the curves with their band and the flights' envelope; implies --errors")(
-        "level-covariate", po::value<std::string>()->value_name("NAME"),
+        "between flights, into the model and the JSON");
+    add("intervals", "Table I with half widths of 95 % intervals; implies --errors");
+    add("curves", cli::value("FILE.csv"),
+        "write the curves with their band and the flights' envelope; implies --errors");
+    add("level-covariate", cli::value("NAME"),
         "let the cruise level follow what 'flightwatt validate --covariate all' found to predict it: "
-        "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]")(
-        "loss", po::value<std::string>()->value_name("HOW")->default_value("none"),
+        "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]");
+    add("loss", cli::value("HOW")->default_value("none"),
         "none or huber: how outliers count in the last refinement");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, fit);

@@ -51,14 +51,12 @@ int parse(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    cli::StageDefinition stage;
-    stage.name = "parse";
-    stage.arguments = "FLIGHT.data";
-    stage.description =
+    cli::StageDefinition stage{
+        "parse", "FLIGHT.data",
         R"(Reads a Paparazzi .data log (also .gz, .bz2, .xz, .zst) with the .log beside it and writes all that
 it tells of the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,
 altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.
-Any stage reads the series file as it reads the log, and comes to the same.)";
+Any stage reads the series file as it reads the log, and comes to the same.)"};
     stage.max_inputs = 1;
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, parse);

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/json_text.h"
-#include "cli/output/plan_json.h"
+#include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
@@ -27,12 +27,6 @@ struct MissionFile {
         return mission::parse_mission(text, path, {true, cruise_s});
     }
 };
-
-/// Where the result will stand, as the files that it names are found from there.
-std::filesystem::path folder_of_result(const cli::StageCall& call) {
-    return call.output ? std::filesystem::absolute(*call.output).parent_path()
-                       : std::filesystem::current_path();
-}
 
 std::optional<double> probability(const cli::StageCall& call) {
     const auto given = call.maybe<double>("probability");
@@ -81,9 +75,11 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
     const auto plan = plan_mission(*problem, probability(call));
     if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
     const auto text = describe(plan, *problem);
-    cli::write_result(call, fmt::format("# {}\n", cli::one_line(text)) +
-                                planned_mission_toml(file.text, file.path, problem->compute,
-                                                     plan.flown.schedule, folder_of_result(call)));
+    // The files that the result names are found from where it will stand.
+    const auto folder = std::filesystem::absolute(call.output.value_or("result")).parent_path();
+    cli::write_result(
+        call, fmt::format("# {}\n", cli::one_line(text)) +
+                  planned_mission_toml(file.text, file.path, problem->compute, plan.flown.schedule, folder));
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(plan, *problem)));
     } else {
@@ -148,20 +144,18 @@ int plan_file(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    flightwatt::cli::StageDefinition stage;
-    stage.name = "plan";
-    stage.arguments = "MISSION.toml";
-    stage.description =
+    cli::StageDefinition stage{
+        "plan", "MISSION.toml",
         R"(Makes the schedule of most utility that still lands with the reserve, and proves how much better any
 other could be. The result is the mission with that schedule, for simulate and compare. What [[schedule]]
 says beside [plan] is fixed. --longest-cruise and --largest-payload take the mission's own schedule, or the
 one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), plans are
-simulated and made anew until they land; the bound is then that of the highest voltage possible.)";
+simulated and made anew until they land; the bound is then that of the highest voltage possible.)"};
     stage.max_inputs = 1;
-    stage.options.add_options()("probability", po::value<double>()->value_name("P"),
-                                "keep the reserve with this chance, as flights differ (0.95)")(
-        "longest-cruise", "instead: the longest cruise that lands with the reserve [s]")(
-        "largest-payload", "instead: the largest constant power that can be fed besides [W]");
+    auto add = stage.options.add_options();
+    add("probability", cli::value<double>("P"),
+        "keep the reserve with this chance, as flights differ (0.95)");
+    add("longest-cruise", "instead: the longest cruise that lands with the reserve [s]");
+    add("largest-payload", "instead: the largest constant power that can be fed besides [W]");
     return flightwatt::cli::run_stage(argc, argv, stage, plan_file);
 }

@@ -2,30 +2,24 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "cli/numeric_options.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_series.h"
 #include "mechanical/prediction.h"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace {
 
 using namespace flightwatt;
-
-double positive(const cli::StageCall& call, const std::string& option, bool zero_allowed) {
-    const auto value = call.get<double>(option);
-    if (std::isfinite(value) && (value > 0.0 || (zero_allowed && value == 0.0))) return value;
-    throw UsageError(
-        fmt::format("--{} is {}, expected {} s", option, value, zero_allowed ? "0 or more" : "more than 0"));
-}
 
 /// The moment that is asked for: since lift-off, or on the log's clock.
 struct Moment {
@@ -37,8 +31,8 @@ Moment moment_of(const cli::StageCall& call) {
     if (call.has("until") == call.has("until-log-time")) {
         throw UsageError("expected either --until (seconds since lift-off) or --until-log-time");
     }
-    if (call.has("until")) return {positive(call, "until", false), 0.0};
-    return {std::nullopt, positive(call, "until-log-time", false)};
+    return {cli::positive_option(call, "until", "s"),
+            cli::positive_option(call, "until-log-time", "s").value_or(0.0)};
 }
 
 /// When it is: of several aircraft, when the first has flown so long.
@@ -88,11 +82,13 @@ mechanical::LevelSource automatic_source(const cli::StageCall& call, const mecha
 mechanical::LevelSource level_source(const cli::StageCall& call, const mechanical::PhaseModel& cruise,
                                      const mechanical::FlightProgress& flown) {
     const auto name = call.get<std::string>("level");
+    static const std::map<std::string, mechanical::LevelSource> sources{
+        {"curve", mechanical::LevelSource::curve},
+        {"constant", mechanical::LevelSource::constant},
+        {"airspeed", mechanical::LevelSource::airspeed},
+        {"covariate", mechanical::LevelSource::covariate}};
     if (name == "auto") return automatic_source(call, cruise, flown);
-    if (name == "curve") return mechanical::LevelSource::curve;
-    if (name == "constant") return mechanical::LevelSource::constant;
-    if (name == "airspeed") return mechanical::LevelSource::airspeed;
-    if (name == "covariate") return mechanical::LevelSource::covariate;
+    if (const auto found = sources.find(name); found != sources.end()) return found->second;
     throw UsageError(fmt::format("--level {}: expected auto, curve, constant, airspeed or covariate", name));
 }
 
@@ -148,12 +144,8 @@ Prediction predict_flight(const cli::StageCall& call) {
     Prediction prediction;
     const auto moment = moment_of(call);
     if (!call.has("remaining")) throw UsageError("no time left given: expected --remaining SECONDS");
-    prediction.remaining_s = positive(call, "remaining", true);
     constexpr double longest_s = 1e6;  // no battery flies for eleven days
-    if (prediction.remaining_s > longest_s) {
-        throw UsageError(
-            fmt::format("--remaining {:g}: expected at most {:g} s", prediction.remaining_s, longest_s));
-    }
+    prediction.remaining_s = cli::number_option(call, "remaining", 0.0, longest_s);
     const auto model = read_spread_model(call);
     prediction.flown = read_progress(call, moment);
     const auto& cruise = model.phases[flight::Phase::cruise];
@@ -205,33 +197,29 @@ nlohmann::ordered_json json_of(const Prediction& prediction) {
 int predict(const cli::StageCall& call) {
     const auto prediction = predict_flight(call);
     cli::write_result(call, text_of(prediction));
-    if (call.json) cli::print(json_of(prediction).dump(2) + "\n");
+    if (call.json) cli::print(cli::json_text(json_of(prediction)));
     return cli::ok;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "predict";
-    stage.arguments = "FLIGHT.data|SERIES.csv --model MODEL.toml --until S --remaining S";
-    stage.description =
+    cli::StageDefinition stage{
+        "predict", "FLIGHT.data|SERIES.csv --model MODEL.toml --until S --remaining S",
         R"(Predicts the energy from a moment in cruise to the end of the flight. What was measured until then
 moves the cruise level of the model towards this flight's own, weighted by the variances between
 flights and within one. Nothing after the moment is looked at: a log that ends there gives the same.
 The remaining energy is that of --remaining more seconds of cruise and of a landing as in the model
 (its duration, too). The 95 % interval is that of the remaining energy; it holds the spread between
-flights, the drift within one, and that the model rests on few flights.)";
+flights, the drift within one, and that the model rests on few flights.)"};
     stage.max_inputs = 1;
-    stage.options.add_options()("model", po::value<std::string>()->value_name("MODEL.toml"),
-                                "from flightwatt fit, of two flights or more")(
-        "until", po::value<double>()->value_name("S"),
-        "the moment, in seconds since lift-off as flightwatt segment finds it in what was flown")(
-        "until-log-time", po::value<double>()->value_name("S"),
-        "the moment in the log's own seconds, instead of --until")(
-        "remaining", po::value<double>()->value_name("S"), "seconds from the moment until landing begins")(
-        "level", po::value<std::string>()->value_name("HOW")->default_value("auto"),
+    auto add = stage.options.add_options();
+    add("model", cli::value("MODEL.toml"), "from flightwatt fit, of two flights or more");
+    add("until", cli::value<double>("S"),
+        "the moment, in seconds since lift-off as flightwatt segment finds it in what was flown");
+    add("until-log-time", cli::value<double>("S"), "the moment in the log's own seconds, instead of --until");
+    add("remaining", cli::value<double>("S"), "seconds from the moment until landing begins");
+    add("level", cli::value("HOW")->default_value("auto"),
         "what is expected of the cruise before its own power is looked at: the model's curve, the curve's "
         "mean (constant), the power that the airspeed measured so far stands for (airspeed), or that of the "
         "model's level law (covariate); auto is covariate for a model that was fitted with "

@@ -5,6 +5,7 @@
 #include "base/signal_watch.h"
 #include "base/toml_reader.h"
 #include "batch/write_guard.h"
+#include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/profile_output.h"
 #include "cli/stage.h"
@@ -12,9 +13,8 @@
 #include "compute/profile_reader.h"
 
 #include <algorithm>
-#include <cstring>
-#include <sstream>
 
+#include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>
 
 namespace {
@@ -25,9 +25,7 @@ constexpr int killed_by_signal = 128;  // what shells add to the signal
 
 std::vector<std::string> words_of(const std::string& list) {
     std::vector<std::string> words;
-    std::istringstream text(list);
-    for (std::string word; std::getline(text, word, ',');) words.push_back(word);
-    return words;
+    return boost::algorithm::split(words, list, [](char c) { return c == ','; });
 }
 
 compute::ProfileNaming naming_of(const cli::StageCall& call) {
@@ -86,8 +84,22 @@ void apply_options(const cli::StageCall& call, compute::ProfileSpecification& sp
     }
 }
 
-compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatch& signals, std::size_t& done,
-                                    std::size_t& all) {
+/// How far the runs have come.
+struct RunsDone {
+    std::size_t done = 0;
+    std::size_t all = 0;
+};
+
+void note_run(const cli::StageCall& call, const compute::ProfileRun& run, const RunsDone& runs) {
+    const auto name = run.configuration.empty() ? run.component : run.component + " " + run.configuration;
+    const auto what = run.was_done                           ? "up to date"
+                      : run.status == compute::RunStatus::ok ? fmt::format("{:.4g} W", run.estimate.power_w)
+                                                             : std::string(to_string(run.status));
+    cli::note(call, fmt::format("[{}/{}] {} repeat {}: {}{}", runs.done, runs.all, name, run.repeat, what,
+                                run.note.empty() ? "" : ": " + run.note));
+}
+
+compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatch& signals) {
     compute::ProfilerOptions options;
     options.folder = *call.output;
     options.signals = signals.file();
@@ -96,20 +108,7 @@ compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatc
         for (const auto& line : sampler.found) cli::note(call, "found " + line);
         cli::note(call, fmt::format("sampling with {}: {}", to_string(sampler.kind), sampler.source));
     };
-    options.progress = [&call, &done, &all](const compute::ProfileRun& run, std::size_t count,
-                                            std::size_t of) {
-        done = count;
-        all = of;
-        const auto name = run.configuration.empty() ? run.component : run.component + " " + run.configuration;
-        const auto what = run.was_done ? "up to date"
-                          : run.status == compute::RunStatus::ok
-                              ? fmt::format("{:.4g} W", run.estimate.power_w)
-                              : std::string(to_string(run.status));
-        cli::note(call, fmt::format("[{}/{}] {} repeat {}: {}{}", count, of, name, run.repeat, what,
-                                    run.note.empty() ? "" : ": " + run.note));
-    };
-    if (const auto trials = call.maybe<int>("trials"))
-        options.trials = static_cast<std::size_t>(std::max(*trials, 0));
+    if (call.has("trials")) options.trials = cli::count_option(call, "trials");
     return options;
 }
 
@@ -138,17 +137,20 @@ int profile_components(const cli::StageCall& call) {
     if (!call.output) throw UsageError("no folder given: expected -o DIR");
     auto specification = compute::read_profile_specification(call.inputs.front());
     apply_options(call, specification);
-    std::size_t done = 0;
-    std::size_t all = 0;
     const SignalWatch signals;
-    const auto options = options_of(call, signals, done, all);
+    auto options = options_of(call, signals);
+    RunsDone runs;
+    options.progress = [&](const compute::ProfileRun& run, std::size_t done, std::size_t all) {
+        runs = {done, all};
+        note_run(call, run, runs);
+    };
     make_directories(options.folder);
     const batch::FolderLock lock(options.folder);
     try {
         return conclude(call, profile(specification, options), specification);
     } catch (const compute::Interrupted& interrupted) {
         cli::note(call, fmt::format("stopped by {} after {} of {} runs; the same command goes on from there",
-                                    signal_name(interrupted.signal()), done, all));
+                                    signal_name(interrupted.signal()), runs.done, runs.all));
         return killed_by_signal + interrupted.signal();
     }
 }
@@ -156,11 +158,8 @@ int profile_components(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "profile";
-    stage.arguments = "SPEC -o DIR | --check-interpolation FILE...";
-    stage.description =
+    cli::StageDefinition stage{
+        "profile", "SPEC -o DIR | --check-interpolation FILE...",
         R"(Runs each component of SPEC (TOML, or powprofiler's .cfg) over its quality of service while sampling
 power. DIR/NAME.csv is layer 2, configuration to mean power, energy and standard error, as missions
 take it; DIR/layer1 holds power over time of every run, DIR/runs.csv what became of each, DIR/idle.csv
@@ -170,20 +169,19 @@ it stopped. Without duration_s in SPEC a run is as long as its command, ended as
 with it the command is ended when its time is over, whatever it does. Runs that succeeded are not done
 again while their part of SPEC is the same; remove DIR when a program itself has changed.
 
-Samplers: auto, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, recorded.)";
+Samplers: auto, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, recorded.)"};
     stage.output_help = "the folder of the results";
-    const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
     auto add = stage.options.add_options();
-    add("sampler", text("KIND"), "sample with this instead of what SPEC says");
-    add("sysfs", text("ROOT"), "look for sensors below ROOT instead of /sys");
+    add("sampler", cli::value("KIND"), "sample with this instead of what SPEC says");
+    add("sysfs", cli::value("ROOT"), "look for sensors below ROOT instead of /sys");
     add("above-idle", "profiles hold the power above that of the idle computer");
     add("powprofiler", "write powprofiler's formats too, to DIR/powprofiler");
-    add("trials", po::value<int>()->value_name("N"),
+    add("trials", cli::value("N"),
         "run N configurations of each component, spread over its range, and interpolate the others");
     add("check-interpolation", "of profiles: find each node from the others, and print the errors");
-    add("parameters", text("A,B"),
+    add("parameters", cli::value("A,B"),
         "the parameters' names, of a profile that has flags (--check-interpolation)");
-    add("columns", text("A,B,power_w"),
+    add("columns", cli::value("A,B,power_w"),
         "the columns' names, of a profile without a header (--check-interpolation)");
     return cli::run_stage(argc, argv, stage, profile_components);
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/numeric_options.h"
+#include "cli/output/fit_output.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
@@ -11,10 +12,13 @@
 #include "report/figure_files.h"
 #include "report/flights_section.h"
 #include "report/missions_section.h"
+#include "report/model_section.h"
 #include "report/page.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <iterator>
 
 #include <fmt/chrono.h>
 
@@ -54,59 +58,55 @@ std::string time_of_report() {
     return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
 }
 
-battery::IdentificationOptions read_identification_options(const cli::StageCall& call) {
-    battery::IdentificationOptions options;
-    options.capacity_ah = cli::positive_option(call, "capacity", "Ah");
-    return options;
-}
+struct Page {
+    report::PageHead head;
+    std::vector<report::Section> sections;
+};
 
 /// The flights' model with its validation.
-void add_model(const cli::StageCall& call, const report::BatchContent& content,
-               const report::PublishedFigures& figures, report::PageHead& head,
-               std::vector<report::Section>& sections) {
+void add_model(Page& page, const cli::StageCall& call, const report::BatchContent& content,
+               const report::PublishedFigures& figures) {
     if (!content.fit) {
-        head.notes.push_back("There is no model of these flights: the batch could not fit them.");
+        page.head.notes.push_back("There is no model of these flights: the batch could not fit them.");
         return;
     }
-    std::optional<mechanical::MechanicalModel> published;
-    if (const auto file = call.maybe<std::string>("published"))
-        published = mechanical::read_mechanical_model(*file);
-    sections.push_back(model_section(report::model_of(*content.fit, published), figures, "model"));
+    page.sections.push_back(
+        model_section(report::model_of(*content.fit, cli::read_published(call)), figures, "model"));
     const auto most = cli::count_option(call, "max-validation-flights");
     if (content.measured.size() < 2 || content.measured.size() > most) {
-        head.notes.push_back(fmt::format(
+        page.head.notes.push_back(fmt::format(
             "The model is validated with 2 to {} flights, and there are {}; flightwatt validate does it.",
             most, content.measured.size()));
         return;
     }
-    sections.push_back(report::validation_section(leave_one_out(content.measured, content.fit->options)));
+    page.sections.push_back(
+        report::validation_section(leave_one_out(content.measured, content.fit->options)));
 }
 
 /// What the batch's folder has to say: flights, model, validation and battery.
-void add_batch(const cli::StageCall& call, const std::filesystem::path& out,
-               const report::PublishedFigures& figures, report::PageHead& head,
-               std::vector<report::Section>& sections) {
-    const auto identification = read_identification_options(call);
+void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::path& out,
+               const report::PublishedFigures& figures) {
+    battery::IdentificationOptions identification;
+    identification.capacity_ah = cli::positive_option(call, "capacity", "Ah");
     const auto content = report::read_batch_content(out);
-    head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
-    sections.push_back(report::flights_section(
+    page.head.facts.emplace_back("flights",
+                                 fmt::format("{} logs, from {}", content.flights.size(), out.string()));
+    page.sections.push_back(report::flights_section(
         content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt));
-    add_model(call, content, figures, head, sections);
-    sections.push_back(report::battery_section(report::identify_for_report(
+    add_model(page, call, content, figures);
+    page.sections.push_back(report::battery_section(report::identify_for_report(
         content.flights, identification, cli::count_option(call, "max-battery-flights"))));
 }
 
-nlohmann::ordered_json summary_json(const report::PageHead& head,
-                                    const std::vector<report::Section>& sections) {
-    nlohmann::ordered_json json{
-        {"title", head.title}, {"notes", head.notes}, {"figures", report::VegaJson::array()}};
-    for (const auto& section : sections) {
+nlohmann::ordered_json summary_json(const Page& page) {
+    auto figures = nlohmann::ordered_json::array();
+    for (const auto& section : page.sections) {
         for (const auto& figure : section.figures) {
-            json["figures"].push_back(
+            figures.push_back(
                 {{"id", figure.id}, {"section", section.title}, {"description", figure.description}});
         }
     }
-    return json;
+    return {{"title", page.head.title}, {"notes", page.head.notes}, {"figures", figures}};
 }
 
 /// Where figures are wanted as files.
@@ -122,61 +122,57 @@ void write_figure_files(const cli::StageCall& call, const std::vector<report::Se
 }
 
 int write_page(const cli::StageCall& call) {
-    auto inputs = read_inputs(call);
-    report::PageHead head{"FlightWatt report", {}, {}};
-    if (const auto title = call.maybe<std::string>("title")) head.title = report::valid_utf8(*title);
-    head.facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}};
+    const auto inputs = read_inputs(call);
+    Page page{{"FlightWatt report", {}, {}}, {}};
+    if (const auto title = call.maybe<std::string>("title")) page.head.title = report::valid_utf8(*title);
+    auto& facts = page.head.facts;
+    facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}};
     report::PublishedFigures published;
     if (const auto folder = call.maybe<std::string>("reference-figures")) {
         published = report::read_published_figures(*folder);
-        head.facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
+        facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
     } else {
-        head.facts.emplace_back("beside", "no reference figures: none were given (--reference-figures)");
+        facts.emplace_back("beside", "no reference figures: none were given (--reference-figures)");
     }
-    std::vector<report::Section> sections;
-    if (inputs.out) add_batch(call, *inputs.out, published, head, sections);
+    if (inputs.out) add_batch(page, call, *inputs.out, published);
     if (!inputs.missions.empty()) {
         std::string names;
         for (const auto& mission : inputs.missions)
             names += (names.empty() ? "" : ", ") + setup_of(mission).file;
-        head.facts.emplace_back("missions", names);
-        const auto missions = report::simulate_for_report(std::move(inputs.missions));
-        for (auto& section : mission_sections(missions, published)) sections.push_back(std::move(section));
+        facts.emplace_back("missions", names);
+        auto sections = mission_sections(report::simulate_for_report(inputs.missions), published);
+        std::move(sections.begin(), sections.end(), std::back_inserter(page.sections));
     }
     const bool wants_page = call.output || (!call.json && !call.has("figures"));
     if (wants_page || call.has("figures")) {
         const auto web = report::read_web_files(report::web_folder());
-        write_figure_files(call, sections, web);
-        if (wants_page) cli::write_result(call, page_html(head, sections, web));
+        write_figure_files(call, page.sections, web);
+        if (wants_page) cli::write_result(call, page_html(page.head, page.sections, web));
     }
-    if (call.json) cli::print(cli::json_text(summary_json(head, sections)));
+    if (call.json) cli::print(cli::json_text(summary_json(page)));
     return cli::ok;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "report";
-    stage.arguments = "[OUT] [MISSION.toml...] -o report.html";
-    stage.description =
+    cli::StageDefinition stage{
+        "report", "[OUT] [MISSION.toml...] -o report.html",
         R"(Writes one HTML page, to be opened offline, of what flightwatt batch left in the folder OUT (flights,
 model, validation, battery) and of missions (software, schedules, quality of service, plan). Its figures are
 Vega-Lite specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node)
-and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)";
-    const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
     auto add = stage.options.add_options();
-    add("figures", text("DIR"), "write every figure to DIR");
-    add("published", text("MODEL.toml"), "show Table I beside this model's");
-    add("reference-figures", text("DIR"),
+    add("figures", cli::value("DIR"), "write every figure to DIR");
+    add("published", cli::value("MODEL.toml"), "show Table I beside this model's");
+    add("reference-figures", cli::value("DIR"),
         "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others");
-    add("title", text("TITLE"), "of the page");
-    add("max-validation-flights", text("N")->default_value("30"),
+    add("title", cli::value("TITLE"), "of the page");
+    add("max-validation-flights", cli::value("N")->default_value("30"),
         "validate by leave-one-out with no more than N flights: the work grows with their square");
-    add("capacity", po::value<double>()->value_name("AH"),
+    add("capacity", cli::value<double>("AH"),
         "the capacity of the flights' battery; without it, what flightwatt battery would say");
-    add("max-battery-flights", text("N")->default_value("12"),
+    add("max-battery-flights", cli::value("N")->default_value("12"),
         "identify the battery from no more than N flights: the work grows with their square");
     return cli::run_stage(argc, argv, stage, write_page);
 }

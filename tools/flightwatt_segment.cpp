@@ -2,9 +2,7 @@
 
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
-#include "cli/output/segment_explanation.h"
-#include "cli/output/segment_json.h"
-#include "cli/output/terminal_pictures.h"
+#include "cli/output/segment_output.h"
 #include "cli/stage.h"
 #include "flight/phases_file.h"
 
@@ -41,13 +39,11 @@ int segment_flight(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    cli::StageDefinition stage;
-    stage.name = "segment";
-    stage.arguments = "FLIGHT.data|SERIES.csv";
-    stage.description =
+    cli::StageDefinition stage{
+        "segment", "FLIGHT.data|SERIES.csv",
         R"(Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from
 lift-off until the height held is reached, cruise, landing from where that height is left until
-touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.)";
+touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.)"};
     stage.max_inputs = 1;
     stage.options.add_options()("explain",
                                 "show the reasons for each edge, and how good the power record is");

@@ -3,10 +3,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/output/json_text.h"
-#include "cli/output/mission_json.h"
-#include "cli/output/sampling_output.h"
+#include "cli/output/mission_output.h"
 #include "cli/stage.h"
-#include "mission/disturbance.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 
@@ -17,12 +15,6 @@
 namespace {
 
 using namespace flightwatt;
-
-std::vector<mission::Disturbance> disturbances(const cli::StageCall& call,
-                                               const mission::MissionSetup& mission) {
-    const auto file = call.maybe<std::string>("disturb");
-    return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
-}
 
 /// The mission with the schedule that was flown, wherever it came from.
 void write_schedule(const cli::StageCall& call, const std::string& text,
@@ -49,7 +41,7 @@ void sample(const cli::StageCall& call, const mission::PreparedMission& prepared
 int simulate_mission(const cli::StageCall& call) {
     const auto text = read_file(call.inputs.front());
     const auto mission = mission::parse_mission(text, call.inputs.front());
-    const auto disturbed_by = disturbances(call, setup_of(mission));
+    const auto disturbed_by = cli::read_disturb_option(call, setup_of(mission));
     const auto prepared = prepare(mission);
     mission::SimulationSteps steps;
     steps.output_s = call.get<double>("step");
@@ -71,28 +63,24 @@ int simulate_mission(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "simulate";
-    stage.arguments = "MISSION.toml";
-    stage.description =
+    cli::StageDefinition stage{
+        "simulate", "MISSION.toml",
         R"(Computes the power that a mission demands and the battery's state of charge over time, as CSV:
 time_s, phase, mechanical_w, compute_w, power_w, current_a, soc_percent, terminal_voltage_v. Powers are what
 the mission demands; current is the battery's, 0 once it is empty or below the mission's cut-off voltage.
 What ended the flight and what was left is told besides; --json: final_soc_percent, energy_wh (demanded),
 delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_reserve, utility.
 A mission with [policy] kind = "adaptive" is planned anew in flight. --samples draws flights and reports
-their final state of charge; the CSV stays that of the mission as it is stated.)";
+their final state of charge; the CSV stays that of the mission as it is stated.)"};
     stage.max_inputs = 1;
-    stage.options.add_options()("step", po::value<double>()->default_value(1.0, "1")->value_name("S"),
-                                "seconds between rows; jumps of power have rows besides")(
-        "disturb", po::value<std::string>()->value_name("FILE"),
-        "let the disturbances of FILE happen (missions/disturbances/)")(
-        "schedule-out", po::value<std::string>()->value_name("FILE"),
-        "write the mission with the schedule that was flown to FILE");
+    auto add = stage.options.add_options();
+    add("step", cli::value<double>("S")->default_value(1.0, "1"),
+        "seconds between rows; jumps of power have rows besides");
+    add("disturb", cli::value("FILE"), "let the disturbances of FILE happen (missions/disturbances/)");
+    add("schedule-out", cli::value("FILE"), "write the mission with the schedule that was flown to FILE");
     add_sampling_options(stage);
     stage.options.add_options()(
-        "samples-csv", po::value<std::string>()->value_name("FILE"),
+        "samples-csv", cli::value("FILE"),
         "with --samples: write the state of charge over time that 5, 50 and 95 % of the flights are below");
     return cli::run_stage(argc, argv, stage, simulate_mission);
 }

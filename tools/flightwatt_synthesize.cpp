@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mechanical/mechanical_model.h"
@@ -81,10 +82,8 @@ struct LogIdentity {
 
 /// Writes NAME.log, NAME.data and, if asked for, NAME.truth.csv; returns the log's size in bytes.
 std::size_t write_log(const cli::StageCall& call, const synthetic::SyntheticScenario& scenario,
-                      const LogIdentity& identity, std::uint64_t seed) {
-    synthetic::SyntheticSensors sensors;
-    sensors.current_noise_a = call.get<double>("current-noise");
-    sensors.sends_other_messages = !call.has("flight-messages-only");
+                      const synthetic::SyntheticSensors& sensors, const LogIdentity& identity,
+                      std::uint64_t seed) {
     const auto log = make_synthetic_log(scenario, sensors, identity.name, identity.made_by, seed);
     const auto stem = std::filesystem::path(*call.output) / identity.name;
     write_file_atomically(stem.string() + ".log", log.log);
@@ -95,16 +94,6 @@ std::size_t write_log(const cli::StageCall& call, const synthetic::SyntheticScen
                                     scenario.end_s - scenario.begin_s));
     }
     return log.data.size() + log.log.size();
-}
-
-constexpr int most_flights = 1000;
-constexpr double widest_spread = 100.0;  // bands: beyond, hardly a flight has power left
-constexpr double most_noise_a = 1000.0;
-
-/// Refuses numbers that are not in [low, high], nan among them.
-void require_between(const char* option, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    throw UsageError(fmt::format("--{} is {}, expected {} to {}", option, value, low, high));
 }
 
 /// Refuses models of which no log could be made: days long, or with power beyond any number.
@@ -129,39 +118,39 @@ void require_flyable(const mechanical::MechanicalModel& model, const std::string
     }
 }
 
-void check_options(const cli::StageCall& call) {
-    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
-    require_between("flights", call.get<int>("flights"), 1, most_flights);
-    require_between("spread", call.get<double>("spread"), 0.0, widest_spread);
-    require_between("current-noise", call.get<double>("current-noise"), 0.0, most_noise_a);
-    const auto seed = call.get<std::int64_t>("seed");
-    if (seed < 0) throw UsageError(fmt::format("--seed is {}, expected 0 or more", seed));
-    const auto name = call.get<std::string>("name");
-    if (name.empty() || name.find('/') != std::string::npos) {
-        throw UsageError(
-            fmt::format("--name is '{}', expected the beginning of a file name, without '/'", name));
-    }
+/// --name, where it can begin the name of a file.
+std::string read_name(const cli::StageCall& call) {
+    auto name = call.get<std::string>("name");
+    if (!name.empty() && name.find('/') == std::string::npos) return name;
+    throw UsageError(fmt::format("--name is '{}', expected the beginning of a file name, without '/'", name));
 }
 
-/// The cruise of another duration, its curve stretched.
-void set_cruise(mechanical::PhaseModel& cruise, double duration_s) {
-    require_between("cruise", duration_s, 60.0, 1e5);
-    cruise.fourier = flown_model(cruise, duration_s, mechanical::PhaseClock::stretched);
-    cruise.duration_s = duration_s;
+/// The model, with another duration of cruise where one is asked for: its curve stretched.
+mechanical::MechanicalModel read_model(const cli::StageCall& call) {
+    auto model = mechanical::read_mechanical_model(call.inputs.front());
+    if (call.has("cruise")) {
+        auto& cruise = model.phases[flight::Phase::cruise];
+        const double duration_s = cli::number_option(call, "cruise", 60.0, 1e5);
+        cruise.fourier = flown_model(cruise, duration_s, mechanical::PhaseClock::stretched);
+        cruise.duration_s = duration_s;
+    }
+    require_flyable(model, call.inputs.front());
+    return model;
 }
 
 int synthesize(const cli::StageCall& call) {
-    check_options(call);
-    const auto count = static_cast<std::size_t>(call.get<int>("flights"));
-    const auto seed = static_cast<std::uint64_t>(call.get<std::int64_t>("seed"));
-    const auto hazard_list = chosen_hazards(call.get<std::string>("hazard"));
-    auto model = mechanical::read_mechanical_model(call.inputs.front());
-    if (const auto cruise_s = call.maybe<double>("cruise"))
-        set_cruise(model.phases[flight::Phase::cruise], *cruise_s);
-    require_flyable(model, call.inputs.front());
-    make_directories(*call.output);
+    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
+    const auto count = cli::count_option(call, "flights", 1, 1000);
+    const auto seed = cli::count_option(call, "seed");
+    const auto name = read_name(call);
     synthetic::SpreadOptions spread;
-    spread.bands = call.get<double>("spread");
+    spread.bands = cli::number_option(call, "spread", 0.0, 100.0);  // beyond, hardly a flight has power left
+    synthetic::SyntheticSensors sensors;
+    sensors.current_noise_a = cli::number_option(call, "current-noise", 0.0, 1000.0);
+    sensors.sends_other_messages = !call.has("flight-messages-only");
+    const auto hazard_list = chosen_hazards(call.get<std::string>("hazard"));
+    const auto model = read_model(call);
+    make_directories(*call.output);
     const auto flights = draw_flights(model, count, seed, spread);
     nlohmann::ordered_json written = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < count; ++i) {
@@ -170,12 +159,12 @@ int synthesize(const cli::StageCall& call) {
         const auto log_seed = random();
         for (const auto& [hazard_name, hazard] : hazard_list) {
             LogIdentity identity;
-            identity.name = fmt::format("{}_{:02}{}{}", call.get<std::string>("name"), i + 1,
-                                        hazard_name.empty() ? "" : "_", hazard_name);
+            identity.name =
+                fmt::format("{}_{:02}{}{}", name, i + 1, hazard_name.empty() ? "" : "_", hazard_name);
             identity.made_by = fmt::format(
                 "Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
                 count, seed, hazard_name.empty() ? "" : ", hazard ", hazard_name);
-            const auto bytes = write_log(call, scenario_with(flight, hazard), identity, log_seed);
+            const auto bytes = write_log(call, scenario_with(flight, hazard), sensors, identity, log_seed);
             written.push_back({{"flight", identity.name}, {"bytes", bytes}});
         }
     }
@@ -186,31 +175,26 @@ int synthesize(const cli::StageCall& call) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "synthesize";
-    stage.arguments = "MODEL.toml -o FOLDER";
-    stage.description =
+    cli::StageDefinition stage{
+        "synthesize", "MODEL.toml -o FOLDER",
         R"(Writes synthetic Paparazzi logs (.log and .data) of flights whose power follows a mechanical model, with
 sensor noise, lost lines, durations that vary and a spread between flights. The files say that they are
-synthetic. The same seed gives the same files.)";
+synthetic. The same seed gives the same files.)"};
     stage.max_inputs = 1;
     stage.output_help = "the folder to write into";
     auto add = stage.options.add_options();
-    add("flights", po::value<int>()->value_name("N")->default_value(6), "how many");
-    add("seed", po::value<std::int64_t>()->value_name("S")->default_value(1), "seed of everything random");
-    add("name", po::value<std::string>()->value_name("NAME")->default_value("opterra_synthetic"),
-        "file names begin with it");
-    add("spread", po::value<double>()->value_name("X")->default_value(1.0, "1"),
+    add("flights", cli::value("N")->default_value("6"), "how many");
+    add("seed", cli::value("S")->default_value("1"), "seed of everything random");
+    add("name", cli::value("NAME")->default_value("opterra_synthetic"), "file names begin with it");
+    add("spread", cli::value<double>("X")->default_value(1.0, "1"),
         "flight-to-flight spread, as a multiple of the paper's bands");
     add("current-noise",
-        po::value<double>()->value_name("A")->default_value(synthetic::SyntheticSensors{}.current_noise_a,
-                                                            "0.001"),
+        cli::value<double>("A")->default_value(synthetic::SyntheticSensors{}.current_noise_a, "0.001"),
         "noise of the current sensor, as a standard deviation");
-    add("cruise", po::value<double>()->value_name("S"), "how long flights cruise, in seconds (the model's)");
+    add("cruise", cli::value<double>("S"), "how long flights cruise, in seconds (the model's)");
     add("flight-messages-only", "leave out the messages that no flight is read from: small logs");
     add("truth", "write the true phases beside each log, as NAME.truth.csv");
-    add("hazard", po::value<std::string>()->value_name("NAME")->default_value("none"),
+    add("hazard", cli::value("NAME")->default_value("none"),
         "something that real logs do and that must not fool the segmentation: estimator-starts-at-zero, "
         "dives-in-cruise, run-up, power-burst-after-landing, throttle-burst-before-touchdown, two-sorties, "
         "begins-in-the-air, ends-in-the-air, or all, a log each");

@@ -1,16 +1,16 @@
 // flightwatt validate: leaves each flight out, fits the others and predicts its energy.
 
 #include "base/error.h"
-#include "base/units.h"
+#include "cli/numeric_options.h"
 #include "cli/output/fit_options.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/json_text.h"
 #include "cli/output/validation_output.h"
 #include "cli/stage.h"
 #include "mechanical/covariates.h"
 #include "mechanical/measured_flight.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include <boost/algorithm/string/split.hpp>
@@ -72,73 +72,29 @@ std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
             throw UsageError(
                 fmt::format("--covariate {}: expected all, {}", name, mechanical::covariate_names()));
         }
-        if (std::find(covariates.begin(), covariates.end(), *covariate) == covariates.end()) {
+        if (std::ranges::find(covariates, *covariate) == covariates.end()) {
             covariates.push_back(*covariate);
         }
     }
     return covariates;
 }
 
-/// Which covariates beat the constant mean in cruise, and which cannot be judged.
-std::string verdicts_on(const std::vector<mechanical::Covariate>& covariates,
-                        const std::vector<mechanical::ValidatedFlight>& flights) {
-    std::string text;
-    const auto mean = score_of(flights, "constant_mean", flight::Phase::cruise);
-    for (const auto covariate : covariates) {
-        const auto model = fmt::format("by_{}", to_string(covariate));
-        const auto score = score_of(flights, model, flight::Phase::cruise);
-        if (!score || !mean) {
-            text += fmt::format("cruise: {} is not known of all flights\n", model);
-            continue;
-        }
-        text += fmt::format(
-            "cruise: {} {} constant_mean: {:.3f} Wh against {:.3f} Wh\n", model,
-            score->mean_absolute_error_wh < mean->mean_absolute_error_wh ? "beats" : "does not beat",
-            score->mean_absolute_error_wh, mean->mean_absolute_error_wh);
-    }
-    if (!covariates.empty() && flights.size() <= 3) {
-        text +=
-            "a line through 2 flights or fewer fits any covariate: what beats the mean here may be chance\n";
-    }
-    return text;
-}
-
-std::string report(const std::vector<mechanical::ValidatedFlight>& flights,
-                   const std::vector<mechanical::Covariate>& covariates, bool in_flight) {
-    auto text = to_text(cli::flights_table(flights)) + "\n" + to_text(cli::scores_table(flights)) + "\n" +
-                cli::verdict(flights, "fourier", "constant_mean");
-    if (in_flight) text += cli::verdict(flights, "in_flight", "fourier");
-    text += verdicts_on(covariates, flights);
-    constexpr std::size_t few = 20;
-    if (flights.size() < few) {
-        text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n",
-                            flights.size(), units::percent_of(1.0, static_cast<double>(flights.size())));
-    }
-    return text;
-}
-
 int validate_flights(const cli::StageCall& call) {
     const auto options = read_fit_options(call);
-    const auto until_s = call.maybe<double>("until");
-    if (until_s && !(*until_s > 0.0 && std::isfinite(*until_s))) {
-        throw UsageError(fmt::format("--until is {}, expected more than 0 s since lift-off", *until_s));
-    }
+    const auto until_s = cli::positive_option(call, "until", "s since lift-off");
     const auto covariates = read_covariates(call);
     const auto flights = read_flights(call, mechanical::samples_needed(options.phases.order));
     const auto validated = leave_one_out(flights, options, covariates);
-    cli::write_result(call, report(validated, covariates, until_s.has_value()));
-    if (call.json) cli::print(cli::scores_json(validated).dump(2) + "\n");
+    cli::write_result(call, cli::validation_text(validated, covariates, until_s.has_value()));
+    if (call.json) cli::print(cli::json_text(cli::scores_json(validated)));
     return cli::ok;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    namespace po = boost::program_options;
-    cli::StageDefinition stage;
-    stage.name = "validate";
-    stage.arguments = "FLIGHT.data|SERIES.csv...";
-    stage.description =
+    cli::StageDefinition stage{
+        "validate", "FLIGHT.data|SERIES.csv...",
         R"(Leaves one flight out, fits the others, and predicts the energy of each of its phases and of the whole
 from their durations alone; then compares with the integral of the power that was measured. Models:
   fourier         the Fourier series of this project
@@ -152,11 +108,11 @@ the cruise and the landing are predicted, by the models above as before the flig
   in_flight_constant  the same about the model's mean power
   in_flight_airspeed  the same about the power that the airspeed so far lets expect
 Errors in percent are parts of the phase's measured energy, the flown part included; none for landing,
-whose power is near zero. Bias is predicted less measured.)";
+whose power is near zero. Bias is predicted less measured.)"};
     cli::add_fit_options(stage.options);
-    stage.options.add_options()("until", po::value<double>()->value_name("S"),
-                                "validate the prediction in flight, S seconds after lift-off")(
-        "covariate", po::value<std::string>()->value_name("NAME[,NAME]"),
+    auto add = stage.options.add_options();
+    add("until", cli::value<double>("S"), "validate the prediction in flight, S seconds after lift-off");
+    add("covariate", cli::value("NAME[,NAME]"),
         "also predict the cruise by what is known before the flight (height_m, initial_voltage_v, "
         "time_to_cruise_s) or in the first 60 s of the cruise (wind_m_per_s, airspeed_m_per_s, "
         "ground_speed_m_per_s, airspeed_cubed_m3_per_s3), or all: one further model by_NAME each");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -89,7 +90,7 @@ CsvTable read_csv(const std::filesystem::path& path, CsvHeader header) {
 }
 
 std::size_t column_index(const CsvTable& table, std::string_view name) {
-    const auto found = std::find(table.columns.begin(), table.columns.end(), name);
+    const auto found = std::ranges::find(table.columns, name);
     if (found == table.columns.end()) {
         throw InputError({table.file, 1}, fmt::format("has no column '{}'", name),
                          fmt::format("its columns are {}", fmt::join(table.columns, ", ")));
@@ -107,12 +108,7 @@ double cell_number(const CsvTable& table, const CsvTable::Row& row, std::size_t 
 
 std::string csv_cell(std::string_view text) {
     if (text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
-    std::string quoted = "\"";
-    for (const char c : text) {
-        if (c == '"') quoted += '"';
-        quoted += c;
-    }
-    return quoted + '"';
+    return fmt::format("\"{}\"", boost::replace_all_copy(std::string(text), "\"", "\"\""));
 }
 
 CsvWriter::CsvWriter(const std::vector<std::string_view>& columns, int digits)

@@ -5,18 +5,23 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <string_view>
+
+#include <boost/algorithm/string/replace.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt {
 namespace {
 
 std::size_t width_of(std::string_view text) {
-    return static_cast<std::size_t>(std::count_if(
-        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 bool is_numeric_column(const TextTable& table, std::size_t column) {
-    return std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+    return std::ranges::all_of(table.rows, [&](const auto& row) {
         std::string_view cell = row[column];
         if (!cell.empty() && (cell.back() == '%' || cell.back() == '*')) cell.remove_suffix(1);
         return cell.empty() || cell == "-" || parse_number(cell).has_value();
@@ -27,22 +32,13 @@ bool is_numeric_column(const TextTable& table, std::size_t column) {
 TextTable without_controls(TextTable table) {
     const auto clean = [](std::vector<std::string>& cells) {
         for (auto& cell : cells) {
-            std::replace_if(
-                cell.begin(), cell.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+            std::ranges::replace_if(
+                cell, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
         }
     };
     clean(table.header);
     for (auto& row : table.rows) clean(row);
     return table;
-}
-
-std::string escaped_bars(const std::string& cell) {
-    std::string escaped;
-    for (const char c : cell) {
-        if (c == '|') escaped += '\\';
-        escaped += c;
-    }
-    return escaped;
 }
 
 std::string padded(const std::string& cell, std::size_t width, bool right) {
@@ -51,6 +47,10 @@ std::string padded(const std::string& cell, std::size_t width, bool right) {
 }
 
 }  // namespace
+
+std::string fixed(const std::optional<double>& number, int decimals) {
+    return number ? fmt::format("{:.{}f}", *number, decimals) : "-";
+}
 
 std::string to_text(const TextTable& raw) {
     const auto table = without_controls(raw);
@@ -82,7 +82,7 @@ std::string to_markdown(const TextTable& raw) {
     std::string text;
     const auto add_row = [&](const std::vector<std::string>& row) {
         text += '|';
-        for (const auto& cell : row) text += ' ' + escaped_bars(cell) + " |";
+        for (const auto& cell : row) text += ' ' + boost::replace_all_copy(cell, "|", "\\|") + " |";
         text += '\n';
     };
     add_row(table.header);
@@ -96,16 +96,13 @@ std::string to_markdown(const TextTable& raw) {
 }
 
 std::string to_csv(const TextTable& table) {
-    std::string text;
-    const auto add_row = [&](const std::vector<std::string>& row) {
-        for (std::size_t column = 0; column < row.size(); ++column) {
-            if (column > 0) text += ',';
-            text += csv_cell(row[column]);
-        }
-        text += '\n';
+    const auto line_of = [](const std::vector<std::string>& row) {
+        std::vector<std::string> cells;
+        std::ranges::transform(row, std::back_inserter(cells), csv_cell);
+        return fmt::format("{}\n", fmt::join(cells, ","));
     };
-    add_row(table.header);
-    for (const auto& row : table.rows) add_row(row);
+    auto text = line_of(table.header);
+    for (const auto& row : table.rows) text += line_of(row);
     return text;
 }
 

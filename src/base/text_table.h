@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,9 @@ struct TextTable {
     std::vector<std::string> header;
     std::vector<std::vector<std::string>> rows;  ///< each as long as the header
 };
+
+/// A number with so many decimals, for a cell; '-' for what is not known.
+std::string fixed(const std::optional<double>& number, int decimals);
 
 /// Columns padded to their widest cell (counted in code points) and two blanks apart; a column whose cells
 /// are all numbers, or '-', stands to the right.

@@ -40,7 +40,7 @@ std::vector<HelpPage> help_pages(const std::filesystem::path& folder) {
         const auto& file = entry.path();
         if (file.extension() == ".md") pages.push_back({file.stem(), first_heading(read_file(file)), file});
     }
-    std::sort(pages.begin(), pages.end(), [](const auto& a, const auto& b) { return a.topic < b.topic; });
+    std::ranges::sort(pages, [](const auto& a, const auto& b) { return a.topic < b.topic; });
     return pages;
 }
 

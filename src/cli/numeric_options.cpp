@@ -21,6 +21,12 @@ std::uint64_t count_option(const StageCall& call, const std::string& option, std
     throw UsageError(fmt::format("--{} {}: expected a whole number{}", option, one_line(text), range));
 }
 
+double number_option(const StageCall& call, const std::string& option, double least, double most) {
+    const auto value = call.get<double>(option);
+    if (value >= least && value <= most) return value;
+    throw UsageError(fmt::format("--{} {:g}: expected {:g} to {:g}", option, value, least, most));
+}
+
 std::optional<double> positive_option(const StageCall& call, const std::string& option,
                                       const std::string& unit, double most) {
     const auto value = call.maybe<double>(option);

@@ -15,6 +15,9 @@ namespace flightwatt::cli {
 std::uint64_t count_option(const StageCall& call, const std::string& option, std::uint64_t least = 0,
                            std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
+/// A number from `least` to `most`.
+double number_option(const StageCall& call, const std::string& option, double least, double most);
+
 /// A finite number above 0 and at most `most`, or std::nullopt where the option was not given. `unit` is that
 /// of the number, for the message.
 std::optional<double> positive_option(const StageCall& call, const std::string& option,

@@ -1,7 +1,10 @@
 #include "cli/stage.h"
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 
+#include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -17,9 +20,12 @@ namespace po = boost::program_options;
 
 constexpr const char* inputs_option = "inputs";
 
-void print_error(const std::string& program, const std::string& where, const std::string& message) {
+/// Says what went wrong, and where; returns the exit code that stands for it.
+ExitCode failed(ExitCode code, const std::string& program, const std::string& message,
+                const std::string& where = "") {
     const auto place = where.empty() ? "" : where + ": ";
     fmt::print(stderr, "{}: {}error: {}\n", program, one_line(place), one_line(message));
+    return code;
 }
 
 StageCall parse(int argc, char** argv, const StageDefinition& definition, po::options_description& visible) {
@@ -94,28 +100,51 @@ int run_guarded(const std::string& program, const std::function<int()>& body) {
         return code;
     } catch (const InputError& error) {
         const auto hint = error.hint().empty() ? "" : "; " + error.hint();
-        print_error(program, to_string(error.where()), error.what() + hint);
-        return input_rejected;
+        return failed(input_rejected, program, error.what() + hint, to_string(error.where()));
     } catch (const NoAnswerError& error) {
-        print_error(program, "", error.what());
-        return no_answer;
+        return failed(no_answer, program, error.what());
     } catch (const UsageError& error) {
-        print_error(program, "", error.what());
-        return usage_error;
+        return failed(usage_error, program, error.what());
     } catch (const po::error& error) {
-        print_error(program, "", fmt::format("{}; see --help", error.what()));
-        return usage_error;
+        return failed(usage_error, program, fmt::format("{}; see --help", error.what()));
     } catch (const OutputError& error) {
-        print_error(program, "", error.what());
-        return internal_error;
+        return failed(internal_error, program, error.what());
     } catch (const std::exception& error) {
-        print_error(program, "", fmt::format("internal error: {}", error.what()));
-        return internal_error;
+        return failed(internal_error, program, fmt::format("internal error: {}", error.what()));
     }
 }
 
 int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
     return run_guarded("flightwatt-" + definition.name, [&] { return run(argc, argv, definition, body); });
+}
+
+void print(std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) {
+        throw OutputError(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
+    }
+}
+
+void write_result(const StageCall& call, std::string_view content) {
+    if (call.output) {
+        write_file_atomically(*call.output, content);
+    } else if (!call.json) {
+        print(content);
+    }
+}
+
+std::string one_line(std::string_view text) {
+    std::string line(text);
+    std::ranges::replace_if(
+        line, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+    return line;
+}
+
+void warn(const StageCall& call, std::string_view message) {
+    fmt::print(stderr, "{}: warning: {}\n", call.program, one_line(message));
+}
+
+void note(const StageCall& call, std::string_view message) {
+    fmt::print(stderr, "{}: {}\n", call.program, one_line(message));
 }
 
 }  // namespace flightwatt::cli

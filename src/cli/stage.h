@@ -12,6 +12,12 @@ namespace flightwatt::cli {
 
 enum ExitCode : int { ok = 0, internal_error = 1, usage_error = 2, input_rejected = 3, no_answer = 4 };
 
+/// An option's value, as --help names it.
+template <typename T = std::string>
+auto* value(const char* name) {
+    return boost::program_options::value<T>()->value_name(name);
+}
+
 /// What a stage program is called and accepts beyond --help, --version, --json and --output.
 struct StageDefinition {
     std::string name;         ///< "fit"; the program is flightwatt-fit

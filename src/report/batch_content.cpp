@@ -2,12 +2,16 @@
 
 #include "batch/batch_files.h"
 #include "batch/flight_record.h"
-#include "cli/output/table_one_output.h"
 
 #include <algorithm>
 #include <iterator>
 
 namespace flightwatt::report {
+
+std::string_view fitted_part(const ReportFlight& flight) {
+    if (flight.exclusions.empty()) return "all";
+    return flight.unusable_power.empty() ? "in part" : "no";
+}
 
 BatchContent read_batch_content(const std::filesystem::path& out) {
     BatchContent content;
@@ -34,17 +38,9 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         content.flights.push_back(std::move(flight));
     }
     // Readers look at the first ones first.
-    std::stable_partition(content.flights.begin(), content.flights.end(),
-                          [](const ReportFlight& flight) { return flight.unusable_power.empty(); });
+    std::ranges::stable_partition(content.flights,
+                                  [](const ReportFlight& flight) { return flight.unusable_power.empty(); });
     return content;
-}
-
-ReportModel model_of(const batch::BatchFit& fit,
-                     const std::optional<mechanical::MechanicalModel>& published) {
-    ReportModel model{fit.model, "Fitted by flightwatt batch to the flights above."};
-    model.bands = fit.bands;
-    model.table_one = cli::table_of(fit.model, published, mechanical::TableIntervals::present);
-    return model;
 }
 
 }  // namespace flightwatt::report

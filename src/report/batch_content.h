@@ -1,15 +1,33 @@
 #pragma once
 
 #include "batch/batch_fit.h"
+#include "batch/flight_record.h"
+#include "flight/segmentation.h"
 #include "mechanical/measured_flight.h"
-#include "report/model_section.h"
-#include "report/report_flight.h"
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::report {
+
+/// One log as the report shows it.
+struct ReportFlight {
+    std::string name;
+    std::string log;              ///< where it was read from
+    std::string rejected;         ///< why it could not be used; empty if it could
+    flight::FlightSeries series;  ///< of a log that was not rejected
+    flight::FlightPhases phases;  ///< with the evidence at their edges
+    std::vector<std::string> warnings;
+    std::vector<std::string> exclusions;  ///< what the model was not fitted to, and why
+    std::vector<batch::RecordedVerdict> verdicts = {};
+    std::string unusable_power = {};  ///< why its power record is used for nothing; empty if it is
+};
+
+/// How much of it the model was fitted to: "all", "in part" or "no".
+std::string_view fitted_part(const ReportFlight& flight);
 
 /// What flightwatt report takes from a batch's folder.
 struct BatchContent {
@@ -21,8 +39,5 @@ struct BatchContent {
 /// The folder's flights, those with a usable power record first. Throws InputError as read_stored_flights and
 /// read_batch_fit.
 BatchContent read_batch_content(const std::filesystem::path& out);
-
-/// The batch's model with its bands and Table I, beside a published one where there is one.
-ReportModel model_of(const batch::BatchFit& fit, const std::optional<mechanical::MechanicalModel>& published);
 
 }  // namespace flightwatt::report

@@ -3,8 +3,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/battery_output.h"
-#include "report/figures/battery_figures.h"
-#include "report/html.h"
+#include "report/figures/flight_figures.h"
 
 #include <algorithm>
 #include <map>
@@ -54,11 +53,10 @@ std::vector<battery::DischargeRecord> spread_evenly(std::vector<battery::Dischar
 TextTable parameters_table(const battery::BatteryIdentification& identified) {
     auto table = cli::parameters_table(identified);
     const auto& capacity = identified.capacity;
-    const auto end = [&](double battery::Interval::*side) {
-        return capacity.interval_ah ? fmt::format("{:.4g}", (*capacity.interval_ah).*side) : std::string("-");
-    };
+    const auto& range = capacity.interval_ah;
     table.rows.push_back({"capacity_ah", fmt::format("{:.4g}", capacity.value_ah),
-                          end(&battery::Interval::low), end(&battery::Interval::high)});
+                          range ? fmt::format("{:.4g}", range->low) : "-",
+                          range ? fmt::format("{:.4g}", range->high) : "-"});
     table.header.emplace_back("known from");
     for (auto& row : table.rows) row.emplace_back("voltage under load");
     table.rows.back().back() = to_string(capacity.origin);
@@ -121,7 +119,7 @@ void add_identified(Section& section, const ReportBattery& battery) {
     section.html += table_html(cli::flights_table(*battery.identified, battery.leave_one_out),
                                {"Flights in the fit of the battery", true, {}});
     section.html += paragraph(
-        "Left out: RMS error of this flight's voltage by the battery of the other flights; beyond the others: "
+        "Leave-one-out: RMS error of this flight's voltage by the battery of the other flights; beyond the others: "
         "part of its samples with more charge drawn than in any other flight.",
         "soft");
     add_figure(section, open_circuit_figure(identified, "battery-open-circuit"));
@@ -150,7 +148,7 @@ ReportBattery identify_for_report(std::span<const ReportFlight> flights,
 }
 
 Section battery_section(const ReportBattery& battery) {
-    Section section{"battery", "Battery", "", {}};
+    Section section{"battery", "Battery"};
     if (battery.identified) {
         add_identified(section, battery);
         if (battery.leave_one_out.empty()) {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "battery/identification.h"
-#include "report/report_flight.h"
-#include "report/sections/section.h"
+#include "report/batch_content.h"
+#include "report/html.h"
 
 #include <cstddef>
 #include <span>

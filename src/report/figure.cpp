@@ -2,8 +2,11 @@
 
 #include "base/csv.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,7 +17,20 @@ std::string dumped(const VegaJson& json) {
     return json.dump(-1, ' ', false, VegaJson::error_handler_t::replace);
 }
 
+VegaJson channel_of(std::string_view field, std::string_view type, std::string_view title,
+                    const VegaJson& more) {
+    VegaJson channel{{"field", field}, {"type", type}, {"title", title}};
+    channel.update(more);
+    return channel;
+}
+
 }  // namespace
+
+Figure new_figure(std::string id, std::string caption, std::string description) {
+    VegaJson spec{{"$schema", "https://vega.github.io/schema/vega-lite/v5.json"},
+                  {"description", valid_utf8(description)}};
+    return {std::move(id), std::move(caption), std::move(description), std::move(spec)};
+}
 
 FigureData::FigureData(std::initializer_list<std::string> numbers, std::initializer_list<std::string> texts)
     : numbers_(numbers) {
@@ -45,31 +61,81 @@ VegaJson FigureData::json() const { return {{"values", csv_}, {"format", format(
 
 VegaJson FigureData::reference(std::string_view name) const { return {{"name", name}, {"format", format()}}; }
 
-VegaJson new_spec(const Figure& figure) {
-    return {{"$schema", "https://vega.github.io/schema/vega-lite/v5.json"},
-            {"description", valid_utf8(figure.description)}};
+std::vector<std::size_t> visible_rows(const std::vector<double>& time_s, const std::vector<double>& values,
+                                      std::size_t columns) {
+    constexpr std::size_t rows_per_column = 4;
+    std::vector<std::size_t> rows(time_s.size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    if (rows.size() <= rows_per_column * columns) return rows;
+    const double duration_s = time_s.back() - time_s.front();
+    const auto column_of = [&](std::size_t i) {
+        const double part = (time_s[i] - time_s.front()) / duration_s;
+        return std::min(columns - 1, static_cast<std::size_t>(part * static_cast<double>(columns)));
+    };
+    std::vector<std::size_t> kept;
+    for (auto first = rows.begin(); first != rows.end();) {
+        const auto end =
+            std::find_if(first, rows.end(), [&](std::size_t i) { return column_of(i) != column_of(*first); });
+        const auto [least, greatest] = std::minmax_element(
+            first, end, [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+        std::vector<std::size_t> chosen{*first, *least, *greatest, *std::prev(end)};
+        std::ranges::sort(chosen);
+        std::ranges::unique_copy(chosen, std::back_inserter(kept));
+        first = end;
+    }
+    return kept;
+}
+
+VegaJson vega(std::string_view text) { return VegaJson::parse(text); }
+
+VegaJson layer(const VegaJson& data, std::string_view mark, const VegaJson& encoding) {
+    return {{"data", data}, {"mark", vega(mark)}, {"encoding", encoding}};
+}
+
+VegaJson layer(std::string_view mark, const VegaJson& encoding) {
+    return {{"mark", vega(mark)}, {"encoding", encoding}};
 }
 
 VegaJson quantity(std::string_view field, std::string_view title, const VegaJson& more) {
-    VegaJson channel{{"field", field}, {"type", "quantitative"}, {"title", title}};
-    channel.update(more);
-    return channel;
+    return channel_of(field, "quantitative", title, more);
 }
 
 VegaJson category(std::string_view field, std::string_view title, const VegaJson& more) {
-    VegaJson channel{{"field", field}, {"type", "nominal"}, {"title", title}};
-    channel.update(more);
-    return channel;
+    return channel_of(field, "nominal", title, more);
 }
 
-VegaJson zoom_parameter(std::string_view channel) {
+VegaJson shown(std::string_view field, std::string_view title, std::string_view format) {
+    return quantity(field, title, {{"format", format}});
+}
+
+void add_measured_and_model(VegaJson& encoding, double measured_px, double model_px) {
+    const auto legend = vega(R"({"symbolType": "stroke"})");
+    auto scale = vega(R"({"domain": ["measured", "model"], "range": "measured_and_model"})");
+    encoding["color"] = category("curve", "", {{"scale", scale}, {"legend", legend}});
+    scale["range"] = {measured_px, model_px};
+    encoding["strokeWidth"] = channel_of("curve", "ordinal", "", {{"scale", scale}, {"legend", legend}});
+}
+
+VegaJson power_ramp(std::string_view field, std::string_view title) {
+    return quantity(field, title, vega(R"({"scale": {"range": "ramp"},
+        "legend": {"orient": "bottom", "gradientLength": 160}})"));
+}
+
+void set_panels(Figure& figure, int columns, int row_gap_px, const VegaJson& panels) {
+    figure.spec["columns"] = columns;
+    figure.spec["bounds"] = "flush";
+    figure.spec["spacing"] = {{"column", 62}, {"row", row_gap_px}};
+    figure.spec["concat"] = panels;
+}
+
+VegaJson add_zoom(Figure& figure, const VegaJson& views) {
+    figure.time_signal = "zoom_time_s";
+    figure.time_scale = "x";
     // The wheel alone scrolls the page; a pinch on a touch pad is a wheel with Ctrl.
-    return {{"name", "zoom"},
-            {"bind", "scales"},
-            {"select",
-             {{"type", "interval"},
-              {"encodings", {channel}},
-              {"zoom", "wheel![event.ctrlKey || event.metaKey]"}}}};
+    auto zoom = vega(R"({"name": "zoom", "bind": "scales", "select":
+        {"type": "interval", "encodings": ["x"], "zoom": "wheel![event.ctrlKey || event.metaKey]"}})");
+    zoom["views"] = views;
+    return zoom;
 }
 
 VegaJson legend_parameter(std::string_view field, const VegaJson& series, std::string_view view) {
@@ -82,24 +148,20 @@ VegaJson legend_parameter(std::string_view field, const VegaJson& series, std::s
             {"views", {view}}};
 }
 
-VegaJson shown_by_legend() { return {{"filter", {{"param", "shown"}}}}; }
+VegaJson shown_by_legend() { return vega(R"({"filter": {"param": "shown"}})"); }
+
+VegaJson phase_names(const VegaJson& data, std::string_view time_title) {
+    return layer(
+        data, R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0, "clip": false})",
+        {{"x", quantity("middle_s", time_title)}, {"text", category("word", "phase")}});
+}
 
 std::string valid_utf8(std::string_view text) {
     return VegaJson::parse(dumped(VegaJson(std::string(text)))).get<std::string>();
 }
 
 std::string script_json(const VegaJson& json) {
-    const auto text = dumped(json);
-    std::string safe;
-    safe.reserve(text.size());
-    for (const char c : text) {
-        if (c == '<') {
-            safe += "\\u003c";  // no </script> and no <!--
-        } else {
-            safe += c;
-        }
-    }
-    return safe;
+    return boost::replace_all_copy(dumped(json), "<", "\\u003c");  // no </script> and no <!--
 }
 
 }  // namespace flightwatt::report

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "flight/flight_phases.h"
+
+#include <cstddef>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -7,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+/// The vocabulary of all figures: their data, and the parts that their Vega-Lite specifications share.
 namespace flightwatt::report {
 
 using VegaJson = nlohmann::ordered_json;
@@ -17,10 +21,13 @@ struct Figure {               // NOLINT(bugprone-exception-escape): of nlohmann'
     std::string id;           ///< of letters, digits and '-': a file's name
     std::string caption;      ///< under the figure, for readers
     std::string description;  ///< instead of the figure, for those who do not see it: what its data say
-    std::string time_signal;  ///< of the zoomed time axis, for the keyboard; empty without one
-    std::string time_scale;
     VegaJson spec;
+    std::string time_signal = {};  ///< of the zoomed time axis, for the keyboard; empty without one
+    std::string time_scale = {};
 };
+
+/// The figure with the start of its specification: schema and description.
+Figure new_figure(std::string id, std::string caption, std::string description);
 
 /// A table of a figure as Vega-Lite's inline CSV, a third of the size of JSON's rows. Columns of numbers come
 /// first. What is not finite becomes an empty cell (a gap in a line). Six digits are more than a screen
@@ -43,22 +50,52 @@ class FigureData {
     VegaJson format() const;
 };
 
-/// The start of a specification: schema and description.
-VegaJson new_spec(const Figure& figure);
+/// The rows of a line that a screen of so many pixel columns can tell from all rows: of each column the
+/// first, the last, the least and the greatest value (M4: Jugel et al., VLDB 2014). Indices, rising. All of
+/// them where there are no more than four a column.
+std::vector<std::size_t> visible_rows(const std::vector<double>& time_s, const std::vector<double>& values,
+                                      std::size_t columns);
+
+/// JSON as the documents of Vega-Lite write it.
+VegaJson vega(std::string_view text);
+
+/// A layer of a figure; `mark` is JSON text. Without data, it draws those of the layers that it is one of.
+VegaJson layer(const VegaJson& data, std::string_view mark, const VegaJson& encoding);
+VegaJson layer(std::string_view mark, const VegaJson& encoding);
 
 /// A channel of numbers: {"field", "type", "title"} and whatever `more` adds.
 VegaJson quantity(std::string_view field, std::string_view title, const VegaJson& more = VegaJson::object());
 /// A channel of names.
 VegaJson category(std::string_view field, std::string_view title, const VegaJson& more = VegaJson::object());
+/// A number in a tooltip, in the format of d3: ".2f".
+VegaJson shown(std::string_view field, std::string_view title, std::string_view format);
 
-/// The parameter that zooms and pans a panel's axis `channel` ("x") by dragging and Ctrl + wheel.
-VegaJson zoom_parameter(std::string_view channel);
+/// The channels "color" and "strokeWidth" [px] of the lines "measured" and "model" in the column "curve".
+void add_measured_and_model(VegaJson& encoding, double measured_px, double model_px);
+
+/// The colour of bars by power, with its legend below.
+VegaJson power_ramp(std::string_view field, std::string_view title);
+
+/// Panels beside and below each other, on one line whatever their labels.
+void set_panels(Figure& figure, int columns, int row_gap_px, const VegaJson& panels);
+
+/// The parameter that zooms and pans the time axis "x" of `views` by dragging and Ctrl + wheel, and the figure's own
+/// notes of it for the keyboard.
+VegaJson add_zoom(Figure& figure, const VegaJson& views);
 
 /// The parameter by which a click on the legend hides a series and shows it again: `series` are all values of
 /// `field`, and `view` is the panel that draws them. shown_by_legend() is the channel "opacity" to go with
 /// it.
 VegaJson legend_parameter(std::string_view field, const VegaJson& series, std::string_view view);
 VegaJson shown_by_legend();
+
+/// "take-off", "cruise", "landing": as people write them.
+constexpr std::string_view phase_word(flight::Phase phase) {
+    return phase == flight::Phase::takeoff ? std::string_view("take-off") : to_string(phase);
+}
+
+/// The layer of phases' names (column "word") above a panel, at "middle_s".
+VegaJson phase_names(const VegaJson& data, std::string_view time_title);
 
 /// Replaces what is not UTF-8 (names of files) by U+FFFD.
 std::string valid_utf8(std::string_view text);

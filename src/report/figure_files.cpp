@@ -15,10 +15,9 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr int not_there = 127;
-
-/// Runs a program of the PATH with its output on our standard error; its exit code, or `not_there`.
-int run(const std::vector<std::string>& command) {
+/// Runs a program of the PATH with its output on our standard error; false if it is not there. Throws OutputError where
+/// it fails.
+bool ran(const std::vector<std::string>& command) {
     std::vector<char*> arguments;
     arguments.reserve(command.size() + 1);
     for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
@@ -30,7 +29,7 @@ int run(const std::vector<std::string>& command) {
     const int failure =
         ::posix_spawnp(&process, arguments.front(), &actions, nullptr, arguments.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
-    if (failure == ENOENT) return not_there;
+    if (failure == ENOENT) return false;
     if (failure != 0) {
         throw OutputError(fmt::format("cannot run {}: {}", command.front(), std::strerror(failure)));
     }
@@ -40,12 +39,8 @@ int run(const std::vector<std::string>& command) {
             throw OutputError(fmt::format("lost sight of {}: {}", command.front(), std::strerror(errno)));
         }
     }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-/// True if it ran, false if the program is not there.
-bool ran(const std::vector<std::string>& command) {
-    const int code = run(command);
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    constexpr int not_there = 127;  // of a shell's
     if (code == not_there) return false;
     if (code != 0) throw OutputError(fmt::format("{} failed with exit code {}", command.front(), code));
     return true;

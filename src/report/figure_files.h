@@ -1,7 +1,6 @@
 #pragma once
 
-#include "report/sections/section.h"
-#include "report/web_files.h"
+#include "report/page.h"
 
 #include <filesystem>
 #include <vector>

@@ -2,14 +2,9 @@
 
 #include "base/units.h"
 #include "flight/phase_statistics.h"
-#include "report/figures/flight_figure.h"
-#include "report/figures/track_figure.h"
-#include "report/html.h"
-#include "report/sections/flight_edges.h"
-#include "report/sections/phase_words.h"
+#include "report/figures/flight_figures.h"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 
@@ -18,8 +13,8 @@ namespace {
 
 /// What the phases of a sortie add up to.
 struct SortieSums {
-    flight::PerPhase<const flight::PhaseSpan*> spans{};
-    flight::PerPhase<double> mean_w;
+    flight::PerPhase<std::optional<double>> duration_s;
+    flight::PerPhase<std::optional<double>> mean_w;
     double energy_wh = 0.0;
     std::optional<double> counter_wh = 0.0;
     std::size_t gaps = 0;
@@ -29,7 +24,7 @@ SortieSums sums_of(const flight::FlightSeries& series, const flight::Sortie& sor
     SortieSums sums;
     for (const auto& span : sortie.phases) {
         const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
-        sums.spans[span.phase] = &span;
+        sums.duration_s[span.phase] = span.duration_s();
         sums.mean_w[span.phase] = statistics.mean_power_w;
         sums.energy_wh += statistics.energy_wh;
         sums.gaps += statistics.gaps;
@@ -50,19 +45,11 @@ std::string closure_percent(const SortieSums& sums) {
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
     const auto sums = sums_of(flight.series, flight.phases.sorties[sortie]);
     std::vector<std::string> cells{flight.name, fmt::format("{}", sortie + 1)};
-    for (const auto phase : flight::all_phases) {
-        const auto* span = sums.spans[phase];
-        cells.push_back(span == nullptr ? "-" : fmt::format("{:.0f}", span->duration_s()));
-    }
-    for (const auto phase : flight::all_phases) {
-        cells.push_back(sums.spans[phase] == nullptr ? "-" : fmt::format("{:.1f}", sums.mean_w[phase]));
-    }
-    cells.push_back(fmt::format("{:.3f}", sums.energy_wh));
-    cells.push_back(sums.counter_wh ? fmt::format("{:.3f}", *sums.counter_wh) : "-");
-    cells.push_back(closure_percent(sums));
-    cells.push_back(fmt::format("{}", sums.gaps));
-    cells.push_back(fmt::format("{}", flight.warnings.size()));
-    cells.emplace_back(fitted_part(flight));
+    for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.duration_s[phase], 0));
+    for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.mean_w[phase], 1));
+    cells.insert(cells.end(), {fixed(sums.energy_wh, 3), fixed(sums.counter_wh, 3), closure_percent(sums),
+                               fmt::format("{}", sums.gaps), fmt::format("{}", flight.warnings.size()),
+                               std::string(fitted_part(flight))});
     return cells;
 }
 
@@ -89,8 +76,8 @@ std::string flights_table_html(std::span<const ReportFlight> flights) {
 std::string excluded_html(std::span<const ReportFlight> flights) {
     TextTable table{{"flights", "excluded", "reason"}, {}};
     const auto add = [&](const std::string& flight, const std::string& what, const std::string& reason) {
-        const auto same = std::find_if(table.rows.begin(), table.rows.end(),
-                                       [&](const auto& row) { return row[1] == what && row[2] == reason; });
+        const auto same = std::ranges::find_if(
+            table.rows, [&](const auto& row) { return row[1] == what && row[2] == reason; });
         if (same == table.rows.end()) {
             table.rows.push_back({flight, what, reason});
         } else {
@@ -107,6 +94,15 @@ std::string excluded_html(std::span<const ReportFlight> flights) {
     }
     if (table.rows.empty()) return paragraph("Nothing was excluded.");
     return "<h3>Excluded, and why</h3>\n" + table_html(table, {"What was excluded, and why", false, {}});
+}
+
+/// The edges of a flight's phases with what was seen there and what the autopilot says of them.
+std::string edges_html(const ReportFlight& flight) {
+    TextTable table{{"edge", "time [s]", "evidence", "the autopilot"}, {}};
+    for (const auto& edge : edges_of(flight)) {
+        table.rows.push_back({edge.name, fixed(edge.time_s, 1), edge.evidence, edge.verdict});
+    }
+    return table_html(table, {"Where the phases end, and what was seen there", false, {}});
 }
 
 double seconds_in_air(const ReportFlight& flight) {
@@ -128,8 +124,7 @@ void add_flight(Section& section, const ReportFlight& flight,
         section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
     }
     add_figure(section, flight_figure(flight, model, id + "-power"));
-    section.html +=
-        table_html(edge_table(flight), {"Where the phases end, and what was seen there", false, {}});
+    section.html += edges_html(flight);
     if (auto track = track_figure(flight, id + "-track")) add_figure(section, std::move(*track));
     section.html += "</details>\n";
 }
@@ -138,9 +133,9 @@ void add_flight(Section& section, const ReportFlight& flight,
 
 Section flights_section(std::span<const ReportFlight> flights,
                         const std::optional<mechanical::MechanicalModel>& model) {
-    Section section{"flights", "Flights", "", {}};
-    const auto rejected = std::count_if(flights.begin(), flights.end(),
-                                        [](const ReportFlight& flight) { return !flight.rejected.empty(); });
+    Section section{"flights", "Flights"};
+    const auto rejected =
+        std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
     section.html +=
         paragraph(fmt::format("{} logs, {} of them rejected. Durations, mean power and energy are those of "
                               "the power samples between lift-off and touchdown; counter is the autopilot's "

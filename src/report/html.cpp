@@ -2,7 +2,7 @@
 
 #include "base/number.h"
 
-#include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -25,31 +25,19 @@ std::vector<bool> text_columns(const TextTable& table) {
     return is_text;
 }
 
-std::string class_of(bool is_text) { return is_text ? " class=\"text\"" : ""; }
+std::string_view class_of(bool is_text) { return is_text ? " class=\"text\"" : ""; }
 
 }  // namespace
 
 std::string escaped(std::string_view text) {
+    static const std::map<char, std::string_view> entities{
+        {'<', "&lt;"}, {'>', "&gt;"}, {'&', "&amp;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
     std::string html;
     for (const char c : valid_utf8(text)) {
-        switch (c) {
-            case '<':
-                html += "&lt;";
-                break;
-            case '>':
-                html += "&gt;";
-                break;
-            case '&':
-                html += "&amp;";
-                break;
-            case '"':
-                html += "&quot;";
-                break;
-            case '\'':
-                html += "&#39;";
-                break;
-            default:
-                html += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
+        if (const auto found = entities.find(c); found != entities.end()) {
+            html += found->second;
+        } else {
+            html += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
         }
     }
     return html;
@@ -90,6 +78,11 @@ std::string figure_html(const Figure& figure) {
         "<script type=\"application/json\" id=\"spec-{1}\">{3}</script>\n"
         "<figcaption>{4}</figcaption>\n</figure>\n",
         escaped(figure.description), figure.id, keys, script_json(figure.spec), escaped(figure.caption));
+}
+
+void add_figure(Section& section, Figure figure) {
+    section.html += figure_html(figure);
+    section.figures.push_back(std::move(figure));
 }
 
 std::string paragraph(std::string_view text, std::string_view css_class) {

@@ -24,6 +24,17 @@ std::string table_html(const TextTable& table, const HtmlTableOptions& options);
 /// A figure with its caption and its specification, which the page's script draws.
 std::string figure_html(const Figure& figure);
 
+/// A part of the page. Its figures stand in its HTML already; they are kept to be rendered as files.
+struct Section {
+    std::string id;
+    std::string title;
+    std::string html = {};
+    std::vector<Figure> figures = {};
+};
+
+/// Puts a figure at the end of a section.
+void add_figure(Section& section, Figure figure);
+
 /// A paragraph of plain text.
 std::string paragraph(std::string_view text, std::string_view css_class = "");
 

@@ -1,15 +1,13 @@
 #include "report/missions_section.h"
 
+#include "base/units.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_summary.h"
-#include "report/figures/profile_figure.h"
-#include "report/figures/qos_map_figure.h"
-#include "report/figures/schedule_figure.h"
-#include "report/html.h"
+#include "report/figures/mission_figures.h"
 #include "report/model_section.h"
-#include "report/sections/plan_section.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
@@ -19,41 +17,39 @@ namespace {
 
 using Missions = std::span<const SimulatedMission>;
 
+/// The missions without those that are the same as an earlier one.
+template <typename Same>
+std::vector<const SimulatedMission*> first_of_each(Missions missions, const Same& same) {
+    std::vector<const SimulatedMission*> firsts;
+    for (const auto& simulated : missions) {
+        if (std::ranges::none_of(firsts, [&](const SimulatedMission* first) {
+                return same(first->mission, simulated.mission);
+            })) {
+            firsts.push_back(&simulated);
+        }
+    }
+    return firsts;
+}
+
 std::vector<Section> model_sections(Missions missions, const PublishedFigures& published) {
     std::vector<Section> sections;
-    std::vector<std::string> seen;
-    for (const auto& simulated : missions) {
-        const auto& mission = simulated.mission;
-        if (!mission.mechanical) continue;
-        const auto text = to_toml(*mission.mechanical);
-        if (std::find(seen.begin(), seen.end(), text) != seen.end()) continue;
-        seen.push_back(text);
-        ReportModel model{*mission.mechanical, "The missions' model, as their files name it."};
-        model.table_one = table_one(*mission.mechanical);
-        sections.push_back(model_section(model, published, fmt::format("mission-model-{}", seen.size())));
+    for (const auto* simulated : first_of_each(missions, have_same_model)) {
+        const auto& mechanical = simulated->mission.mechanical;
+        if (!mechanical) continue;
+        ReportModel model{*mechanical, "The missions' model, as their files name it."};
+        model.table_one = table_one(*mechanical);
+        sections.push_back(
+            model_section(model, published, fmt::format("mission-model-{}", sections.size() + 1)));
     }
     return sections;
 }
 
-bool same_software(const compute::ComputeModel& a, const compute::ComputeModel& b) {
-    return std::equal(a.components.begin(), a.components.end(), b.components.begin(), b.components.end(),
-                      [](const compute::Component& one, const compute::Component& other) {
-                          return one.name == other.name && one.profile.axes == other.profile.axes &&
-                                 one.profile.power_w == other.profile.power_w;
-                      });
-}
-
 Section profile_section(Missions missions) {
-    Section section{"computing", "Computing profile", "", {}};
-    std::vector<const compute::ComputeModel*> seen;
-    for (const auto& simulated : missions) {
-        const auto& compute = simulated.mission.compute;
-        const bool known = std::any_of(seen.begin(), seen.end(), [&](const compute::ComputeModel* other) {
-            return same_software(*other, compute);
-        });
-        if (compute.components.empty() || known) continue;
-        seen.push_back(&compute);
-        add_figure(section, profile_figure(compute, fmt::format("profile-{}", seen.size())));
+    Section section{"computing", "Computing profile"};
+    for (const auto* simulated : first_of_each(missions, have_same_software)) {
+        const auto& compute = simulated->mission.compute;
+        if (compute.components.empty()) continue;
+        add_figure(section, profile_figure(compute, fmt::format("profile-{}", section.figures.size() + 1)));
     }
     return section;
 }
@@ -78,7 +74,7 @@ TextTable ranking_of(std::vector<mission::MissionSummary> summaries) {
 }
 
 Section schedule_section(Missions missions, const PublishedFigures& published) {
-    Section section{"schedules", "Schedules", "", {}};
+    Section section{"schedules", "Schedules"};
     add_figure(section, schedule_figure(missions, published, "schedules-soc"));
     std::vector<mission::MissionSummary> summaries;
     std::vector<std::string> failures;
@@ -100,32 +96,127 @@ Section schedule_section(Missions missions, const PublishedFigures& published) {
 }
 
 Section map_section(Missions missions, const PublishedFigures& published) {
-    Section section{"quality-of-service", "Quality of service", "", {}};
-    std::vector<const mission::Mission*> seen;
-    for (const auto& simulated : missions) {
-        const auto& mission = simulated.mission;
-        const bool known = std::any_of(seen.begin(), seen.end(), [&](const mission::Mission* other) {
-            return have_same_map(*other, mission);
-        });
-        if (known) continue;
+    Section section{"quality-of-service", "Quality of service"};
+    for (const auto* simulated : first_of_each(missions, have_same_map)) {
+        const auto& mission = simulated->mission;
         const auto map = qos_map(mission);
         if (!map) continue;
-        seen.push_back(&mission);
         std::vector<SimulatedMission> alike;
-        for (const auto& other : missions) {
-            if (have_same_map(mission, other.mission)) alike.push_back(other);
-        }
+        std::ranges::copy_if(missions, std::back_inserter(alike),
+                             [&](const auto& other) { return have_same_map(mission, other.mission); });
         section.html +=
             fmt::format("<h3>{}</h3>\n", mission.mechanical ? "Flight and computing" : "Computing alone");
-        const bool is_published = !mission.mechanical;  // the paper's Fig. 4 leaves the flight out
+        const bool is_published = !mission.mechanical;  // the paper's Fig. 4 is without the flight
         add_figure(section, qos_map_figure(*map, alike,
                                            is_published ? published.soc_cells : std::vector<PublishedCell>{},
-                                           fmt::format("quality-{}", seen.size())));
+                                           fmt::format("quality-{}", section.figures.size() + 1)));
     }
     return section;
 }
 
+/// Until when what runs counts.
+double powered_until_s(const mission::MissionSummary& summary) {
+    double until_s = summary.duration_s;
+    if (summary.depleted_at_s) until_s = std::min(until_s, *summary.depleted_at_s);
+    if (summary.cut_off_at_s) until_s = std::min(until_s, *summary.cut_off_at_s);
+    if (summary.undeliverable) until_s = std::min(until_s, summary.undeliverable->time_s);
+    return until_s;
+}
+
+/// The missions with the planned one's flight, software and battery, by its utilities.
+std::vector<UtilityPoint> utility_points(const SimulatedMission& planned, Missions missions) {
+    std::vector<UtilityPoint> points;
+    for (const auto& other : missions) {
+        const auto& summary = other.simulation.summary;
+        if (!have_same_map(planned.mission, other.mission) || !summary.final_soc_percent) continue;
+        const auto utility = mean_utility(planned.mission, other.mission.schedule, powered_until_s(summary));
+        if (!utility) continue;
+        points.push_back({other.title, *summary.final_soc_percent, *utility, other.planned.has_value()});
+    }
+    return points;
+}
+
+/// How much more utility than the plan some schedule could have at most [%].
+std::optional<double> gap_percent(const SimulatedMission& simulated) {
+    const auto& planned = *simulated.planned;
+    const auto& utility = simulated.simulation.summary.utility;
+    if (!planned.feasible || !utility || planned.bound <= 0.0) return std::nullopt;
+    return std::max(0.0, units::percent_of(planned.bound - *utility, planned.bound));
+}
+
+TextTable plans_table(Missions missions) {
+    TextTable table{{"mission", "schedule", "utility", "proven bound", "gap [%]", "final SoC [%]",
+                     "reserve [%]", "reserve kept"},
+                    {}};
+    for (const auto& simulated : missions) {
+        if (!simulated.planned) continue;
+        const auto& summary = simulated.simulation.summary;
+        const auto& planned = *simulated.planned;
+        table.rows.push_back({simulated.title, to_string(summary.schedule), fixed(summary.utility, 4),
+                              planned.feasible ? fixed(planned.bound, 4) : "-",
+                              fixed(gap_percent(simulated), 4), fixed(summary.final_soc_percent, 4),
+                              fixed(summary.reserve_soc_percent, 4), summary.keeps_reserve ? "yes" : "no"});
+    }
+    return table;
+}
+
+TextTable running_table(const mission::Mission& mission) {
+    TextTable table{{"from [s]", "to [s]", "component", "runs", "power [W]"}, {}};
+    for (const auto& running : running_times(mission)) {
+        const auto& component = mission.compute.components[running.component];
+        table.rows.push_back({fixed(running.start_s, 0), fixed(running.end_s, 0), component.name,
+                              describe_qos(component, running.qos),
+                              fixed(power_w(component.profile, running.qos), 2)});
+    }
+    return table;
+}
+
+TextTable utility_table(std::vector<UtilityPoint> points) {
+    std::ranges::stable_sort(
+        points, [](const UtilityPoint& a, const UtilityPoint& b) { return a.utility > b.utility; });
+    TextTable table{{"mission", "schedule", "utility", "final SoC [%]"}, {}};
+    for (const auto& point : points) {
+        table.rows.push_back({point.mission, point.planned ? "planned" : "given", fixed(point.utility, 4),
+                              fixed(point.soc_percent, 4)});
+    }
+    return table;
+}
+
+void add_plan(Section& section, const SimulatedMission& planned, Missions missions, std::size_t number) {
+    section.html += "<h3>" + escaped(planned.title) + "</h3>\n";
+    if (!planned.planned->feasible) {
+        section.html += paragraph(
+            "No schedule that keeps the reserve was found: what is shown demands least energy. flightwatt plan "
+            "tells what is short.",
+            "warning");
+    }
+    if (planned.mission.compute.components.empty()) return;
+    add_figure(section, strip_figure(planned, fmt::format("plan-{}-strip", number)));
+    section.html += table_html(running_table(planned.mission), {"What the plan runs when", true, {}});
+    const auto points = utility_points(planned, missions);
+    if (points.size() > 1) {
+        add_figure(section, utility_figure(planned, points, fmt::format("plan-{}-utility", number)));
+        section.html += table_html(utility_table(points), {"Utility of the schedules", true, {}});
+    }
+}
+
 }  // namespace
+
+Section plan_section(Missions missions) {
+    Section section{"plan", "Plan"};
+    const bool any = std::ranges::any_of(
+        missions, [](const SimulatedMission& mission) { return mission.planned.has_value(); });
+    if (!any) return section;
+    section.html += paragraph(
+        "Missions without a schedule of their own are planned: most utility of what keeps the reserve. The "
+        "bound is proven: no schedule in slots that keeps the reserve has more.");
+    section.html += table_html(plans_table(missions), {"Planned missions", false, {}});
+    std::size_t number = 0;
+    for (const auto& simulated : missions) {
+        if (simulated.planned) add_plan(section, simulated, missions, ++number);
+    }
+    return section;
+}
 
 std::vector<Section> mission_sections(Missions missions, const PublishedFigures& published) {
     auto sections = model_sections(missions, published);

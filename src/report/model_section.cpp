@@ -1,16 +1,24 @@
 #include "report/model_section.h"
 
 #include "base/units.h"
+#include "cli/output/fit_output.h"
 #include "cli/output/validation_output.h"
-#include "report/figures/validation_figure.h"
-#include "report/html.h"
+#include "report/figures/flight_figures.h"
 
 #include <fmt/format.h>
 
 namespace flightwatt::report {
 
+ReportModel model_of(const batch::BatchFit& fit,
+                     const std::optional<mechanical::MechanicalModel>& published) {
+    ReportModel model{fit.model, "Fitted by flightwatt batch to the flights above."};
+    model.bands = fit.bands;
+    model.table_one = cli::table_of(fit.model, published, mechanical::TableIntervals::present);
+    return model;
+}
+
 Section model_section(const ReportModel& model, const PublishedFigures& published, const std::string& id) {
-    Section section{id, "Mechanical model: " + valid_utf8(model.model.name), "", {}};
+    Section section{id, "Mechanical model: " + valid_utf8(model.model.name)};
     section.html += paragraph(model.origin, "soft");
     if (!model.model.description.empty()) section.html += paragraph(model.model.description);
     add_figure(section, model_figure(model.model, model.bands, published, id + "-curves"));
@@ -29,7 +37,7 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
 }
 
 Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights) {
-    Section section{"validation", "Validation against the baselines", "", {}};
+    Section section{"validation", "Validation against the baselines"};
     section.html += paragraph(
         "Leave-one-out: the model is fitted to all flights but one and predicts the energy of that one from "
         "its durations alone; beside the constant mean power of each phase, the nearest flight's power, and, "

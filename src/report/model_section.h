@@ -1,9 +1,11 @@
 #pragma once
 
 #include "base/text_table.h"
+#include "batch/batch_fit.h"
+#include "mechanical/model_errors.h"
 #include "mechanical/validation.h"
-#include "report/figures/model_figure.h"
-#include "report/sections/section.h"
+#include "report/figures/published_figures.h"
+#include "report/html.h"
 
 #include <optional>
 #include <string>
@@ -18,6 +20,9 @@ struct ReportModel {
     flight::PerPhase<mechanical::CurveBand> bands = {};  ///< without times: not known
     std::optional<TextTable> table_one = {};
 };
+
+/// The batch's model with its bands and Table I, beside a published one where there is one.
+ReportModel model_of(const batch::BatchFit& fit, const std::optional<mechanical::MechanicalModel>& published);
 
 /// The model as Fig. 2 with Table I. `id` tells several apart.
 Section model_section(const ReportModel& model, const PublishedFigures& published, const std::string& id);

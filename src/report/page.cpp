@@ -1,21 +1,18 @@
 #include "report/page.h"
 
-#include "report/html.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/program_files.h"
 
-#include <string_view>
-
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::report {
 namespace {
 
 /// A script's text cannot end its element: inside of strings and regular expressions "<\/" is "</".
-std::string inline_script(std::string text) {
-    constexpr std::string_view end = "</script";
-    for (auto at = text.find(end); at != std::string::npos; at = text.find(end, at)) {
-        text.replace(at, 2, "<\\/");
-    }
-    return "<script>" + text + "</script>\n";
+std::string inline_script(const std::string& text) {
+    return "<script>" + boost::replace_all_copy(text, "</script", "<\\/script") + "</script>\n";
 }
 
 std::string head_html(const PageHead& head, const WebFiles& web) {
@@ -54,6 +51,27 @@ std::string opening_html(const PageHead& head, const std::vector<Section>& secti
 }
 
 }  // namespace
+
+std::filesystem::path web_folder() {
+    return program_files("web", "FLIGHTWATT_WEB", "the report's web files");
+}
+
+WebFiles read_web_files(const std::filesystem::path& folder) {
+    WebFiles files;
+    files.folder = folder;
+    files.style = read_file(folder / "page.css");
+    files.theme = read_file(folder / "theme.json");
+    for (const auto* library : {"vega", "vega-lite", "vega-embed"}) {
+        const auto path = folder / "node_modules" / library / "build" / (std::string(library) + ".min.js");
+        if (!std::filesystem::exists(path)) {
+            throw InputError({path.string()}, "the report's figures need this library, and it is not there",
+                             "run scripts/install_dependencies with the npm registry at hand");
+        }
+        files.libraries += read_file(path) + "\n";
+    }
+    files.script = read_file(folder / "fit_width.js") + read_file(folder / "page.js");
+    return files;
+}
 
 std::string page_html(const PageHead& head, const std::vector<Section>& sections, const WebFiles& web) {
     auto html = head_html(head, web) + "<body>\n" + opening_html(head, sections) + "<main>\n";

@@ -22,5 +22,10 @@ TEST(TextTable, KeepsOddNamesFromBreakingTheTable) {
     EXPECT_EQ(to_markdown(odd), "| name |\n|---|\n| two lines \\| one |\n");
 }
 
+TEST(Fixed, IsADashForWhatIsNotKnown) {
+    EXPECT_EQ(fixed(1.25, 3), "1.250");
+    EXPECT_EQ(fixed(std::nullopt, 3), "-");
+}
+
 }  // namespace
 }  // namespace flightwatt

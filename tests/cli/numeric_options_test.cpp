@@ -49,6 +49,15 @@ TEST(CountOption, RefusesOthersWithTheRange) {
               "--count x: expected a whole number");
 }
 
+TEST(NumberOption, LiesInItsRange) {
+    EXPECT_EQ(number_option(call_with({"--capacity", "2.5"}), "capacity", 0.0, 2.5), 2.5);
+    for (const auto* text : {"-1", "3", "inf", "nan"}) {
+        const auto call = call_with({std::string("--capacity=") + text});
+        EXPECT_EQ(refusal([&] { number_option(call, "capacity", 0.0, 2.5); }),
+                  std::string("--capacity ") + text + ": expected 0 to 2.5");
+    }
+}
+
 TEST(PositiveOption, IsAbsentOrAboveZero) {
     EXPECT_EQ(positive_option(call_with({}), "capacity", "Ah"), std::nullopt);
     EXPECT_EQ(positive_option(call_with({"--capacity", "2.5"}), "capacity", "Ah"), 2.5);

@@ -4,6 +4,7 @@
 
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
+#include "report/model_section.h"
 
 #include <gtest/gtest.h>
 
@@ -41,6 +42,15 @@ TEST(BatchContent, HasNoFitWhereTheBatchCouldNotFit) {
     const auto content = read_batch_content(folder / "out");
     EXPECT_FALSE(content.fit);
     EXPECT_TRUE(content.measured.empty());
+}
+
+TEST(FittedPart, FollowsExclusionsAndThePowerRecord) {
+    ReportFlight flight;
+    EXPECT_EQ(fitted_part(flight), "all");
+    flight.exclusions = {"cruise is excluded: the log ends inside of it"};
+    EXPECT_EQ(fitted_part(flight), "in part");
+    flight.unusable_power = "its power does not change at all";
+    EXPECT_EQ(fitted_part(flight), "no");
 }
 
 }  // namespace

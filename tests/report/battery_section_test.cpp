@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "helpers/synthetic_discharge.h"
-#include "report/figures/battery_figures.h"
+#include "report/figures/flight_figures.h"
 
 #include <algorithm>
 
@@ -67,18 +67,18 @@ TEST(BatterySection, SaysWhyThereIsNone) {
     computed.series.current_origin = flight::CurrentOrigin::throttle;
     auto voltless = flight_on(pack, 2);
     std::erase_if(voltless.series.tracks, [](const auto& track) { return track.name == "voltage_v"; });
-    auto absurd = flight_on(pack, 3);
-    absurd.unusable_power = "its power record is <absurd>";
+    auto faulty = flight_on(pack, 3);
+    faulty.unusable_power = "its power record is <faulty>";
     ReportFlight rejected;
     rejected.name = "rejected";
     rejected.rejected = "no flight in it";
-    const std::vector<ReportFlight> flights{computed, voltless, absurd, rejected};
+    const std::vector<ReportFlight> flights{computed, voltless, faulty, rejected};
     const auto battery = identify_for_report(flights, {}, 12);
     EXPECT_FALSE(battery.identified);
     const auto section = battery_section(battery);
     EXPECT_TRUE(section.figures.empty());
     for (const auto* reason : {"was not identified", "computed from throttle", "has no voltage",
-                               "is &lt;absurd&gt;", "no flight in it"}) {
+                               "is &lt;faulty&gt;", "no flight in it"}) {
         EXPECT_THAT(section.html, HasSubstr(reason));
     }
 }

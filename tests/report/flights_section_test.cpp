@@ -26,12 +26,12 @@ TEST(FlightsSection, NamesEveryReasonOnceWithItsFlights) {
     auto two = sample_flight("tests/data/hazards/hazard_01_two-sorties");
     for (auto* flight : {&one, &two}) {
         flight->unusable_power = "made for <segmentation>";
-        flight->exclusions = {flight->name + ": it is left out: made for <segmentation>"};
+        flight->exclusions = {flight->name + ": it is excluded: made for <segmentation>"};
     }
     const std::vector<ReportFlight> flights{whole, one, two};
     const auto section = flights_section(flights, std::nullopt);
     EXPECT_THAT(section.html, HasSubstr("hazard_01_run-up, hazard_01_two-sorties"));
-    EXPECT_THAT(section.html, HasSubstr(">it is left out: made for &lt;segmentation&gt;<"));
+    EXPECT_THAT(section.html, HasSubstr(">it is excluded: made for &lt;segmentation&gt;<"));
     EXPECT_THAT(section.html, HasSubstr(">no</td>"));
     EXPECT_THAT(section.html, HasSubstr(">all</td>"));
     EXPECT_THAT(section.html, Not(HasSubstr(">in part</td>")));

@@ -35,18 +35,17 @@ TextTable flights_table(const battery::BatteryIdentification& identified,
     TextTable table;
     table.header = {"flight", "at rest V", "missing Ah", "drawn Ah", "samples", "unused", "fitted mV"};
     if (!left_out.empty()) {
-        for (const auto* name : {"left out mV", "beyond the others %"}) table.header.emplace_back(name);
+        for (const auto* name : {"leave-one-out mV", "beyond the others %"}) table.header.emplace_back(name);
     }
     for (std::size_t i = 0; i < identified.flights.size(); ++i) {
         const auto& flight = identified.flights[i];
-        table.rows.push_back({flight.flight, fmt::format("{:.3f}", flight.resting_voltage_v),
-                              fmt::format("{:.3f}", flight.initial_charge_ah),
-                              fmt::format("{:.3f}", flight.drawn_ah), fmt::format("{}", flight.samples),
-                              fmt::format("{}", flight.unused),
-                              fmt::format("{:.1f}", units::mv_from_v(flight.voltage_rms_v))});
+        table.rows.push_back({flight.flight, fixed(flight.resting_voltage_v, 3),
+                              fixed(flight.initial_charge_ah, 3), fixed(flight.drawn_ah, 3),
+                              fmt::format("{}", flight.samples), fmt::format("{}", flight.unused),
+                              fixed(units::mv_from_v(flight.voltage_rms_v), 1)});
         if (left_out.empty()) continue;
-        table.rows.back().push_back(fmt::format("{:.1f}", units::mv_from_v(left_out[i].voltage_rms_v)));
-        table.rows.back().push_back(fmt::format("{:.0f}", left_out[i].beyond_percent));
+        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].voltage_rms_v), 1));
+        table.rows.back().push_back(fixed(left_out[i].beyond_percent, 0));
     }
     return table;
 }

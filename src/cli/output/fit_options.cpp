@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/units.h"
-#include "cli/output/json_text.h"
 
 #include <cstdint>
 #include <vector>
@@ -34,20 +33,18 @@ mechanical::HandWeight parse_hand_weight(const std::string& text) {
 }  // namespace
 
 void add_fit_options(boost::program_options::options_description& options, AutoOrder automatic) {
-    namespace po = boost::program_options;
     auto add = options.add_options();
-    add("order", po::value<std::string>()->value_name("N")->default_value("3"),
+    add("order", value("N")->default_value("3"),
         automatic == AutoOrder::accepted
             ? "order of the Fourier series, 0 to 8, or auto: chosen for each phase by how well it predicts "
               "a flight that was not fitted (blocks of time of a single flight)"
             : "order of the Fourier series, 0 to 8");
-    add("weights", po::value<std::string>()->value_name("HOW")->default_value("agreement"),
-        "uniform, inverse-variance or agreement");
-    add("weight", po::value<std::vector<std::string>>()->value_name("FLIGHT[:PHASE]=W")->composing(),
+    add("weights", value("HOW")->default_value("agreement"), "uniform, inverse-variance or agreement");
+    add("weight", value<std::vector<std::string>>("FLIGHT[:PHASE]=W")->composing(),
         "a weight by hand; then every flight needs one");
-    add("min-periods", po::value<double>()->value_name("X")->default_value(0.5, "0.5"),
+    add("min-periods", value<double>("X")->default_value(0.5, "0.5"),
         "least periods of the series in a phase; fewer make its basis collinear");
-    add("max-periods", po::value<double>()->value_name("X")->default_value(120.0, "120"),
+    add("max-periods", value<double>("X")->default_value(120.0, "120"),
         "most periods in a phase; the sampling may allow fewer");
 }
 
@@ -84,60 +81,6 @@ mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder au
         for (const auto& text : *weights) options.weights.by_hand.push_back(parse_hand_weight(text));
     }
     return options;
-}
-
-nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
-    using Json = nlohmann::ordered_json;
-    Json json{{"name", model.name},
-              {"weighting", model.weighting},
-              {"phases", Json::object()},
-              {"flights", Json::array()}};
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        auto& entry = json["phases"][std::string(to_string(phase))];
-        entry = {{"duration_s", fitted.duration_s}, {"omega_rad_per_s", fitted.fourier.omega_rad_per_s},
-                 {"a0_w", fitted.fourier.a0_w},     {"cos_w", fitted.fourier.cos_w},
-                 {"sin_w", fitted.fourier.sin_w},   {"rms_w", fitted.rms_w.value_or(0.0)},
-                 {"samples", fitted.samples},       {"flights", fitted.flights}};
-        if (const auto& law = fitted.level_law) {
-            entry["level_law"] = {{"covariate", to_string(law->covariate)},
-                                  {"flights", law->flights},
-                                  {"mean", law->mean},
-                                  {"sd", law->sd},
-                                  {"least", law->least},
-                                  {"most", law->most},
-                                  {"mean_power_w", law->mean_power_w},
-                                  {"slope_w", law->slope_w},
-                                  {"residual_sd_w", law->residual_sd_w.value()}};
-        }
-        if (fitted.range) {
-            entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},
-                                           {"high", fitted.range->high_rad},
-                                           {"at_bound", to_string(fitted.range->at_bound)}};
-        }
-    }
-    for (const auto& flight : model.flights) {
-        Json weights = Json::object();
-        for (const auto phase : flight::all_phases) {
-            const auto& part = flight.phases[phase];
-            weights[std::string(to_string(phase))] = part ? Json(part->weight) : Json();
-        }
-        json["flights"].push_back({{"flight", flight.flight}, {"weights", weights}});
-    }
-    return json;
-}
-
-void warn_of_bounds(const StageCall& call, const mechanical::MechanicalModel& model) {
-    for (const auto phase : flight::all_phases) {
-        const auto& fitted = model.phases[phase];
-        if (!fitted.range || fitted.range->at_bound == mechanical::FrequencyBound::none) continue;
-        warn(call,
-             fmt::format("{}: omega * duration stands at its {} bound, {:.3f} rad: the frequency is not "
-                         "determined by the data, the curve is",
-                         to_string(phase), to_string(fitted.range->at_bound),
-                         fitted.range->at_bound == mechanical::FrequencyBound::low ? fitted.range->low_rad
-                                                                                   : fitted.range->high_rad));
-    }
 }
 
 }  // namespace flightwatt::cli

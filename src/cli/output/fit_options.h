@@ -4,9 +4,6 @@
 #include "mechanical/model_fit.h"
 
 #include <optional>
-#include <string>
-
-#include <nlohmann/json.hpp>
 
 namespace flightwatt::cli {
 
@@ -23,11 +20,5 @@ std::optional<int> read_order(const StageCall& call, AutoOrder automatic);
 /// What the user gave of them. Where the order is to be chosen it is left at the default. Throws UsageError
 /// for options that make no sense or exclude each other.
 mechanical::ModelFitOptions read_fit_options(const StageCall& call, AutoOrder automatic = AutoOrder::refused);
-
-/// The fitted model as the stages' JSON.
-nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model);
-
-/// Warns of a frequency at the edge of what it could be.
-void warn_of_bounds(const StageCall& call, const mechanical::MechanicalModel& model);
 
 }  // namespace flightwatt::cli

@@ -24,7 +24,7 @@ std::set<std::string> names_of(const StageCall& call, const std::string& option)
 void refuse_unknown(const std::set<std::string>& names, const std::string& option,
                     const std::vector<std::string>& flights) {
     for (const auto& name : names) {
-        if (std::find(flights.begin(), flights.end(), name) != flights.end()) continue;
+        if (std::ranges::find(flights, name) != flights.end()) continue;
         const auto near = nearest_word(name, flights);
         throw UsageError(fmt::format("--{} {}: there is no such flight{}", option, name,
                                      near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
@@ -35,34 +35,29 @@ void refuse_unknown(const std::set<std::string>& names, const std::string& optio
 
 void add_flight_options(po::options_description& options) {
     const flight::SegmentationOptions defaults;
-    const auto number = [](const char* unit, double value, const char* shown) {
-        return po::value<double>()->value_name(unit)->default_value(value, shown);
+    const auto number = [](const char* unit, double usual, const char* shown) {
+        return value<double>(unit)->default_value(usual, shown);
     };
+    const auto names = [] { return value<std::vector<std::string>>("FLIGHT")->composing(); };
     po::options_description group("How flights are read");
-    group.add_options()("aircraft", po::value<std::string>()->value_name("ID"),
-                        "the aircraft to read, where several flew");
-    group.add_options()("sortie", po::value<std::string>()->value_name("N"),
-                        "this sortie of the log alone, counted from 1");
-    const auto names = [] {
-        return po::value<std::vector<std::string>>()->value_name("FLIGHT")->composing();
-    };
-    group.add_options()("exclude", names(), "do not use this flight");
-    group.add_options()("keep", names(),
-                        "use this flight though it would be excluded (power faults, not-fitted.txt)");
-    group.add_options()("correct-idle-offset",
-                        "take out of the power what the current sensor reads on the ground");
-    group.add_options()("rest", number("S", defaults.rest_s, "10"),
-                        "an aircraft that keeps its height so long [s] with its motor idling is at rest");
-    group.add_options()("hold", number("S", defaults.hold_s, "30"),
-                        "a height that grows by less than a tenth of the flight's in this time [s] is held");
-    group.add_options()("idle-throttle", number("P", defaults.idle_throttle_percent, "5"),
-                        "up to this throttle [%] the motor idles");
-    group.add_options()("cruise-fraction", number("X", defaults.cruise_fraction, "0.9"),
-                        "take-off ends and landing begins at this fraction of the height held");
-    group.add_options()("ground-fraction", number("X", defaults.ground_fraction, "0.025"),
-                        "below this fraction of the flight's height it is on the ground");
-    group.add_options()("flight-height", number("M", defaults.flight_height_m, "10"),
-                        "what stays below this height [m] is no flight");
+    auto add = group.add_options();
+    add("aircraft", value("ID"), "the aircraft to read, where several flew");
+    add("sortie", value("N"), "this sortie of the log alone, counted from 1");
+    add("exclude", names(), "do not use this flight");
+    add("keep", names(), "use this flight though it would be excluded (power faults, not-fitted.txt)");
+    add("correct-idle-offset", "take out of the power what the current sensor reads on the ground");
+    add("rest", number("S", defaults.rest_s, "10"),
+        "an aircraft that keeps its height so long [s] with its motor idling is at rest");
+    add("hold", number("S", defaults.hold_s, "30"),
+        "a height that grows by less than a tenth of the flight's in this time [s] is held");
+    add("idle-throttle", number("P", defaults.idle_throttle_percent, "5"),
+        "up to this throttle [%] the motor idles");
+    add("cruise-fraction", number("X", defaults.cruise_fraction, "0.9"),
+        "take-off ends and landing begins at this fraction of the height held");
+    add("ground-fraction", number("X", defaults.ground_fraction, "0.025"),
+        "below this fraction of the flight's height it is on the ground");
+    add("flight-height", number("M", defaults.flight_height_m, "10"),
+        "what stays below this height [m] is no flight");
     options.add(group);
 }
 
@@ -105,7 +100,7 @@ void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
     for (const auto& file : call.inputs) {
         auto loaded = flight::load_flight(std::filesystem::path(file), options);
         const auto& name = loaded.series.flight;
-        if (std::find(flights.begin(), flights.end(), name) != flights.end()) {
+        if (std::ranges::find(flights, name) != flights.end()) {
             throw UsageError(fmt::format("flight '{}' is given twice", name));
         }
         flights.push_back(name);

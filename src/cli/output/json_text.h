@@ -8,7 +8,9 @@
 namespace flightwatt::cli {
 
 /// Indented, with a line break at its end. A name that is not UTF-8 (a file's) does not spoil the answer.
-std::string json_text(const nlohmann::ordered_json& json);
+inline std::string json_text(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
 
 /// null for what is not known.
 template <typename T>

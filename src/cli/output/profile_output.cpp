@@ -17,11 +17,10 @@ std::string component_table(const compute::ComponentEstimate& component,
         const auto reported = reported_power(node.total, outcome.idle, above_idle);
         std::vector<std::string> row;
         for (const double value : node.qos) row.push_back(fmt::format("{}", value));
-        row.push_back(fmt::format("{:.4f}", reported.power_w));
+        row.push_back(fixed(reported.power_w, 4));
         row.push_back(compute::number_or(reported.standard_error_w, 4, "-"));
-        row.push_back(node.is_measured ? fmt::format("{:.2f}", node.total.duration_s) : "-");
-        row.push_back(node.is_measured ? fmt::format("{:.2f}", reported.power_w * node.total.duration_s)
-                                       : "-");
+        row.push_back(node.is_measured ? fixed(node.total.duration_s, 2) : "-");
+        row.push_back(node.is_measured ? fixed(reported.power_w * node.total.duration_s, 2) : "-");
         row.push_back(fmt::format("{}", node.total.samples));
         row.push_back(fmt::format("{}", node.total.repeats));
         row.push_back(node.is_measured ? "measured" : "interpolated");
@@ -121,9 +120,9 @@ std::string interpolation_text(const std::string& file, std::size_t nodes,
         "each node from the others", "nodes", "mean |error| W", "mean |error| %", "RMS W", "largest W"};
     for (const auto& error : errors) {
         table.rows.push_back({error.method, fmt::format("{} of {}", error.nodes, nodes),
-                              fmt::format("{:.4f}", error.mean_absolute_w),
-                              compute::number_or(error.mean_absolute_percent, 2, "-"),
-                              fmt::format("{:.4f}", error.rms_w), fmt::format("{:.4f}", error.largest_w)});
+                              fixed(error.mean_absolute_w, 4),
+                              compute::number_or(error.mean_absolute_percent, 2, "-"), fixed(error.rms_w, 4),
+                              fixed(error.largest_w, 4)});
     }
     return file + "\n" + to_text(table);
 }

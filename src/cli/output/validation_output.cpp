@@ -24,8 +24,31 @@ std::vector<ValidatedPart> validated_parts() {
     return parts;
 }
 
-std::string shown(const std::optional<double>& value, int digits) {
-    return value ? fmt::format("{:.{}f}", *value, digits) : "-";
+std::string comparison(const std::string& part, const std::string& challenger,
+                       const mechanical::ModelScore& ours, const std::string& baseline,
+                       const mechanical::ModelScore& theirs) {
+    const bool better = ours.mean_absolute_error_wh < theirs.mean_absolute_error_wh;
+    return fmt::format("{}: {} {} {}: {:.3f} Wh against {:.3f} Wh\n", part, challenger,
+                       better ? "beats" : "does not beat", baseline, ours.mean_absolute_error_wh,
+                       theirs.mean_absolute_error_wh);
+}
+
+/// Which covariates beat the constant mean in cruise, and which cannot be judged.
+std::string verdicts_on(const std::vector<mechanical::Covariate>& covariates,
+                        const std::vector<mechanical::ValidatedFlight>& flights) {
+    std::string text;
+    const auto mean = score_of(flights, "constant_mean", flight::Phase::cruise);
+    for (const auto covariate : covariates) {
+        const auto model = fmt::format("by_{}", to_string(covariate));
+        const auto score = score_of(flights, model, flight::Phase::cruise);
+        text += score && mean ? comparison("cruise", model, *score, "constant_mean", *mean)
+                              : fmt::format("cruise: {} is not known of all flights\n", model);
+    }
+    if (!covariates.empty() && flights.size() <= 3) {
+        text +=
+            "a line through 2 flights or fewer fits any covariate: what beats the mean here may be chance\n";
+    }
+    return text;
 }
 
 }  // namespace
@@ -42,15 +65,14 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
                 const auto& [measured_wh, estimate] = *energy;
                 const double error_wh = estimate.energy_wh - measured_wh;
                 const auto interval = interval_95(estimate);
-                table.rows.push_back({flight.flight, part.name, model, fmt::format("{:.3f}", measured_wh),
-                                      shown(part.phase ? flight.counter_wh[*part.phase] : std::nullopt, 3),
-                                      fmt::format("{:.3f}", estimate.energy_wh),
-                                      fmt::format("{:+.3f}", error_wh),
+                table.rows.push_back({flight.flight, part.name, model, fixed(measured_wh, 3),
+                                      fixed(part.phase ? flight.counter_wh[*part.phase] : std::nullopt, 3),
+                                      fixed(estimate.energy_wh, 3), fmt::format("{:+.3f}", error_wh),
                                       part.phase == flight::Phase::landing
                                           ? "-"
                                           : fmt::format("{:+.1f}", units::percent_of(error_wh, measured_wh)),
-                                      interval ? fmt::format("{:.3f}", interval->low_wh) : "-",
-                                      interval ? fmt::format("{:.3f}", interval->high_wh) : "-"});
+                                      interval ? fixed(interval->low_wh, 3) : "-",
+                                      interval ? fixed(interval->high_wh, 3) : "-"});
             }
         }
     }
@@ -66,9 +88,8 @@ TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) 
             const auto score = score_of(flights, model, part.phase);
             if (!score) continue;
             table.rows.push_back(
-                {part.name, model, fmt::format("{}", score->flights),
-                 fmt::format("{:.3f}", score->mean_absolute_error_wh),
-                 shown(score->mean_absolute_error_percent, 1), fmt::format("{:+.3f}", score->bias_wh),
+                {part.name, model, fmt::format("{}", score->flights), fixed(score->mean_absolute_error_wh, 3),
+                 fixed(score->mean_absolute_error_percent, 1), fmt::format("{:+.3f}", score->bias_wh),
                  score->coverage_95 ? fmt::format("{:.0f} %", units::percent_of(*score->coverage_95, 1.0))
                                     : "-"});
         }
@@ -84,10 +105,21 @@ std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, con
         const auto theirs = score_of(flights, baseline, part.phase);
         if (!ours || !theirs) continue;
         if (ours->mean_absolute_error_wh == theirs->mean_absolute_error_wh) continue;
-        const bool better = ours->mean_absolute_error_wh < theirs->mean_absolute_error_wh;
-        text += fmt::format("{}: {} {} {}: {:.3f} Wh against {:.3f} Wh\n", part.name, challenger,
-                            better ? "beats" : "does not beat", baseline, ours->mean_absolute_error_wh,
-                            theirs->mean_absolute_error_wh);
+        text += comparison(part.name, challenger, *ours, baseline, *theirs);
+    }
+    return text;
+}
+
+std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights,
+                            const std::vector<mechanical::Covariate>& covariates, bool in_flight) {
+    auto text = to_text(flights_table(flights)) + "\n" + to_text(scores_table(flights)) + "\n" +
+                verdict(flights, "fourier", "constant_mean");
+    if (in_flight) text += verdict(flights, "in_flight", "fourier");
+    text += verdicts_on(covariates, flights);
+    constexpr std::size_t few = 20;
+    if (flights.size() < few) {
+        text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n",
+                            flights.size(), units::percent_of(1.0, static_cast<double>(flights.size())));
     }
     return text;
 }

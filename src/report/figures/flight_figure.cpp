@@ -1,12 +1,8 @@
-#include "report/figures/flight_figure.h"
-
 #include "flight/chosen_track.h"
+#include "flight/edge_witness.h"
 #include "flight/phase_statistics.h"
-#include "report/figures/decimation.h"
-#include "report/sections/flight_edges.h"
-#include "report/sections/phase_words.h"
+#include "report/figures/flight_figures.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -15,9 +11,48 @@
 namespace flightwatt::report {
 namespace {
 
+/// Where a phase begins or ends, in words.
+std::string explained(const flight::PhaseEdge& edge) {
+    auto text = fmt::format("altitude {:.1f} m", edge.altitude_m);
+    if (edge.throttle_percent) text += fmt::format(", throttle {:.0f} %", *edge.throttle_percent);
+    if (edge.takeoff_after_s && std::abs(*edge.takeoff_after_s) < flight::witness_reach_s) {
+        text += fmt::format(", nearest TAKEOFF message {:.1f} s {}", std::abs(*edge.takeoff_after_s),
+                            *edge.takeoff_after_s < 0.0 ? "before" : "after");
+    }
+    if (edge.mode) text += fmt::format(", mode {}", *edge.mode);
+    if (edge.block) text += fmt::format(", block {}", *edge.block);
+    return text + fmt::format("; known within {:.1f} s", edge.gap_s);
+}
+
+std::string edge_name(const flight::PhaseSpan& span, bool begin) {
+    switch (span.phase) {
+        case flight::Phase::takeoff:
+            return begin ? "lift-off" : "end of take-off";
+        case flight::Phase::landing:
+            return begin ? "start of landing" : "touchdown";
+        case flight::Phase::cruise:
+            break;
+    }
+    return begin ? "start of cruise" : "end of cruise, start of landing";
+}
+
+/// An incomplete phase begins or ends there because the log does.
+bool is_end_of_log(const flight::Track& power, double time_s) {
+    constexpr double near_s = 2.0;  // altitude and power have clocks of their own
+    return time_s - power.time_s.front() < near_s || power.time_s.back() - time_s < near_s;
+}
+
+/// What the autopilot says of the edge, if that was recorded.
+std::string verdict_at(const ReportFlight& flight, double time_s) {
+    constexpr double same_edge_s = 2e-3;  // edges are rounded to the millisecond
+    for (const auto& verdict : flight.verdicts) {
+        if (std::abs(verdict.time_s - time_s) < same_edge_s) return verdict.text;
+    }
+    return "-";
+}
+
 constexpr std::size_t power_columns = 250;
 constexpr int flight_width = 640;
-
 constexpr auto log_time_title = "time in the log [s]";
 
 /// One row a phase: for the shading and its names.
@@ -67,99 +102,58 @@ FigureData power_rows(const ReportFlight& flight, const std::optional<mechanical
 FigureData channel_rows(const std::vector<double>& time_s, const std::vector<double>& values,
                         const std::string& column) {
     FigureData data({"time_s", column});
-    for (const auto i : visible_rows(time_s, values, power_columns)) {
-        data.add({time_s[i], values[i]});
-    }
+    for (const auto i : visible_rows(time_s, values, power_columns)) data.add({time_s[i], values[i]});
     return data;
 }
 
 VegaJson phase_layers(const FigureData& phases, const FigureData& edges, bool with_names) {
-    VegaJson layers = VegaJson::array();
+    const auto fill = vega(R"({"legend": null,
+        "scale": {"domain": ["takeoff", "cruise", "landing"], "range": "phases"}})");
+    auto layers = VegaJson::array();
+    layers.push_back(layer(phases.reference("phases"),
+                           R"({"type": "rect", "opacity": 0.13, "aria": false, "clip": true})",
+                           {{"x", quantity("start_s", log_time_title)},
+                            {"x2", {{"field", "end_s"}}},
+                            {"fill", category("phase", "phase", fill)}}));
     layers.push_back(
-        {{"data", phases.reference("phases")},
-         {"mark", {{"type", "rect"}, {"opacity", 0.13}, {"aria", false}, {"clip", true}}},
-         {"encoding",
-          {{"x", quantity("start_s", log_time_title)},
-           {"x2", {{"field", "end_s"}}},
-           {"fill",
-            category("phase", "phase",
-                     {{"legend", nullptr},
-                      {"scale", {{"domain", {"takeoff", "cruise", "landing"}}, {"range", "phases"}}}})}}}});
-    layers.push_back({{"data", edges.reference("edges")},
-                      {"mark",
-                       {{"type", "rule"},
-                        {"style", "edge"},
-                        {"strokeDash", {3, 3}},
-                        {"strokeWidth", 1.5},
-                        {"clip", true}}},
-                      {"encoding",
-                       {{"x", quantity("time_s", log_time_title)},
-                        {"tooltip",
-                         {category("edge", "edge"), quantity("time_s", "time [s]", {{"format", ".1f"}}),
-                          category("evidence", "evidence"), category("verdict", "the autopilot")}}}}});
-    if (with_names) {
-        layers.push_back(
-            {{"data", phases.reference("phases")},
-             {"mark",
-              {{"type", "text"},
-               {"style", "note"},
-               {"baseline", "bottom"},
-               {"dy", -3},
-               {"y", 0},
-               {"clip", false}}},
-             {"encoding",
-              {{"x", quantity("middle_s", log_time_title)}, {"text", category("word", "phase")}}}});
-    }
+        layer(edges.reference("edges"),
+              R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "strokeWidth": 1.5, "clip": true})",
+              {{"x", quantity("time_s", log_time_title)},
+               {"tooltip",
+                {category("edge", "edge"), shown("time_s", "time [s]", ".1f"),
+                 category("evidence", "evidence"), category("verdict", "the autopilot")}}}));
+    if (with_names) layers.push_back(phase_names(phases.reference("phases"), log_time_title));
     return layers;
 }
 
 /// One panel; its layers share the time axis, which only the last panel writes out.
 VegaJson panel(VegaJson layers, int height, bool is_last) {
-    for (auto& layer : layers) {
-        layer["encoding"]["x"]["axis"] =
-            is_last ? VegaJson{{"grid", false}}
-                    : VegaJson{{"grid", false}, {"labels", false}, {"title", nullptr}};
-        layer["encoding"]["x"]["scale"] = {{"zero", false}, {"nice", false}};
+    for (auto& part : layers) {
+        part["encoding"]["x"]["axis"] =
+            vega(is_last ? R"({"grid": false})" : R"({"grid": false, "labels": false, "title": null})");
+        part["encoding"]["x"]["scale"] = {{"zero", false}, {"nice", false}};
     }
     return {{"width", flight_width}, {"height", height}, {"layer", layers}};
 }
 
 /// A line; transparent points on it carry its tooltips.
-VegaJson line_layer(const FigureData& data, const std::string& column, const std::string& title,
-                    const std::string& hover) {
-    return {{"data", data.json()},
-            {"mark",
-             {{"type", "line"},
-              {"style", "measured"},
-              {"strokeWidth", 1.2},
-              {"clip", true},
-              {"point", {{"opacity", 0}, {"size", 60}, {"aria", false}}}}},
-            {"encoding",
-             {{"x", quantity("time_s", log_time_title)},
-              {"y", quantity(column, title, {{"scale", {{"zero", false}}}})},
-              {"tooltip",
-               {quantity("time_s", "time [s]", {{"format", ".1f"}}),
-                quantity(column, hover, {{"format", ".1f"}})}}}}};
+VegaJson line_layer(const FigureData& data, const std::string& column, const std::string& title) {
+    return layer(data.json(),
+                 R"({"type": "line", "style": "measured", "strokeWidth": 1.2, "clip": true,
+                     "point": {"opacity": 0, "size": 60, "aria": false}})",
+                 {{"x", quantity("time_s", log_time_title)},
+                  {"y", quantity(column, title, {{"scale", {{"zero", false}}}})},
+                  {"tooltip", {shown("time_s", "time [s]", ".1f"), shown(column, title, ".1f")}}});
 }
 
 VegaJson power_layer(const FigureData& data) {
-    auto layer = line_layer(data, "power_w", "power [W]", "power [W]");
-    layer["mark"].erase("style");
-    auto& encoding = layer["encoding"];
-    const VegaJson curves{{"domain", {"measured", "model"}}};
-    VegaJson color = curves;
-    color["range"] = "measured_and_model";
-    VegaJson width = curves;
-    width["range"] = {1.1, 2.2};
-    encoding["color"] = category("curve", "", {{"scale", color}, {"legend", {{"symbolType", "stroke"}}}});
-    encoding["strokeWidth"] = {{"field", "curve"},
-                               {"type", "ordinal"},
-                               {"title", ""},
-                               {"scale", width},
-                               {"legend", {{"symbolType", "stroke"}}}};
-    layer["transform"] = VegaJson::array({shown_by_legend()});
+    auto line = line_layer(data, "power_w", "power [W]");
+    line["mark"].erase("style");
+    auto& encoding = line["encoding"];
+    add_measured_and_model(encoding, 1.1, 2.2);
+    line["transform"] = VegaJson::array({shown_by_legend()});
     encoding["tooltip"].insert(encoding["tooltip"].begin(), category("curve", "curve"));
-    return layer;
+    return line;
 }
 
 std::string description_of(const ReportFlight& flight) {
@@ -193,18 +187,39 @@ std::string caption_of(const ReportFlight& flight, bool has_model) {
 
 }  // namespace
 
+std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
+    std::vector<NamedEdge> edges;
+    if (flight.phases.sorties.empty()) return edges;
+    const auto power = power_track(flight.series);
+    for (const auto& sortie : flight.phases.sorties) {
+        for (std::size_t i = 0; i < sortie.phases.size(); ++i) {
+            const auto& span = sortie.phases[i];
+            const bool continues = i > 0 && sortie.phases[i - 1].end.time_s == span.start.time_s;
+            const auto add = [&](const flight::PhaseEdge& edge, bool begin) {
+                const bool cut = !span.complete && is_end_of_log(power, edge.time_s);
+                edges.push_back({edge.time_s,
+                                 cut ? (begin ? "the log begins" : "the log ends") : edge_name(span, begin),
+                                 explained(edge), verdict_at(flight, edge.time_s)});
+            };
+            if (!continues) add(span.start, true);
+            add(span.end, false);
+        }
+    }
+    return edges;
+}
+
 Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
                      const std::string& id) {
-    Figure figure{id, caption_of(flight, model.has_value()), description_of(flight), "zoom_time_s", "x", {}};
+    auto figure = new_figure(id, caption_of(flight, model.has_value()), description_of(flight));
     const auto phases = phase_rows(flight.phases);
     const auto edges = edge_rows(flight);
     const auto time_s = power_track(flight.series).time_s;
-    VegaJson panels = VegaJson::array();
+    auto panels = VegaJson::array();
     const auto add_channel = [&](const std::string& column, const std::string& title, int height) {
         const auto values = chosen_at(flight.series, column, time_s);
         if (values.empty()) return;
         auto layers = phase_layers(phases, edges, panels.empty());
-        layers.push_back(line_layer(channel_rows(time_s, values, column), column, title, title));
+        layers.push_back(line_layer(channel_rows(time_s, values, column), column, title));
         panels.push_back(panel(layers, height, false));
     };
     add_channel("altitude_m", "altitude [m]", 110);
@@ -212,21 +227,17 @@ Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical:
     auto layers = phase_layers(phases, edges, panels.empty());
     layers.push_back(power_layer(power_rows(flight, model)));
     panels.push_back(panel(layers, 190, true));
-    VegaJson views = VegaJson::array();
-    for (std::size_t i = 0; i < panels.size(); ++i) {
-        views.push_back(fmt::format("panel_{}", i));
-        panels[i]["layer"].back()["name"] = views.back();  // of a panel, its last layer
+    auto views = VegaJson::array();
+    for (auto& view : panels) {
+        views.push_back(fmt::format("panel_{}", views.size()));
+        view["layer"].back()["name"] = views.back();  // of a panel, its last layer
     }
-    auto zoom = zoom_parameter("x");
-    zoom["views"] = views;
-
-    figure.spec = new_spec(figure);
-    figure.spec["params"] = {
-        zoom, legend_parameter("curve", {"measured", "model"}, views.back().get<std::string>())};
+    figure.spec["params"] = {add_zoom(figure, views), legend_parameter("curve", {"measured", "model"},
+                                                                       views.back().get<std::string>())};
     figure.spec["datasets"] = {{"phases", phases.csv()}, {"edges", edges.csv()}};
     figure.spec["vconcat"] = panels;
     figure.spec["spacing"] = 10;
-    figure.spec["resolve"] = {{"scale", {{"x", "shared"}}}};
+    figure.spec["resolve"] = vega(R"({"scale": {"x": "shared"}})");
     return figure;
 }
 

@@ -1,7 +1,5 @@
-#include "report/figures/plan_figures.h"
-
 #include "compute/qos_range.h"
-#include "report/sections/phase_words.h"
+#include "report/figures/mission_figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,10 +14,10 @@ namespace {
 constexpr int plan_width = 640;
 constexpr auto mission_time_title = "time since lift-off [s]";
 constexpr auto final_soc_title = "final state of charge [%]";
-constexpr auto utility_title = "utility (mean worth a second)";
 
 VegaJson utility_axes() {
-    return {{"x", quantity("soc_percent", final_soc_title)}, {"y", quantity("utility", utility_title)}};
+    return {{"x", quantity("soc_percent", final_soc_title)},
+            {"y", quantity("utility", "utility (mean value a second)")}};
 }
 
 VegaJson points_layer(const std::vector<UtilityPoint>& points) {
@@ -30,37 +28,32 @@ VegaJson points_layer(const std::vector<UtilityPoint>& points) {
             data.add({point.soc_percent, point.utility}, {point.mission, planned ? "planned" : "given"});
         }
     }
-    const VegaJson kinds{{"domain", {"planned", "given"}}};
-    auto shapes = kinds;
-    shapes["range"] = {"diamond", "circle"};
-    auto sizes = kinds;
-    sizes["range"] = {190, 60};
+    auto scale = vega(R"({"scale": {"domain": ["planned", "given"]}})");
     auto encoding = utility_axes();
-    encoding["color"] = category("kind", "", {{"scale", kinds}});
-    encoding["shape"] = category("kind", "", {{"scale", shapes}});
-    encoding["size"] = {{"field", "kind"}, {"type", "ordinal"}, {"title", ""}, {"scale", sizes}};
+    encoding["color"] = category("kind", "", scale);
+    scale["scale"]["range"] = {"diamond", "circle"};
+    encoding["shape"] = category("kind", "", scale);
+    scale["scale"]["range"] = {190, 60};
+    encoding["size"] = {{"field", "kind"}, {"type", "ordinal"}, {"title", ""}};
+    encoding["size"].update(scale);
     encoding["tooltip"] = {category("mission", "mission"), category("kind", "schedule"),
-                           quantity("utility", "utility", {{"format", ".4g"}}),
-                           quantity("soc_percent", final_soc_title, {{"format", ".2f"}})};
-    return {{"data", data.json()},
-            {"mark", {{"type", "point"}, {"filled", true}, {"opacity", 1}}},
-            {"encoding", encoding}};
+                           shown("utility", "utility", ".4g"), shown("soc_percent", final_soc_title, ".2f")};
+    return layer(data.json(), R"({"type": "point", "filled": true, "opacity": 1})", encoding);
 }
 
 /// Points that a reader cannot tell apart share a name.
 std::vector<UtilityPoint> named_together(const std::vector<UtilityPoint>& points) {
     constexpr double near_part = 0.02;  // of what the points span
     const auto span_of = [&](double UtilityPoint::*value) {
-        const auto [low, high] = std::minmax_element(
-            points.begin(), points.end(),
-            [&](const UtilityPoint& a, const UtilityPoint& b) { return a.*value < b.*value; });
+        const auto [low, high] = std::ranges::minmax_element(
+            points, [&](const UtilityPoint& a, const UtilityPoint& b) { return a.*value < b.*value; });
         return (*high).*value - (*low).*value;
     };
     const double soc_span = span_of(&UtilityPoint::soc_percent);
     const double utility_span = span_of(&UtilityPoint::utility);
     std::vector<UtilityPoint> together;
     for (const auto& point : points) {
-        const auto twin = std::find_if(together.begin(), together.end(), [&](const UtilityPoint& other) {
+        const auto twin = std::ranges::find_if(together, [&](const UtilityPoint& other) {
             return std::abs(other.soc_percent - point.soc_percent) <= near_part * soc_span &&
                    std::abs(other.utility - point.utility) <= near_part * utility_span;
         });
@@ -83,40 +76,33 @@ VegaJson names_layer(const std::vector<UtilityPoint>& points) {
         data.add({point.soc_percent, point.utility},
                  {point.mission, point.soc_percent > right_end * greatest_percent ? "left" : "right"});
     }
-    const auto texts = [&](const std::string& side, int away_px) -> VegaJson {
-        const bool to_the_left = side == "left";
-        auto encoding = utility_axes();
-        encoding["text"] = category("mission", "mission");
-        return {{"transform", VegaJson::array({{{"filter", {{"field", "side"}, {"equal", side}}}}})},
-                {"mark",
-                 {{"type", "text"},
-                  {"style", "note"},
-                  {"align", to_the_left ? "right" : "left"},
-                  {"dx", to_the_left ? -away_px : away_px},
-                  {"dy", 11},
-                  {"limit", 220}}},
-                {"encoding", encoding}};
+    auto encoding = utility_axes();
+    encoding["text"] = category("mission", "mission");
+    const auto texts = [&](std::string_view side, std::string_view mark) {
+        VegaJson filtered{
+            {"transform", VegaJson::array({{{"filter", {{"field", "side"}, {"equal", side}}}}})}};
+        filtered.update(layer(mark, encoding));
+        return filtered;
     };
-    constexpr int away_px = 8;
-    return {{"data", data.json()}, {"layer", {texts("left", away_px), texts("right", away_px)}}};
+    return {
+        {"data", data.json()},
+        {"layer",
+         {texts("left",
+                R"({"type": "text", "style": "note", "align": "right", "dx": -8, "dy": 11, "limit": 220})"),
+          texts("right",
+                R"({"type": "text", "style": "note", "align": "left", "dx": 8, "dy": 11, "limit": 220})")}}};
 }
 
-/// A line across with its name.
-VegaJson rule_layer(std::string_view channel, double value, const std::string& text) {
-    const VegaJson one{{"values", VegaJson::array({{{"text", text}}})}};
-    const bool upright = channel == "x";
-    const VegaJson rule{
-        {"mark", {{"type", "rule"}, {"style", "edge"}, {"strokeDash", {5, 3}}, {"strokeWidth", 1.5}}},
-        {"encoding", {{channel, {{"datum", value}}}, {"tooltip", category("text", "line")}}}};
-    VegaJson mark{{"type", "text"},
-                  {"style", "note"},
-                  {"align", upright ? "left" : "right"},
-                  {"dx", upright ? 4 : -4},
-                  {"dy", upright ? 10 : -5}};
-    mark[upright ? "y" : "x"] = upright ? VegaJson(0) : VegaJson{{"expr", "width"}};
-    const VegaJson name{{"mark", mark},
-                        {"encoding", {{channel, {{"datum", value}}}, {"text", category("text", "line")}}}};
-    return {{"data", one}, {"layer", {rule, name}}};
+/// A line across the figure, its place on `channel`, with its name written by `mark`.
+VegaJson rule_layer(std::string_view channel, double value, const std::string& text, std::string_view mark) {
+    const auto with = [&](std::string_view more) -> VegaJson {
+        return {{channel, {{"datum", value}}}, {more, category("text", "line")}};
+    };
+    return {{"data", {{"values", VegaJson::array({{{"text", text}}})}}},
+            {"layer",
+             {layer(R"({"type": "rule", "style": "edge", "strokeDash": [5, 3], "strokeWidth": 1.5})",
+                    with("tooltip")),
+              layer(mark, with("text"))}}};
 }
 
 VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
@@ -127,32 +113,27 @@ VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
                   power_w(component.profile, running.qos), running.end_s - running.start_s},
                  {component.name, describe_qos(component, running.qos)});
     }
-    const VegaJson axis{{"scale", {{"domain", {0.0, duration_s}}, {"nice", false}}},
-                        {"axis", {{"grid", false}}}};
-    const auto y = category("component", "", {{"sort", nullptr}, {"axis", {{"labelLimit", 130}}}});
-    const VegaJson bar{{"mark", {{"type", "bar"}, {"clip", true}, {"height", 15}, {"yOffset", 9}}},
-                       {"encoding",
-                        {{"x", quantity("from_s", mission_time_title, axis)},
-                         {"x2", {{"field", "to_s"}}},
-                         {"y", y},
-                         {"color", quantity("power_w", "power of the component [W]",
-                                            {{"scale", {{"range", "ramp"}}},
-                                             {"legend", {{"orient", "bottom"}, {"gradientLength", 160}}}})},
-                         {"tooltip",
-                          {category("component", "component"), category("runs", "runs"),
-                           quantity("from_s", "from [s]", {{"format", ".0f"}}),
-                           quantity("to_s", "to [s]", {{"format", ".0f"}}),
-                           quantity("power_w", "power [W]", {{"format", ".2f"}})}}}}};
+    const VegaJson whole{{"scale", {{"domain", {0.0, duration_s}}, {"nice", false}}},
+                         {"axis", {{"grid", false}}}};
+    const auto y = category("component", "", vega(R"({"sort": null, "axis": {"labelLimit": 130}})"));
+    const auto bars = layer(
+        R"({"type": "bar", "clip": true, "height": 15, "yOffset": 9})",
+        {{"x", quantity("from_s", mission_time_title, whole)},
+         {"x2", {{"field", "to_s"}}},
+         {"y", y},
+         {"color", power_ramp("power_w", "power of the component [W]")},
+         {"tooltip",
+          {category("component", "component"), category("runs", "runs"), shown("from_s", "from [s]", ".0f"),
+           shown("to_s", "to [s]", ".0f"), shown("power_w", "power [W]", ".2f")}}});
     constexpr double least_part = 0.13;  // of the time: a shorter bar has no room for its words
-    const VegaJson words{
+    VegaJson words{
         {"transform",
-         VegaJson::array({{{"filter", fmt::format("datum.long_s > {}", least_part * duration_s)}}})},
-        {"mark", {{"type", "text"}, {"style", "note"}, {"dy", -8}}},
-        {"encoding",
-         {{"x", quantity("middle_s", mission_time_title, axis)},
-          {"y", y},
-          {"text", category("runs", "runs")}}}};
-    return {{"data", data.json()}, {"layer", {bar, words}}};
+         VegaJson::array({{{"filter", fmt::format("datum.long_s > {}", least_part * duration_s)}}})}};
+    words.update(layer(R"({"type": "text", "style": "note", "dy": -8})",
+                       {{"x", quantity("middle_s", mission_time_title, whole)},
+                        {"y", y},
+                        {"text", category("runs", "runs")}}));
+    return {{"data", data.json()}, {"layer", {bars, words}}};
 }
 
 VegaJson edge_layer(const mission::Mission& mission) {
@@ -163,15 +144,13 @@ VegaJson edge_layer(const mission::Mission& mission) {
         data.add({timeline.start_s[phase], timeline.start_s[phase] + mission.duration_s[phase] / 2.0},
                  {phase_word(phase)});
     }
-    const auto x = quantity("begin_s", mission_time_title);
-    const VegaJson rule{
-        {"mark", {{"type", "rule"}, {"style", "edge"}, {"strokeDash", {3, 3}}, {"aria", false}}},
-        {"encoding", {{"x", x}}}};
-    const VegaJson word{
-        {"mark", {{"type", "text"}, {"style", "note"}, {"baseline", "bottom"}, {"dy", -3}, {"y", 0}}},
-        {"encoding",
-         {{"x", quantity("middle_s", mission_time_title)}, {"text", category("phase", "phase")}}}};
-    return {{"data", data.json()}, {"layer", {rule, word}}};
+    return {
+        {"data", data.json()},
+        {"layer",
+         {layer(R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "aria": false})",
+                {{"x", quantity("begin_s", mission_time_title)}}),
+          layer(R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0})",
+                {{"x", quantity("middle_s", mission_time_title)}, {"text", category("phase", "phase")}})}}};
 }
 
 }  // namespace
@@ -203,44 +182,43 @@ std::string describe_qos(const compute::Component& component, const std::vector<
 
 Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points,
                       const std::string& id) {
-    Figure figure;
-    figure.id = id;
-    figure.caption =
-        "The utility of the schedules, by that of the planned mission, over what they leave. To the left "
-        "of the reserve a schedule spends what was to be kept; above the bound there is none that keeps it. "
-        "What runs after the battery's end counts nothing.";
-    figure.description = "Utility over final state of charge.";
+    std::string description = "Utility over final state of charge.";
     for (const auto& point : points) {
-        figure.description +=
+        description +=
             fmt::format(" {}: {:.4g} at {:.2f} %.", point.mission, point.utility, point.soc_percent);
     }
-    figure.spec = new_spec(figure);
+    auto figure = new_figure(
+        id,
+        "The utility of the schedules, by that of the planned mission, over what they leave. To the left "
+        "of the reserve a schedule spends what was to be kept; above the bound there is none that keeps it. "
+        "What runs after the battery's end counts nothing.",
+        description);
     figure.spec["width"] = plan_width;
     figure.spec["height"] = 260;
-    figure.spec["layer"] = VegaJson::array();
-    const double reserve_percent = planned.simulation.summary.reserve_soc_percent;
-    figure.spec["layer"].push_back(rule_layer("x", reserve_percent, "reserve"));
+    auto& layers = figure.spec["layer"] = VegaJson::array();
+    layers.push_back(
+        rule_layer("x", planned.simulation.summary.reserve_soc_percent, "reserve",
+                   R"({"type": "text", "style": "note", "align": "left", "dx": 4, "dy": 10, "y": 0})"));
     if (planned.planned->feasible) {
-        figure.spec["layer"].push_back(rule_layer("y", planned.planned->bound, "proven bound"));
+        layers.push_back(rule_layer(
+            "y", planned.planned->bound, "proven bound",
+            R"({"type": "text", "style": "note", "align": "right", "dx": -4, "dy": -5, "x": {"expr": "width"}})"));
     }
-    figure.spec["layer"].push_back(points_layer(points));
-    figure.spec["layer"].push_back(names_layer(points));
+    layers.push_back(points_layer(points));
+    layers.push_back(names_layer(points));
     return figure;
 }
 
 Figure strip_figure(const SimulatedMission& planned, const std::string& id) {
     const auto& mission = planned.mission;
-    Figure figure;
-    figure.id = id;
-    figure.caption = "What runs when, coloured by its power; a component without a bar is off.";
-    figure.description = fmt::format("What {} runs when.", planned.title);
+    auto description = fmt::format("What {} runs when.", planned.title);
     for (const auto& running : running_times(mission)) {
         const auto& component = mission.compute.components[running.component];
-        figure.description +=
-            fmt::format(" {} {} from {:.0f} to {:.0f} s.", component.name,
-                        describe_qos(component, running.qos), running.start_s, running.end_s);
+        description += fmt::format(" {} {} from {:.0f} to {:.0f} s.", component.name,
+                                   describe_qos(component, running.qos), running.start_s, running.end_s);
     }
-    figure.spec = new_spec(figure);
+    auto figure = new_figure(id, "What runs when, coloured by its power; a component without a bar is off.",
+                             description);
     figure.spec["width"] = plan_width;
     figure.spec["height"] = {{"step", 42}};
     figure.spec["usermeta"] = {{"margin_px", 150}};  // the components' names

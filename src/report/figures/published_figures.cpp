@@ -44,7 +44,7 @@ PublishedFigures read_published_figures(const std::filesystem::path& folder) {
     for (const auto* mission : {"mechanical-only", "invariant-5.8fps-32bit", "invariant-10fps-240bit",
                                 "invariant-32fps-448bit", "phased", "adaptive"}) {
         auto name = std::string("fig3_") + mission + ".csv";
-        std::replace(name.begin(), name.end(), '-', '_');
+        std::ranges::replace(name, '-', '_');
         figures.soc[mission] = read_curve(folder / name, "soc_percent");
     }
     figures.soc_cells = read_cells(folder / "fig4_soc_cells.csv");

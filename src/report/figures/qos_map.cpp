@@ -1,14 +1,20 @@
-#include "report/figures/qos_map.h"
-
 #include "mission/simulation.h"
+#include "report/figures/mission_figures.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace flightwatt::report {
 namespace {
+
+constexpr auto map_soc_title = "final state of charge [%]";
 
 /// The profiled values, and two more between each of them: the paper's grid.
 std::vector<double> with_thirds(const std::vector<double>& profiled) {
@@ -52,17 +58,121 @@ std::vector<mission::ScheduleSegment> throughout(const mission::MissionSetup& mi
     return schedule;
 }
 
-bool same_profiles(const compute::ComputeModel& a, const compute::ComputeModel& b) {
-    if (a.components.size() != b.components.size()) return false;
-    for (std::size_t c = 0; c < a.components.size(); ++c) {
-        const auto& one = a.components[c].profile;
-        const auto& other = b.components[c].profile;
-        if (a.components[c].name != b.components[c].name || one.parameters != other.parameters ||
-            one.axes != other.axes || one.power_w != other.power_w) {
-            return false;
+double cell_soc(const QosMap& map, std::size_t i, std::size_t j) {
+    return (map.at(i, j) + map.at(i + 1, j) + map.at(i, j + 1) + map.at(i + 1, j + 1)) / 4.0;
+}
+
+VegaJson axis(const std::string& field, const QosAxis& qos) {
+    return quantity(
+        field, valid_utf8(qos.name),
+        {{"scale", {{"domain", {qos.nodes.front(), qos.nodes.back()}}, {"nice", false}, {"zero", false}}},
+         {"axis", {{"grid", false}}}});
+}
+
+VegaJson soc_color() {
+    return quantity("soc_percent", map_soc_title,
+                    vega(R"({"scale": {"range": "heatmap"}, "legend": {"gradientLength": 200}})"));
+}
+
+VegaJson cell_layer(const QosMap& map) {
+    FigureData data({"x_low", "x_high", "y_low", "y_high", "soc_percent"});
+    for (std::size_t j = 0; j + 1 < map.y.nodes.size(); ++j) {
+        for (std::size_t i = 0; i + 1 < map.x.nodes.size(); ++i) {
+            data.add({map.x.nodes[i], map.x.nodes[i + 1], map.y.nodes[j], map.y.nodes[j + 1],
+                      cell_soc(map, i, j)});
         }
     }
-    return true;
+    return layer(data.json(), R"({"type": "rect"})",
+                 {{"x", axis("x_low", map.x)},
+                  {"x2", {{"field", "x_high"}}},
+                  {"y", axis("y_low", map.y)},
+                  {"y2", {{"field", "y_high"}}},
+                  {"color", soc_color()},
+                  {"tooltip",
+                   {quantity("x_low", valid_utf8(map.x.name) + " from"), quantity("x_high", "to"),
+                    quantity("y_low", valid_utf8(map.y.name) + " from"), quantity("y_high", "to"),
+                    shown("soc_percent", map_soc_title, ".2f")}}});
+}
+
+/// The configurations that the missions run with both components on, and who runs them.
+std::map<std::pair<double, double>, std::string> configurations(const QosMap& map,
+                                                                std::span<const SimulatedMission> missions) {
+    std::map<std::pair<double, double>, std::string> marked;
+    for (const auto& mission : missions) {
+        for (const auto& segment : mission.mission.schedule) {
+            std::optional<double> x;
+            std::optional<double> y;
+            for (const auto& running : segment.run) {
+                if (running.component == map.x.component) x = running.qos[map.x.parameter];
+                if (running.component == map.y.component) y = running.qos[map.y.parameter];
+            }
+            if (!x || !y) continue;
+            auto& who = marked[{*x, *y}];
+            if (who.ends_with(mission.title)) continue;
+            who += (who.empty() ? "" : ", ") + mission.title;
+        }
+    }
+    return marked;
+}
+
+VegaJson marker_layer(const QosMap& map, std::span<const SimulatedMission> missions) {
+    FigureData data({"x", "y"}, {"missions"});
+    for (const auto& [place, who] : configurations(map, missions))
+        data.add({place.first, place.second}, {who});
+    return layer(data.json(),
+                 R"({"type": "point", "shape": "diamond", "style": "marker", "filled": true, "opacity": 1,
+                     "size": 130, "strokeWidth": 1.5})",
+                 {{"x", axis("x", map.x)},
+                  {"y", axis("y", map.y)},
+                  {"tooltip",
+                   {category("missions", "run by"), quantity("x", valid_utf8(map.x.name)),
+                    quantity("y", valid_utf8(map.y.name))}}});
+}
+
+VegaJson published_layer(const QosMap& map, const std::vector<PublishedCell>& cells) {
+    FigureData data({"x", "y", "soc_percent"});
+    for (const auto& cell : cells) {
+        data.add({std::midpoint(cell.fps_low, cell.fps_high),
+                  std::midpoint(cell.key_bits_low, cell.key_bits_high), cell.soc_percent});
+    }
+    return layer(data.json(),
+                 R"({"type": "circle", "size": 80, "opacity": 1, "stroke": "#ffffff", "strokeWidth": 0.8,
+                     "strokeOpacity": 0.8, "aria": false})",
+                 {{"x", axis("x", map.x)},
+                  {"y", axis("y", map.y)},
+                  {"color", soc_color()},
+                  {"tooltip",
+                   {quantity("x", valid_utf8(map.x.name)), quantity("y", valid_utf8(map.y.name)),
+                    shown("soc_percent", "published, Fig. 4 [%]", ".2f")}}});
+}
+
+/// The least and the greatest of what can be delivered; both 0 if nothing can.
+std::pair<double, double> range_of(const QosMap& map) {
+    std::vector<double> known;
+    std::ranges::copy_if(map.soc_percent, std::back_inserter(known),
+                         [](double soc) { return std::isfinite(soc); });
+    if (known.empty()) return {0.0, 0.0};
+    const auto [least, greatest] = std::ranges::minmax_element(known);
+    return {*least, *greatest};
+}
+
+/// Of the published cells that are cells of the map; std::nullopt if one is not.
+std::optional<double> rms_to_published(const QosMap& map, const std::vector<PublishedCell>& cells) {
+    const auto index = [](const std::vector<double>& nodes, double low) -> std::optional<std::size_t> {
+        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+            if (std::abs(nodes[i] - low) < 0.02 * (nodes.back() - nodes.front())) return i;
+        }
+        return std::nullopt;
+    };
+    double squares = 0.0;
+    for (const auto& cell : cells) {
+        const auto i = index(map.x.nodes, cell.fps_low);
+        const auto j = index(map.y.nodes, cell.key_bits_low);
+        if (!i || !j) return std::nullopt;
+        squares += std::pow(cell_soc(map, *i, *j) - cell.soc_percent, 2);
+    }
+    if (cells.empty()) return std::nullopt;
+    return std::sqrt(squares / static_cast<double>(cells.size()));
 }
 
 }  // namespace
@@ -92,17 +202,59 @@ std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     return map;
 }
 
-bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b) {
-    const auto mechanical = [](const mission::MissionSetup& mission) {
+bool have_same_model(const mission::MissionSetup& a, const mission::MissionSetup& b) {
+    const auto text = [](const mission::MissionSetup& mission) {
         return mission.mechanical ? to_toml(*mission.mechanical) : std::string();
     };
+    return text(a) == text(b);
+}
+
+bool have_same_software(const mission::MissionSetup& a, const mission::MissionSetup& b) {
+    return std::ranges::equal(a.compute.components, b.compute.components,
+                              [](const compute::Component& one, const compute::Component& other) {
+                                  return one.name == other.name &&
+                                         one.profile.parameters == other.profile.parameters &&
+                                         one.profile.axes == other.profile.axes &&
+                                         one.profile.power_w == other.profile.power_w;
+                              });
+}
+
+bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b) {
     const auto nameless = [](battery::Battery battery) {
         battery.name.clear();
         return to_toml(battery);
     };
     return a.duration_s.values == b.duration_s.values && a.initial_soc_percent == b.initial_soc_percent &&
-           nameless(a.battery) == nameless(b.battery) && same_profiles(a.compute, b.compute) &&
-           a.phase_clock == b.phase_clock && mechanical(a) == mechanical(b);
+           nameless(a.battery) == nameless(b.battery) && have_same_software(a, b) &&
+           a.phase_clock == b.phase_clock && have_same_model(a, b);
+}
+
+Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missions,
+                      const std::vector<PublishedCell>& published, const std::string& id) {
+    const auto [least, greatest] = range_of(map);
+    std::string caption =
+        "State of charge at the end if one configuration ran throughout. A cell is the mean of its corners; "
+        "diamonds are the configurations that the missions run.";
+    if (!map.others.empty()) caption += fmt::format(" With {}.", map.others);
+    const auto rms = rms_to_published(map, published);
+    if (rms) {
+        caption += fmt::format(
+            " Discs: the paper's Fig. 4, digitised, on the same colours: one that agrees is seen by its rim "
+            "alone. RMS difference over {} cells {:.2f} points.",
+            published.size(), *rms);
+    }
+    auto figure = new_figure(
+        id, caption,
+        fmt::format(
+            "Final state of charge over {} and {}: from {:.1f} % to {:.1f} % where one configuration runs "
+            "throughout.",
+            map.x.name, map.y.name, least, greatest));
+    figure.spec["width"] = 560;
+    figure.spec["height"] = 320;
+    figure.spec["layer"] = VegaJson::array({cell_layer(map)});
+    if (rms) figure.spec["layer"].push_back(published_layer(map, published));
+    figure.spec["layer"].push_back(marker_layer(map, missions));
+    return figure;
 }
 
 }  // namespace flightwatt::report

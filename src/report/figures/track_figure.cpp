@@ -1,8 +1,6 @@
-#include "report/figures/track_figure.h"
-
 #include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
-#include "report/sections/phase_words.h"
+#include "report/figures/flight_figures.h"
 
 #include <algorithm>
 #include <limits>
@@ -112,19 +110,19 @@ VegaJson encoding_of(const Square& square) {
                            {"nice", false},
                            {"zero", false}}}});
     };
-    const VegaJson colors{{"domain", {"take-off", "cruise", "landing"}}, {"range", "phases"}};
-    const VegaJson dashes{
-        {"domain", {"take-off", "cruise", "landing"}},
-        {"range", {VegaJson::array({6, 2}), VegaJson::array({1, 0}), VegaJson::array({2, 2})}}};
+    const auto color = vega(R"({"scale": {"domain": ["take-off", "cruise", "landing"], "range": "phases"},
+        "legend": {"symbolType": "stroke"}})");
+    auto dash = color;
+    dash["scale"]["range"] = vega("[[6, 2], [1, 0], [2, 2]]");
     return {{"x", axis("east_m", "east [m]", square.east_m)},
             {"y", axis("north_m", "north [m]", square.north_m)},
             {"order", {{"field", "order"}, {"type", "quantitative"}}},
             {"detail", {{"field", "piece"}}},
-            {"color", category("word", "", {{"scale", colors}, {"legend", {{"symbolType", "stroke"}}}})},
-            {"strokeDash", category("word", "", {{"scale", dashes}, {"legend", {{"symbolType", "stroke"}}}})},
+            {"color", category("word", "", color)},
+            {"strokeDash", category("word", "", dash)},
             {"tooltip",
-             {category("word", "phase"), quantity("east_m", "east [m]", {{"format", ".0f"}}),
-              quantity("north_m", "north [m]", {{"format", ".0f"}})}}};
+             {category("word", "phase"), shown("east_m", "east [m]", ".0f"),
+              shown("north_m", "north [m]", ".0f")}}};
 }
 
 }  // namespace
@@ -135,21 +133,17 @@ std::optional<Figure> track_figure(const ReportFlight& flight, const std::string
     const auto square = square_around(flight, track);
     const auto data = track_rows(flight, track, square.half_m / side);
     if (data.empty()) return std::nullopt;
-    Figure figure;
-    figure.id = id;
-    figure.caption = "Ground track from above, coloured by phase; broken where samples are missing.";
-    figure.description = fmt::format(
-        "Ground track of flight {} coloured by phase, within {:.0f} m from west to east and from south to "
-        "north.",
-        flight.name, 2.0 * square.half_m);
-    figure.spec = new_spec(figure);
+    auto figure = new_figure(
+        id, "Ground track from above, coloured by phase; broken where samples are missing.",
+        fmt::format(
+            "Ground track of flight {} coloured by phase, within {:.0f} m from west to east and from south to "
+            "north.",
+            flight.name, 2.0 * square.half_m));
     figure.spec["data"] = data.json();
     figure.spec["width"] = side;
     figure.spec["height"] = side;
-    figure.spec["mark"] = {{"type", "line"},
-                           {"strokeWidth", 1.5},
-                           {"clip", true},
-                           {"point", {{"opacity", 0}, {"size", 50}, {"aria", false}}}};
+    figure.spec["mark"] = vega(R"({"type": "line", "strokeWidth": 1.5, "clip": true,
+        "point": {"opacity": 0, "size": 50, "aria": false}})");
     figure.spec["encoding"] = encoding_of(square);
     return figure;
 }

@@ -1,8 +1,8 @@
-// The options of a fit, and a fitted model as JSON.
+// The options of a fit.
 
 #include "cli/output/fit_options.h"
 
-#include "helpers/made_up_flights.h"
+#include "base/error.h"
 
 #include <string>
 #include <vector>
@@ -69,16 +69,6 @@ TEST(FitOptions, RefuseWhatDoesNotFitTogether) {
     EXPECT_THAT(refusal({"--weights", "heavy"}),
                 HasSubstr("expected uniform, inverse-variance or agreement"));
     EXPECT_NE(refusal({"--min-periods", "-1"}), "nothing refused");
-}
-
-TEST(ModelJson, HoldsThePhasesAndFlightsOfTheModel) {
-    const auto model = test::published_model();
-    const auto json = to_json(model);
-    EXPECT_EQ(json["name"], model.name);
-    const auto& cruise = model.phases[flight::Phase::cruise];
-    EXPECT_EQ(json["phases"]["cruise"]["a0_w"], cruise.fourier.a0_w);
-    EXPECT_EQ(json["phases"]["cruise"]["cos_w"].size(), cruise.fourier.cos_w.size());
-    EXPECT_EQ(json["flights"].size(), model.flights.size());
 }
 
 }  // namespace

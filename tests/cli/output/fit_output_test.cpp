@@ -1,7 +1,8 @@
-// What a fit says of its errors, outliers and orders.
+// Table I by the ending of its file; model, errors and orders as JSON and as notes.
 
-#include "cli/output/fit_error_output.h"
+#include "cli/output/fit_output.h"
 
+#include "base/error.h"
 #include "helpers/made_up_flights.h"
 
 #include <string>
@@ -14,6 +15,29 @@ namespace flightwatt::cli {
 namespace {
 
 using testing::HasSubstr;
+
+const TextTable small{{"name", "a0"}, {{"cruise", "24.5"}}};
+
+TEST(TableText, FollowsTheEndingOfTheFile) {
+    EXPECT_EQ(table_text(small, "t.csv"), "name,a0\ncruise,24.5\n");
+    EXPECT_EQ(table_text(small, "t.txt"), "name      a0\ncruise  24.5\n");
+    EXPECT_THAT(table_text(small, "t.md"), HasSubstr("| cruise | 24.5 |"));
+    EXPECT_THAT(table_text(small, "folder.csv/t.tex"), HasSubstr("\\begin{tabular}"));
+}
+
+TEST(TableText, RefusesAnotherEnding) {
+    EXPECT_THROW(table_text(small, "t.pdf"), UsageError);
+    EXPECT_THROW(table_text(small, "csv"), UsageError);
+}
+
+TEST(TableOf, StandsBesideAPublishedModelWhereThereIsOne) {
+    const auto model = test::published_model();
+    const auto alone = table_of(model, std::nullopt);
+    const auto beside = table_of(model, model);
+    EXPECT_EQ(alone.header.size(), 4U) << "a name and three phases";
+    EXPECT_EQ(beside.header.size(), 7U);
+    EXPECT_GT(beside.rows.size(), alone.rows.size()) << "durations and differences stand below";
+}
 
 std::vector<mechanical::FlightSamples> recorded_flights() {
     std::vector<mechanical::FlightSamples> flights(3);
@@ -96,6 +120,16 @@ TEST(NoteOrder, ShowsTheErrorOfEveryOrder) {
     EXPECT_THAT(said, HasSubstr("flightwatt-fit: cruise: order 1"));
     EXPECT_THAT(said, HasSubstr("1: 1.5, 2: -"));
     EXPECT_THAT(said, HasSubstr("order 2: too few samples"));
+}
+
+TEST(ModelJson, HoldsThePhasesAndFlightsOfTheModel) {
+    const auto model = test::published_model();
+    const auto json = to_json(model);
+    EXPECT_EQ(json["name"], model.name);
+    const auto& cruise = model.phases[flight::Phase::cruise];
+    EXPECT_EQ(json["phases"]["cruise"]["a0_w"], cruise.fourier.a0_w);
+    EXPECT_EQ(json["phases"]["cruise"]["cos_w"].size(), cruise.fourier.cos_w.size());
+    EXPECT_EQ(json["flights"].size(), model.flights.size());
 }
 
 }  // namespace

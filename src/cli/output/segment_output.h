@@ -1,12 +1,17 @@
 #pragma once
 
 #include "base/text_table.h"
+#include "cli/terminal.h"
 #include "flight/edge_witness.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
 
 #include <string>
+#include <vector>
 
+#include <nlohmann/json.hpp>
+
+/// What flightwatt segment says of a flight.
 namespace flightwatt::cli {
 
 /// What the autopilot says of an edge: its witnesses, then events nearby; '-' for nothing.
@@ -18,5 +23,14 @@ TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPh
 /// What `segment --explain` prints: the edges, what is no flight and what was found of the power record.
 std::string explanation(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                         const flight::PowerReport& power);
+
+/// What `segment --json` prints: sorties with phases and edges, what is no flight, the power check and the
+/// warnings. null stands for what is not known.
+nlohmann::ordered_json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases,
+                               const flight::PowerReport& power, const std::vector<std::string>& warnings);
+
+/// Altitude over the log, and below it where the phases are.
+std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series,
+                             const flight::FlightPhases& phases);
 
 }  // namespace flightwatt::cli

@@ -1,11 +1,11 @@
-#include "cli/output/fit_error_output.h"
+#include "cli/output/fit_output.h"
 
+#include "base/error.h"
 #include "base/statistics.h"
 #include "cli/output/json_text.h"
 #include "mechanical/model_fit.h"
 
 #include <algorithm>
-#include <string>
 
 #include <fmt/format.h>
 
@@ -65,6 +65,80 @@ nlohmann::ordered_json to_json(const mechanical::PhaseSpread& spread) {
 }
 
 }  // namespace
+
+std::optional<mechanical::MechanicalModel> read_published(const StageCall& call) {
+    const auto file = call.maybe<std::string>("published");
+    return file ? std::optional(mechanical::read_mechanical_model(*file)) : std::nullopt;
+}
+
+TextTable table_of(const mechanical::MechanicalModel& model,
+                   const std::optional<mechanical::MechanicalModel>& published,
+                   mechanical::TableIntervals intervals) {
+    return published ? table_one_beside(*published, model, intervals) : table_one(model, intervals);
+}
+
+std::string table_text(const TextTable& table, const std::filesystem::path& file) {
+    const auto ending = file.extension().string();
+    if (ending == ".txt") return to_text(table);
+    if (ending == ".csv") return to_csv(table);
+    if (ending == ".md") return to_markdown(table);
+    if (ending == ".tex") return mechanical::to_latex(table);
+    throw UsageError(fmt::format("{}: expected a name that ends in .txt, .csv, .md or .tex", file.string()));
+}
+
+nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
+    using Json = nlohmann::ordered_json;
+    Json json{{"name", model.name},
+              {"weighting", model.weighting},
+              {"phases", Json::object()},
+              {"flights", Json::array()}};
+    for (const auto phase : flight::all_phases) {
+        const auto& fitted = model.phases[phase];
+        auto& entry = json["phases"][std::string(to_string(phase))];
+        entry = {{"duration_s", fitted.duration_s}, {"omega_rad_per_s", fitted.fourier.omega_rad_per_s},
+                 {"a0_w", fitted.fourier.a0_w},     {"cos_w", fitted.fourier.cos_w},
+                 {"sin_w", fitted.fourier.sin_w},   {"rms_w", fitted.rms_w.value_or(0.0)},
+                 {"samples", fitted.samples},       {"flights", fitted.flights}};
+        if (const auto& law = fitted.level_law) {
+            entry["level_law"] = {{"covariate", to_string(law->covariate)},
+                                  {"flights", law->flights},
+                                  {"mean", law->mean},
+                                  {"sd", law->sd},
+                                  {"least", law->least},
+                                  {"most", law->most},
+                                  {"mean_power_w", law->mean_power_w},
+                                  {"slope_w", law->slope_w},
+                                  {"residual_sd_w", law->residual_sd_w.value()}};
+        }
+        if (fitted.range) {
+            entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},
+                                           {"high", fitted.range->high_rad},
+                                           {"at_bound", to_string(fitted.range->at_bound)}};
+        }
+    }
+    for (const auto& flight : model.flights) {
+        Json weights = Json::object();
+        for (const auto phase : flight::all_phases) {
+            const auto& part = flight.phases[phase];
+            weights[std::string(to_string(phase))] = part ? Json(part->weight) : Json();
+        }
+        json["flights"].push_back({{"flight", flight.flight}, {"weights", weights}});
+    }
+    return json;
+}
+
+void warn_of_bounds(const StageCall& call, const mechanical::MechanicalModel& model) {
+    for (const auto phase : flight::all_phases) {
+        const auto& fitted = model.phases[phase];
+        if (!fitted.range || fitted.range->at_bound == mechanical::FrequencyBound::none) continue;
+        warn(call,
+             fmt::format("{}: omega * duration stands at its {} bound, {:.3f} rad: the frequency is not "
+                         "determined by the data, the curve is",
+                         to_string(phase), to_string(fitted.range->at_bound),
+                         fitted.range->at_bound == mechanical::FrequencyBound::low ? fitted.range->low_rad
+                                                                                   : fitted.range->high_rad));
+    }
+}
 
 void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,
                      const flight::PerPhase<mechanical::PhaseErrorReport>& reports) {

@@ -1,10 +1,8 @@
-#include "report/figures/flight_figure.h"
+#include "report/figures/flight_figures.h"
 
 #include "flight/chosen_track.h"
 #include "flight/load_flight.h"
 #include "helpers/test_paths.h"
-#include "report/figures/track_figure.h"
-#include "report/sections/flight_edges.h"
 
 #include <algorithm>
 #include <string>
@@ -54,11 +52,11 @@ TEST(FlightFigure, SaysWhatTheAutopilotSaidOfEdgesAndWhereTheLogEnds) {
     flight.verdicts = {{landing.start.time_s, "agrees with block Survey -> Land (+0.1 s)"}};
     landing.complete = false;
     landing.end.time_s = flight::power_track(flight.series).time_s.back();
-    const auto table = edge_table(flight);
-    ASSERT_EQ(table.rows.size(), 4U);
-    EXPECT_EQ(table.rows[2].back(), "agrees with block Survey -> Land (+0.1 s)");
-    EXPECT_EQ(table.rows[3].front(), "the log ends");
-    EXPECT_EQ(table.rows[3].back(), "-");
+    const auto edges = edges_of(flight);
+    ASSERT_EQ(edges.size(), 4U);
+    EXPECT_EQ(edges[2].verdict, "agrees with block Survey -> Land (+0.1 s)");
+    EXPECT_EQ(edges[3].name, "the log ends");
+    EXPECT_EQ(edges[3].verdict, "-");
 }
 
 TEST(FlightFigure, DrawsNoChannelThatTheLogLacks) {

@@ -1,13 +1,36 @@
 #pragma once
 
+#include "base/text_table.h"
 #include "cli/stage.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/order_choice.h"
+#include "mechanical/table_one.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
-/// What a fit says of its errors, its outliers and its order.
+/// What a fit says: Table I, and as JSON the model with its errors, its outliers and its order.
 namespace flightwatt::cli {
+
+/// The model that --published names.
+std::optional<mechanical::MechanicalModel> read_published(const StageCall& call);
+
+/// Table I of a model, beside a published one where there is one.
+TextTable table_of(const mechanical::MechanicalModel& model,
+                   const std::optional<mechanical::MechanicalModel>& published,
+                   mechanical::TableIntervals intervals = mechanical::TableIntervals::absent);
+
+/// Text, CSV, Markdown or LaTeX, by the file's ending. Throws UsageError for another ending.
+std::string table_text(const TextTable& table, const std::filesystem::path& file);
+
+/// The fitted model as the stages' JSON.
+nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model);
+
+/// Warns of a frequency at the edge of what it could be.
+void warn_of_bounds(const StageCall& call, const mechanical::MechanicalModel& model);
 
 /// Adds errors, frequency_profile and spread to each phase of the stage's JSON.
 void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,

@@ -1,0 +1,121 @@
+#include "cli/output/mission_output.h"
+
+#include "base/error.h"
+#include "cli/numeric_options.h"
+#include "cli/output/json_text.h"
+
+#include <fmt/format.h>
+
+namespace flightwatt::cli {
+namespace {
+
+void add_to_json(const mission::SampledFlights& flights, nlohmann::ordered_json& json) {
+    json["probability_below_reserve"] = flights.probability_below_reserve;
+    json["probability_below_reserve_standard_error"] = flights.probability_below_reserve_standard_error;
+    json["probability_below_reserve_low"] = flights.probability_below_reserve_95.low;
+    json["probability_below_reserve_high"] = flights.probability_below_reserve_95.high;
+    json["probability_depleted"] = flights.probability_depleted;
+    json["probability_battery_failure"] = flights.probability_battery_failure;
+    json["samples"] = flights.samples;
+    json["seed"] = flights.seed;
+    json["final_soc_mean_percent"] = flights.final_soc_mean_percent;
+    json["final_soc_sd_percent"] = flights.final_soc_sd_percent;
+    auto& quantiles = json["final_soc_quantiles_percent"];
+    for (std::size_t i = 0; i < mission::shown_quantiles_percent.size(); ++i)
+        quantiles[std::to_string(mission::shown_quantiles_percent[i])] =
+            flights.final_soc_quantiles_percent[i];
+    json["drawn"] = flights.drawn;
+    json["not_drawn"] = flights.not_drawn;
+}
+
+}  // namespace
+
+void add_sampling_options(StageDefinition& stage) {
+    auto add = stage.options.add_options();
+    add("samples", value("N"),
+        "draw N flights from what the models (or [uncertainty]) say of how they differ");
+    add("seed", value("S"), "of --samples; 1 if not given");
+}
+
+std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, bool with_bands) {
+    constexpr std::size_t band_times = 101;
+    if (!call.has("samples")) {
+        for (const std::string option : {"seed", "samples-csv"}) {
+            if (call.has(option)) throw UsageError(fmt::format("--{} belongs to --samples", option));
+        }
+        return std::nullopt;
+    }
+    mission::SamplingOptions options;
+    options.samples = count_option(call, "samples");
+    if (call.has("seed")) options.seed = count_option(call, "seed");
+    if (with_bands) options.band_times = band_times;
+    return options;
+}
+
+std::vector<mission::Disturbance> read_disturb_option(const StageCall& call,
+                                                      const mission::MissionSetup& mission) {
+    const auto file = call.maybe<std::string>("disturb");
+    return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
+}
+
+nlohmann::ordered_json to_json(const mission::MissionSummary& summary) {
+    nlohmann::ordered_json json;
+    json["mission"] = summary.mission;
+    if (summary.schedule != mission::ScheduleOrigin::given) json["schedule"] = to_string(summary.schedule);
+    json["final_soc_percent"] = optional_json(summary.final_soc_percent);
+    json["energy_wh"] = summary.energy_wh;
+    json["mechanical_energy_wh"] = summary.mechanical_energy_wh;
+    json["compute_energy_wh"] = summary.compute_energy_wh;
+    json["delivered_energy_wh"] = summary.delivered_energy_wh;
+    json["duration_s"] = summary.duration_s;
+    json["depleted_at_s"] = optional_json(summary.depleted_at_s);
+    json["cut_off_at_s"] = optional_json(summary.cut_off_at_s);
+    json["feasible"] = summary.feasible;
+    json["reserve_soc_percent"] = summary.reserve_soc_percent;
+    json["keeps_reserve"] = summary.keeps_reserve;
+    if (summary.utility) json["utility"] = *summary.utility;
+    if (const auto& decisions = summary.decisions) {
+        json["decisions"] = decisions->made;
+        json["decisions_without_plan"] = decisions->without_plan;
+        json["learned_mechanical_factor"] = decisions->mechanical_factor;
+    }
+    if (summary.samples) add_to_json(*summary.samples, json);
+    return json;
+}
+
+nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
+    const bool feasible = plan.plan.feasible;
+    nlohmann::ordered_json json;
+    json["mission"] = mission.name;
+    json["feasible"] = feasible;
+    json["utility"] = feasible ? nlohmann::ordered_json(*plan.summary.utility) : nullptr;
+    json["bound"] = feasible && plan.plan.bound_is_proven ? nlohmann::ordered_json(plan.plan.bound) : nullptr;
+    json["final_soc_percent"] = optional_json(plan.summary.final_soc_percent);
+    json["reserve_soc_percent"] = mission.reserve_soc_percent;
+    json["margin_percent"] = plan.margin_percent;
+    return json;
+}
+
+nlohmann::ordered_json to_json(const mission::InfeasibilityReport& report) {
+    nlohmann::ordered_json json;
+    json["short_percent"] = report.short_percent;
+    json["short_wh"] = report.short_wh;
+    json["cut_off_at_s"] = optional_json(report.cut_off_at_s);
+    json["longest_cruise_s"] = optional_json(report.cruise_s);
+    json["least_fixed_spare_percent"] = optional_json(report.fixed_spare_percent);
+    json["largest_reserve_soc_percent"] = optional_json(report.reserve_soc_percent);
+    json["smallest_capacity_ah"] = optional_json(report.capacity_ah);
+    return json;
+}
+
+TerminalLine soc_line(const mission::SocCurve& curve, std::size_t rank) {
+    TerminalLine line;
+    line.label = fmt::format("{}", rank);
+    for (const auto& row : curve.rows) {
+        line.x.push_back(row.time_s);
+        line.y.push_back(row.soc_percent);
+    }
+    return line;
+}
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "cli/stage.h"
+#include "cli/terminal.h"
+#include "mission/disturbance.h"
+#include "mission/feasibility_limits.h"
+#include "mission/sampled_flights.h"
+#include "mission/simulation.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+/// What simulate, compare and plan have in common: drawing flights, and their answers as JSON.
+namespace flightwatt::cli {
+
+/// --samples and --seed.
+void add_sampling_options(StageDefinition& stage);
+
+/// None without --samples. Throws UsageError for what is no whole number, or belongs to --samples and stands
+/// without it.
+std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, bool with_bands);
+
+/// What --disturb says of a mission.
+std::vector<mission::Disturbance> read_disturb_option(const StageCall& call,
+                                                      const mission::MissionSetup& mission);
+
+/// The summary as simulate and compare print it; null stands for "never".
+nlohmann::ordered_json to_json(const mission::MissionSummary& summary);
+
+/// A plan; null stands for what an infeasible one does not have.
+nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission);
+
+nlohmann::ordered_json to_json(const mission::InfeasibilityReport& report);
+
+/// A mission's curve under its rank.
+TerminalLine soc_line(const mission::SocCurve& curve, std::size_t rank);
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "battery/identification.h"
+#include "mechanical/model_errors.h"
+#include "mechanical/validation.h"
+#include "report/batch_content.h"
+#include "report/figure.h"
+#include "report/figures/published_figures.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// The figures of flights, and of what was learnt from them: model, validation and battery.
+
+namespace flightwatt::report {
+
+/// Where a phase of a flight begins or ends.
+struct NamedEdge {
+    double time_s = 0.0;
+    std::string name;
+    std::string evidence;  ///< what was seen there
+    std::string verdict;   ///< what the autopilot says of it
+};
+
+/// The edges of a flight's phases, each once: a phase ends where the next one begins.
+std::vector<NamedEdge> edges_of(const ReportFlight& flight);
+
+/// Altitude, throttle and power of a flight on one time axis, its phases shaded, their edges explained, and
+/// the model over the power: each phase's curve stretched to the time flown. The flight was not rejected.
+Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
+                     const std::string& id);
+
+/// The ground track of a flight from above, coloured by phase, metres east and north on equal scales;
+/// std::nullopt where the log has no position.
+std::optional<Figure> track_figure(const ReportFlight& flight, const std::string& id);
+
+/// The mechanical model as the paper's Fig. 2, a panel a phase: the curve, the envelope of the flights and
+/// the 95 % band of the mean, where they are known (bands of no times: unknown), and the digitised figure's
+/// points where they are given.
+Figure model_figure(const mechanical::MechanicalModel& model,
+                    const flight::PerPhase<mechanical::CurveBand>& bands, const PublishedFigures& published,
+                    const std::string& id);
+
+/// How far each model's prediction of the energy of a flight that it has not seen was off: a point a flight,
+/// a row a model.
+Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, const std::string& id);
+
+/// Terminal voltage over time, measured and modelled, a panel a flight: the model predicts it from the
+/// current and the resting voltage alone. `records` is not empty.
+Figure voltage_figure(const battery::Battery& battery, std::span<const battery::DischargeRecord> records,
+                      const std::string& id);
+
+/// The open-circuit voltage over the state of charge with the 95 % intervals of its knots, and from where on
+/// the chart of LiPo cells stands in.
+Figure open_circuit_figure(const battery::BatteryIdentification& identified, const std::string& id);
+
+}  // namespace flightwatt::report
