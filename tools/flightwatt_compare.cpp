@@ -5,9 +5,9 @@
 #include "cli/output/sampling_output.h"
 #include "cli/output/terminal_pictures.h"
 #include "cli/stage.h"
-#include "mission/mission_summary.h"
 #include "mission/disturbance.h"
 #include "mission/mission_file.h"
+#include "mission/mission_summary.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
 
