@@ -4,8 +4,8 @@
 #include "helpers/paper_missions.h"
 #include "mission/feasibility_limits.h"
 #include "mission/plan.h"
-#include "mission/planning/planner.h"
 #include "mission/planning/depletion_table.h"
+#include "mission/planning/planner.h"
 #include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
