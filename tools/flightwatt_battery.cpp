@@ -1,7 +1,7 @@
 // flightwatt battery: flights to the battery that they were flown on.
 
 #include "base/error.h"
-#include "battery/lipo_chart.h"
+#include "battery/identification.h"
 #include "cli/numeric_options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"

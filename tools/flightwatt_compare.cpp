@@ -3,8 +3,8 @@
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
-#include "mission/comparison.h"
 #include "mission/mission_file.h"
+#include "mission/mission_summary.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
 

@@ -7,7 +7,6 @@
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "mission/feasibility_limits.h"
-#include "mission/infeasibility_report.h"
 #include "mission/mission_file.h"
 #include "mission/plan.h"
 

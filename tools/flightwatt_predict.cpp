@@ -7,7 +7,7 @@
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "flight/chosen_track.h"
-#include "flight/cut_series.h"
+#include "flight/flight_series.h"
 #include "mechanical/prediction.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/signal_watch.h"
 #include "base/toml_reader.h"
-#include "batch/folder_lock.h"
+#include "batch/write_guard.h"
 #include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/profile_output.h"
@@ -56,17 +56,16 @@ int check_interpolation(const cli::StageCall& call) {
 /// What the command line says otherwise than the specification.
 void apply_options(const cli::StageCall& call, compute::ProfileSpecification& specification) {
     auto& sampler = specification.sampler;
-    if (const auto kind = call.maybe<std::string>("sampler")) {
-        const bool needs_more = *kind == "command" || *kind == "recorded";
-        const bool known = *kind == "ina3221" ||
-                           std::find(compute::sampler_kinds.begin(), compute::sampler_kinds.end(), *kind) !=
-                               compute::sampler_kinds.end();
-        if (!known || (needs_more && sampler.kind != *kind)) {
-            throw UsageError(fmt::format("--sampler {}: {}", *kind,
-                                         known ? "its settings belong into the specification's [sampler]"
-                                               : "there is no such sampler; --help lists them"));
+    if (const auto name = call.maybe<std::string>("sampler")) {
+        using enum compute::SamplerKind;
+        const auto kind = compute::sampler_kind_from(*name);
+        const bool needs_more = kind == command || kind == recorded;
+        if (!kind || (needs_more && sampler.kind != *kind)) {
+            throw UsageError(fmt::format("--sampler {}: {}", *name,
+                                         kind ? "its settings belong into the specification's [sampler]"
+                                              : "there is no such sampler; --help lists them"));
         }
-        if (sampler.kind == "recorded" && *kind != "recorded") {
+        if (sampler.kind == recorded && *kind != recorded) {
             throw UsageError("--sampler: the specification is of recordings");
         }
         sampler.kind = *kind;
@@ -95,7 +94,7 @@ void note_run(const cli::StageCall& call, const compute::ProfileRun& run, const 
     const auto name = run.configuration.empty() ? run.component : run.component + " " + run.configuration;
     const auto what = run.was_done                           ? "up to date"
                       : run.status == compute::RunStatus::ok ? fmt::format("{:.4g} W", run.estimate.power_w)
-                                                             : to_string(run.status);
+                                                             : std::string(to_string(run.status));
     cli::note(call, fmt::format("[{}/{}] {} repeat {}: {}{}", runs.done, runs.all, name, run.repeat, what,
                                 run.note.empty() ? "" : ": " + run.note));
 }
@@ -107,7 +106,7 @@ compute::ProfilerOptions options_of(const cli::StageCall& call, const SignalWatc
     options.caught = [&signals] { return signals.caught().value_or(SIGINT); };
     options.opened = [&call](const compute::PowerSampler& sampler) {
         for (const auto& line : sampler.found) cli::note(call, "found " + line);
-        cli::note(call, fmt::format("sampling with {}: {}", sampler.kind, sampler.source));
+        cli::note(call, fmt::format("sampling with {}: {}", to_string(sampler.kind), sampler.source));
     };
     if (call.has("trials")) options.trials = cli::count_option(call, "trials");
     return options;

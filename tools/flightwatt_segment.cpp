@@ -4,7 +4,7 @@
 #include "cli/output/json_text.h"
 #include "cli/output/segment_output.h"
 #include "cli/stage.h"
-#include "flight/phase_statistics.h"
+#include "flight/phases_file.h"
 
 #include <fmt/format.h>
 

@@ -29,6 +29,12 @@ double median(std::vector<double> values) {
     return boost::math::statistics::median(values.begin(), values.end());
 }
 
+double upper_median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 double quantile(std::span<const double> sorted, double probability) {
     const double place = static_cast<double>(sorted.size() - 1) * probability;
     const auto below = static_cast<std::size_t>(place);

@@ -19,6 +19,9 @@ double sample_sd(std::span<const double> values);
 /// Of an even number of values, the mean of the two middle ones. `values` must not be empty.
 double median(std::vector<double> values);
 
+/// Of an even number of values, the larger of the two middle ones: one that was measured. Not empty.
+double upper_median(std::vector<double> values);
+
 /// Quantile of values in ascending order, straight lines between them (Hyndman and Fan's type 7). `sorted`
 /// must not be empty; `probability` from 0 to 1.
 double quantile(std::span<const double> sorted, double probability);

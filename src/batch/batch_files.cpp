@@ -2,7 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "batch/flight_record.h"
+#include "flight/phases_file.h"
+#include "flight/series_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -28,6 +29,17 @@ std::vector<std::string> file_names(const std::filesystem::path& folder) {
     }
     std::sort(names.begin(), names.end());
     return names;
+}
+
+/// The flights that have a record in the folder, by name.
+std::vector<std::string> recorded_flights(const std::filesystem::path& folder) {
+    std::vector<std::string> flights;
+    for (const auto& file : file_names(folder)) {
+        if (file.ends_with(record_ending)) {
+            flights.push_back(file.substr(0, file.size() - std::string_view(record_ending).size()));
+        }
+    }
+    return flights;
 }
 
 /// What write_file_atomically() puts after a file's name until it renames it: a point and six letters or
@@ -78,23 +90,37 @@ std::string reason_of(const FlightRecord& record, const std::vector<LogFile>& lo
     return "its log is gone";
 }
 
+StoredFlight read_flight(const std::filesystem::path& folder, const std::string& name) {
+    const auto file = folder / (name + record_ending);
+    auto record = record_from_json(read_file(file));
+    if (!record) {
+        throw InputError({file.string()}, "this is no record of a flight that this version writes",
+                         "run flightwatt batch again");
+    }
+    record->flight = name;  // JSON holds no name that is not UTF-8
+    StoredFlight flight{std::move(*record), {}, {}};
+    if (!flight.record.accepted) return flight;
+    flight.series = flight::read_series_csv(folder / (name + series_ending));
+    flight.series.flight = name;
+    flight.phases = flight::read_phases_csv(folder / (name + phases_ending));
+    return flight;
+}
+
 }  // namespace
 
 std::vector<DroppedFlight> find_dropped(const std::vector<LogFile>& logs, const std::filesystem::path& out) {
     const auto names = names_of(logs);
     const auto folder = out / "flights";
     std::vector<DroppedFlight> dropped;
-    for (const auto& file : file_names(folder)) {
-        if (!file.ends_with(record_ending) || !is_left_over(file, names)) continue;
-        DroppedFlight flight{file.substr(0, file.size() - std::string_view(record_ending).size()), ""};
+    for (const auto& flight : recorded_flights(folder)) {
+        if (names.contains(flight)) continue;
         FlightRecord record;  // one that cannot be read names no log, and its log is then as good as gone
         try {
-            record = record_from_json(read_file(folder / file)).value_or(FlightRecord{});
+            record = record_from_json(read_file(folder / (flight + record_ending))).value_or(FlightRecord{});
         } catch (const InputError&) {
             continue;  // not a file: no record of ours
         }
-        flight.reason = reason_of(record, logs);
-        dropped.push_back(std::move(flight));
+        dropped.push_back({flight, reason_of(record, logs)});
     }
     return dropped;
 }
@@ -108,6 +134,21 @@ void remove_left_overs(const std::vector<LogFile>& logs, const std::filesystem::
     for (const auto& file : file_names(out)) {
         if (is_unfinished_summary(file)) std::filesystem::remove(out / file, ignored);
     }
+}
+
+std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out) {
+    const auto folder = out / "flights";
+    if (!std::filesystem::is_directory(folder)) {
+        throw InputError({out.string()}, "this is no folder of flightwatt batch: there is no flights/ in it",
+                         fmt::format("make it with: flightwatt batch LOGS -o {}", out.string()));
+    }
+    std::vector<StoredFlight> flights;
+    for (const auto& name : recorded_flights(folder)) flights.push_back(read_flight(folder, name));
+    if (flights.empty()) {
+        throw InputError({folder.string()}, "there is no record of a flight in it",
+                         fmt::format("make them with: flightwatt batch LOGS -o {}", out.string()));
+    }
+    return flights;
 }
 
 }  // namespace flightwatt::batch

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "batch/flight_record.h"
 #include "batch/log_files.h"
 
 #include <array>
@@ -35,5 +36,16 @@ std::vector<DroppedFlight> find_dropped(const std::vector<LogFile>& logs, const 
 /// Removes what earlier runs left in OUT of flights that are not among `logs`, and what killed ones left
 /// unfinished. Files that no batch wrote stay.
 void remove_left_overs(const std::vector<LogFile>& logs, const std::filesystem::path& out);
+
+/// A log as a batch left it in its folder.
+struct StoredFlight {
+    FlightRecord record;
+    flight::FlightSeries series;  ///< of an accepted log
+    flight::FlightPhases phases;  ///< with the evidence at their edges, which the record does not hold
+};
+
+/// What a batch wrote into OUT, flight by flight, by name. Throws InputError where OUT is no batch's folder,
+/// a record is damaged, or an accepted flight's files are missing or not as the batch writes them.
+std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out);
 
 }  // namespace flightwatt::batch

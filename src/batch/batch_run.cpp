@@ -4,10 +4,10 @@
 #include "base/error.h"
 #include "base/fingerprint.h"
 #include "batch/batch_files.h"
-#include "batch/fit_selection.h"
-#include "batch/interruption.h"
+#include "batch/flight_record.h"
+#include "batch/write_guard.h"
 #include "flight/load_flight.h"
-#include "flight/phase_statistics.h"
+#include "flight/phases_file.h"
 #include "flight/series_file.h"
 
 #include <algorithm>

@@ -1,8 +1,11 @@
 #include "batch/flight_record.h"
 
-#include "batch/measured_json.h"
 #include "flight/chosen_track.h"
 #include "flight/edge_witness.h"
+#include "flight/power_check.h"
+
+#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,50 +15,175 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json phase_json(const RecordedPhase& phase) {
-    const auto& statistics = phase.statistics;
-    return {
-        {"sortie", phase.sortie},
-        {"phase", to_string(phase.phase)},
-        {"start_s", phase.start_s},
-        {"end_s", phase.end_s},
-        {"start_gap_s", phase.start_gap_s},
-        {"end_gap_s", phase.end_gap_s},
-        {"complete", phase.complete},
-        {"samples", statistics.samples},
-        {"mean_power_w", statistics.mean_power_w},
-        {"energy_wh", statistics.energy_wh},
-        {"counter_energy_wh", statistics.counter_energy_wh ? Json(*statistics.counter_energy_wh) : Json()},
-        {"gaps", statistics.gaps},
-        {"longest_gap_s", statistics.longest_gap_s}};
+// The keys of a record: `visit` is called with each and with what it holds, for writing and for reading.
+
+template <typename Phase, typename Visit>
+void visit_recorded_phase(Phase& phase, const Visit& visit) {
+    visit("sortie", phase.sortie);
+    visit("phase", phase.phase);
+    visit("start_s", phase.start_s);
+    visit("end_s", phase.end_s);
+    visit("start_gap_s", phase.start_gap_s);
+    visit("end_gap_s", phase.end_gap_s);
+    visit("complete", phase.complete);
+    visit("samples", phase.statistics.samples);
+    visit("mean_power_w", phase.statistics.mean_power_w);
+    visit("energy_wh", phase.statistics.energy_wh);
+    visit("counter_energy_wh", phase.statistics.counter_energy_wh);
+    visit("gaps", phase.statistics.gaps);
+    visit("longest_gap_s", phase.statistics.longest_gap_s);
 }
 
-RecordedPhase recorded_phase(const Json& json) {
-    RecordedPhase phase;
-    phase.sortie = json.at("sortie");
-    phase.phase = flight::phase_from(json.at("phase").get<std::string>()).value();
-    phase.start_s = json.at("start_s");
-    phase.end_s = json.at("end_s");
-    phase.start_gap_s = json.at("start_gap_s");
-    phase.end_gap_s = json.at("end_gap_s");
-    phase.complete = json.at("complete");
-    phase.statistics.samples = json.at("samples");
-    phase.statistics.mean_power_w = json.at("mean_power_w");
-    phase.statistics.energy_wh = json.at("energy_wh");
-    if (const auto& counter = json.at("counter_energy_wh"); !counter.is_null()) {
-        phase.statistics.counter_energy_wh = counter.get<double>();
-    }
-    phase.statistics.gaps = json.at("gaps");
-    phase.statistics.longest_gap_s = json.at("longest_gap_s");
-    return phase;
+template <typename Flight, typename Samples, typename Visit>
+void visit_measured_phase(Flight& flight, flight::Phase phase, Samples& samples, const Visit& visit) {
+    visit("duration_s", samples.duration_s);
+    visit("start_s", samples.start_s);
+    visit("airspeed_cubed_m3_per_s3", samples.airspeed_cubed_m3_per_s3);
+    visit("covariates", samples.covariates);
+    visit("energy_wh", flight.energy_wh[phase]);
+    visit("counter_energy_wh", flight.counter_energy_wh[phase]);
+    visit("tau", samples.tau);
+    visit("power_w", samples.power_w);
 }
+
+template <typename Record, typename Visit>
+void visit_record(Record& record, const Visit& visit) {
+    visit("flight", record.flight);
+    visit("log", record.log);
+    visit("fingerprint", record.fingerprint);
+    visit("results", record.results);
+    visit("accepted", record.accepted);
+    visit("error", record.error);
+    visit("aircraft_id", record.aircraft_id);
+    visit("power_source", record.power_source);
+    visit("current_origin", record.current_origin);
+    visit("phases", record.phases);
+    visit("verdicts", record.verdicts);
+    visit("warnings", record.warnings);
+    visit("power_faults", record.power_faults);
+    visit("why_not_fitted", record.why_not_fitted);
+    visit("measured", record.measured);
+}
+
+/// Writes what it visits into an object.
+struct RecordWriter {
+    Json& json;
+
+    template <typename T>
+    void operator()(const char* key, const T& value) const {
+        json[key] = json_of(value);
+    }
+
+  private:
+    template <typename T>
+    static Json json_of(const T& value) {
+        return value;
+    }
+    template <typename T>
+    static Json json_of(const std::optional<T>& value) {
+        return value ? json_of(*value) : Json();
+    }
+    static Json json_of(flight::Phase phase) { return to_string(phase); }
+    static Json json_of(const mechanical::Covariates& covariates) {
+        Json json = Json::object();
+        for (const auto covariate : mechanical::all_covariates) {
+            if (const auto& value = covariates[covariate]) json[std::string(to_string(covariate))] = *value;
+        }
+        return json;
+    }
+    static Json json_of(const std::vector<RecordedPhase>& phases) {
+        Json json = Json::array();
+        for (const auto& phase : phases) visit_recorded_phase(phase, RecordWriter{json.emplace_back()});
+        return json;
+    }
+    static Json json_of(const std::vector<RecordedVerdict>& verdicts) {
+        Json json = Json::array();
+        for (const auto& [time_s, text] : verdicts) json.push_back({{"time_s", time_s}, {"verdict", text}});
+        return json;
+    }
+    static Json json_of(const mechanical::MeasuredFlights& measured) {
+        Json flights = Json::array();
+        for (std::size_t i = 0; i < measured.flights.size(); ++i) {
+            const auto& flight = measured.flights[i];
+            Json phases = Json::object();
+            for (const auto phase : flight::all_phases) {
+                const auto& samples = flight.samples.phases[phase];
+                if (!samples) continue;
+                visit_measured_phase(flight, phase, *samples,
+                                     RecordWriter{phases[std::string(to_string(phase))]});
+            }
+            flights.push_back(
+                {{"flight", flight.samples.flight}, {"sortie", measured.sorties[i]}, {"phases", phases}});
+        }
+        Json excluded = Json::array();
+        for (const auto& [flight, phase, reason] : measured.exclusions) {
+            excluded.push_back({{"flight", flight}, {"phase", json_of(phase)}, {"reason", reason}});
+        }
+        return {{"flights", flights}, {"excluded", excluded}};
+    }
+};
+
+/// Reads what it visits from an object. Throws what nlohmann::json throws, or std::bad_optional_access for a
+/// phase or covariate that there is none of.
+struct RecordReader {
+    const Json& json;
+
+    template <typename T>
+    void operator()(const char* key, T& value) const {
+        read(json.at(key), value);
+    }
+
+  private:
+    template <typename T>
+    static void read(const Json& json, T& value) {
+        json.get_to(value);
+    }
+    template <typename T>
+    static void read(const Json& json, std::optional<T>& value) {
+        if (!json.is_null()) read(json, value.emplace());
+    }
+    static void read(const Json& json, flight::Phase& phase) {
+        phase = flight::phase_from(json.get<std::string>()).value();
+    }
+    static void read(const Json& json, mechanical::Covariates& covariates) {
+        for (const auto& [name, value] : json.items()) {
+            covariates[mechanical::covariate_from(name).value()] = value.get<double>();
+        }
+    }
+    static void read(const Json& json, std::vector<RecordedPhase>& phases) {
+        for (const auto& entry : json) visit_recorded_phase(phases.emplace_back(), RecordReader{entry});
+    }
+    static void read(const Json& json, std::vector<RecordedVerdict>& verdicts) {
+        for (const auto& entry : json) verdicts.push_back({entry.at("time_s"), entry.at("verdict")});
+    }
+    static void read(const Json& json, mechanical::MeasuredFlights& measured) {
+        for (const auto& entry : json.at("flights")) {
+            auto& flight = measured.flights.emplace_back();
+            flight.samples.flight = entry.at("flight");
+            for (const auto& [name, object] : entry.at("phases").items()) {
+                const auto phase = flight::phase_from(name).value();
+                auto& samples = flight.samples.phases[phase].emplace();
+                samples.flight = flight.samples.flight;
+                visit_measured_phase(flight, phase, samples, RecordReader{object});
+            }
+            measured.sorties.push_back(entry.at("sortie"));
+        }
+        for (const auto& entry : json.at("excluded")) {
+            auto& exclusion = measured.exclusions.emplace_back();
+            exclusion.flight = entry.at("flight");
+            read(entry.at("phase"), exclusion.phase);
+            exclusion.reason = entry.at("reason");
+        }
+    }
+};
 
 /// What the best witness of an edge says.
 std::string verdict_text(const flight::ExplainedEdge& explained) {
     if (explained.witnesses.empty()) return explained.verdict;
     const auto& best = explained.witnesses.front();
-    return fmt::format("{}{} {} ({:+.1f} s)", explained.verdict,
-                       explained.verdict == "agrees" ? " with" : " from", best.what, best.after_s);
+    const bool agrees = std::abs(best.after_s) <= flight::agreement_s;
+    return fmt::format("{} {} {} ({:+.1f} s)", explained.verdict, agrees ? "with" : "from", best.what,
+                       best.after_s);
 }
 
 }  // namespace
@@ -85,56 +213,40 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
 }
 
 std::string to_json_text(const FlightRecord& record) {
-    Json phases = Json::array();
-    for (const auto& phase : record.phases) phases.push_back(phase_json(phase));
-    Json verdicts = Json::array();
-    for (const auto& [time_s, verdict] : record.verdicts) {
-        verdicts.push_back({{"time_s", time_s}, {"verdict", verdict}});
-    }
-    const Json json{{"flight", record.flight},
-                    {"log", record.log},
-                    {"fingerprint", record.fingerprint},
-                    {"results", record.results},
-                    {"accepted", record.accepted},
-                    {"error", record.error},
-                    {"aircraft_id", record.aircraft_id},
-                    {"power_source", record.power_source},
-                    {"current_origin", record.current_origin},
-                    {"phases", phases},
-                    {"verdicts", verdicts},
-                    {"warnings", record.warnings},
-                    {"power_faults", record.power_faults},
-                    {"why_not_fitted", record.why_not_fitted},
-                    {"measured", measured_json(record.measured)}};
+    Json json;
+    visit_record(record, RecordWriter{json});
     // File names need not be UTF-8, and a record must never fail for that.
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::optional<FlightRecord> record_from_json(const std::string& text) {
     try {
-        const auto json = Json::parse(text);
         FlightRecord record;
-        record.flight = json.at("flight");
-        record.log = json.at("log");
-        record.fingerprint = json.at("fingerprint");
-        record.results = json.at("results");
-        record.accepted = json.at("accepted");
-        record.error = json.at("error");
-        record.aircraft_id = json.at("aircraft_id");
-        record.power_source = json.at("power_source");
-        record.current_origin = json.at("current_origin");
-        for (const auto& phase : json.at("phases")) record.phases.push_back(recorded_phase(phase));
-        for (const auto& edge : json.at("verdicts")) {
-            record.verdicts.push_back({edge.at("time_s"), edge.at("verdict")});
-        }
-        record.warnings = json.at("warnings").get<std::vector<std::string>>();
-        record.power_faults = json.at("power_faults").get<std::vector<std::string>>();
-        record.why_not_fitted = json.at("why_not_fitted");
-        record.measured = measured_from_json(json.at("measured"));
+        visit_record(record, RecordReader{Json::parse(text)});
         return record;
     } catch (const std::exception&) {
         return std::nullopt;  // damaged or of another version: the log is done again
     }
+}
+
+std::string exclusion_of(const FlightRecord& record, const flight::LoadOptions& options) {
+    if (options.excluded.contains(record.flight)) return "--exclude names it";
+    if (options.keep.contains(record.flight)) return "";
+    if (!record.power_faults.empty()) return flight::describe_power_faults(record.power_faults);
+    return record.why_not_fitted;
+}
+
+mechanical::MeasuredFlights select_for_fit(FlightRecord& record, std::size_t needed_samples,
+                                           const flight::LoadOptions& options) {
+    auto measured = std::exchange(record.measured, {});
+    if (const auto exclusion = exclusion_of(record, options); !exclusion.empty() && record.accepted) {
+        measured.flights.clear();
+        measured.sorties.clear();
+        measured.exclusions.push_back({record.flight, std::nullopt, exclusion});
+        return measured;
+    }
+    mechanical::exclude_short_phases(measured, needed_samples);
+    return measured;
 }
 
 }  // namespace flightwatt::batch

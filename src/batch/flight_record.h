@@ -56,4 +56,12 @@ FlightRecord record_of(const flight::LoadedFlight& loaded);
 std::string to_json_text(const FlightRecord& record);
 std::optional<FlightRecord> record_from_json(const std::string& text);
 
+/// Why a batch uses nothing of the flight: its power record, its folder or --exclude; empty if it does.
+std::string exclusion_of(const FlightRecord& record, const flight::LoadOptions& options);
+
+/// What a fit of a batch takes of a flight. Takes the samples out of the record: of thousands of flights they
+/// are kept until the fit, once.
+mechanical::MeasuredFlights select_for_fit(FlightRecord& record, std::size_t needed_samples,
+                                           const flight::LoadOptions& options);
+
 }  // namespace flightwatt::batch

@@ -1,23 +1,126 @@
 #include "battery/battery.h"
 
+#include "base/format_version.h"
 #include "base/piecewise_linear.h"
+#include "base/toml_numbers.h"
+#include "base/toml_text.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <fmt/format.h>
 
 namespace flightwatt::battery {
+namespace {
+
+constexpr double least_time_constant_s = 0.1;
+constexpr double greatest_time_constant_s = 1e5;
+constexpr double greatest_number = 1e6;  // squared and divided, values below stay numbers
+
+OpenCircuitVoltage read_curve(const TomlTable& table) {
+    OpenCircuitVoltage curve{table.numbers("soc_percent"), table.numbers("voltage_v")};
+    const auto& soc = curve.soc_percent;
+    const auto& volts = curve.voltage_v;
+    const auto refuse = [&](std::string_view key, const std::string& message, const std::string& hint) {
+        throw InputError(table.where(key), message, hint);
+    };
+    if (soc.size() < 2 || soc.front() != 0.0 || soc.back() != 100.0 ||
+        std::ranges::adjacent_find(soc, std::greater_equal<>()) != soc.end())
+        refuse("soc_percent", "soc_percent does not rise from 0 to 100", "expected [0, ..., 100]");
+    if (volts.size() != soc.size()) {
+        refuse("voltage_v", fmt::format("{} voltages for {} states of charge", volts.size(), soc.size()),
+               "expected one each");
+    }
+    if (volts.front() <= 0.0 || std::ranges::adjacent_find(volts, std::greater<>()) != volts.end()) {
+        refuse("voltage_v", "the open-circuit voltage is not positive, or falls as charge rises",
+               "expected values in the order of soc_percent, none below the one before");
+    }
+    return curve;
+}
+
+std::vector<double> read_curve_errors(const TomlTable& table, std::size_t knots) {
+    if (!table.has("standard_error_v")) return {};
+    auto errors = table.numbers("standard_error_v");
+    if (errors.size() != knots || std::ranges::any_of(errors, [](double e) { return e < 0; })) {
+        throw InputError(table.where("standard_error_v"),
+                         "standard_error_v is not one number of at least 0 for every knot");
+    }
+    return errors;
+}
+
+TheveninCircuit read_circuit(const TomlTable& table, BatteryIntervals& intervals) {
+    TheveninCircuit circuit;
+    const auto curve = table.table("open_circuit");
+    circuit.open_circuit = read_curve(curve);
+    intervals.open_circuit_standard_error_v =
+        read_curve_errors(curve, circuit.open_circuit.soc_percent.size());
+    curve.refuse_unknown_keys();
+    if (table.has("rc_resistance_ohm"))
+        circuit.rc_resistance_ohm = number_in(at_least(0.0), table, "rc_resistance_ohm");
+    if (circuit.rc_resistance_ohm > 0.0 || table.has("rc_time_constant_s")) {
+        circuit.rc_time_constant_s =
+            number_in(between(least_time_constant_s, greatest_time_constant_s), table, "rc_time_constant_s",
+                      "what is faster counts as resistance_ohm");
+    }
+    return circuit;
+}
+
+/// The interval of a key, which has to hold the key's value.
+std::optional<Interval> read_interval(const TomlTable& table, std::string_view key, double value) {
+    if (!table.has(key)) return std::nullopt;
+    const auto ends = table.numbers(key);
+    if (ends.size() != 2 || !(ends[0] <= value && value <= ends[1])) {
+        throw InputError(table.where(key), fmt::format("this is no interval around {} = {}", key, value),
+                         "expected [LOW, HIGH]");
+    }
+    return Interval{ends[0], ends[1]};
+}
+
+void read_intervals(const TomlTable& table, Battery& battery) {
+    auto& intervals = battery.intervals;
+    intervals.capacity_ah = read_interval(table, "capacity_ah", battery.capacity_ah);
+    intervals.resistance_ohm = read_interval(table, "resistance_ohm", battery.resistance_ohm);
+    if (battery.thevenin) {
+        const auto& circuit = *battery.thevenin;
+        intervals.rc_resistance_ohm = read_interval(table, "rc_resistance_ohm", circuit.rc_resistance_ohm);
+        intervals.rc_time_constant_s = read_interval(table, "rc_time_constant_s", circuit.rc_time_constant_s);
+    } else {
+        intervals.voltage_v = read_interval(table, "voltage_v", battery.voltage_v);
+    }
+    table.refuse_unknown_keys();
+}
+
+std::string interval_lines(const BatteryIntervals& intervals) {
+    std::string lines;
+    for (const auto& [key, interval] : {std::pair{"capacity_ah", intervals.capacity_ah},
+                                        {"voltage_v", intervals.voltage_v},
+                                        {"resistance_ohm", intervals.resistance_ohm},
+                                        {"rc_resistance_ohm", intervals.rc_resistance_ohm},
+                                        {"rc_time_constant_s", intervals.rc_time_constant_s}})
+        if (interval) lines += fmt::format("{} = {}\n", key, toml_reals({interval->low, interval->high}));
+    return lines.empty() ? "" : "\n# 95 %\n[intervals]\n" + lines;
+}
+
+}  // namespace
+
+double voltage_integral(const OpenCircuitVoltage& curve, double soc_percent) {
+    const auto& [knots, voltage_v] = curve;
+    double sum = 0.0;
+    for (std::size_t k = 1; k < knots.size() && knots[k - 1] < soc_percent; ++k) {
+        const double to_percent = std::min(knots[k], soc_percent);
+        const double to_v = interpolate_clamped(knots, voltage_v, to_percent);
+        sum += (to_percent - knots[k - 1]) * (voltage_v[k - 1] + to_v) / 2.0;
+    }
+    return sum;
+}
 
 double full_energy_wh(const Battery& battery) {
     if (!battery.thevenin) return battery.capacity_ah * battery.voltage_v;
-    const auto& [soc_percent, voltage_v] = battery.thevenin->open_circuit;
-    double percent_v = 0.0;
-    for (std::size_t i = 1; i < soc_percent.size(); ++i)
-        percent_v += (soc_percent[i] - soc_percent[i - 1]) * std::midpoint(voltage_v[i - 1], voltage_v[i]);
-    return battery.capacity_ah * percent_v / (soc_percent.back() - soc_percent.front());
+    const auto& curve = battery.thevenin->open_circuit;
+    const double full_percent = curve.soc_percent.back();
+    return battery.capacity_ah * voltage_integral(curve, full_percent) /
+           (full_percent - curve.soc_percent.front());
 }
 
 double open_circuit_voltage_v(const Battery& battery, double soc_percent) {
@@ -53,6 +156,50 @@ double internal_current_a(const Battery& battery, double power_w, const BatteryS
     // rounding may leave D a hair below zero.
     const double discriminant = std::max(0.0, u * u - 4.0 * battery.resistance_ohm * power_w);
     return 2.0 * power_w / (u + std::sqrt(discriminant));
+}
+
+Battery battery_from(const TomlTable& table) {
+    Battery battery;
+    battery.name = table.optional_string("name").value_or("");
+    const auto model = table.optional_string("model").value_or("paper");
+    if (model != "paper" && model != "thevenin") {
+        throw InputError(table.where("model"), fmt::format("there is no battery model '{}'", model),
+                         "it is \"paper\" or \"thevenin\"");
+    }
+    if (model == "paper")
+        battery.voltage_v = number_in(more_than_up_to(0.0, greatest_number), table, "voltage_v");
+    battery.resistance_ohm = number_in(at_least(0.0), table, "resistance_ohm");
+    battery.capacity_ah = number_in(more_than_up_to(0.0, greatest_number), table, "capacity_ah");
+    if (model == "thevenin") battery.thevenin = read_circuit(table, battery.intervals);
+    if (const auto intervals = table.optional_table("intervals")) read_intervals(*intervals, battery);
+    table.refuse_unknown_keys();
+    return battery;
+}
+
+Battery read_battery(const std::filesystem::path& path) {
+    const auto root = read_toml(path);
+    require_known_format(root);
+    return battery_from(root);
+}
+
+std::string to_toml(const Battery& battery) {
+    std::string text = format_line() + fmt::format("name = {}\n", toml_string(battery.name));
+    text += fmt::format("model = \"{}\"\n", battery.thevenin ? "thevenin" : "paper");
+    if (!battery.thevenin) text += fmt::format("voltage_v = {}\n", toml_real(battery.voltage_v));
+    text += fmt::format("capacity_ah = {}\nresistance_ohm = {}\n", toml_real(battery.capacity_ah),
+                        toml_real(battery.resistance_ohm));
+    if (battery.thevenin) {
+        const auto& circuit = *battery.thevenin;
+        text += fmt::format("rc_resistance_ohm = {}\n", toml_real(circuit.rc_resistance_ohm));
+        if (circuit.rc_resistance_ohm > 0.0)
+            text += fmt::format("rc_time_constant_s = {}\n", toml_real(circuit.rc_time_constant_s));
+        text += fmt::format("\n[open_circuit]\nsoc_percent = {}\nvoltage_v = {}\n",
+                            toml_reals(circuit.open_circuit.soc_percent),
+                            toml_reals(circuit.open_circuit.voltage_v));
+        const auto& errors = battery.intervals.open_circuit_standard_error_v;
+        if (!errors.empty()) text += fmt::format("standard_error_v = {}\n", toml_reals(errors));
+    }
+    return text + interval_lines(battery.intervals);
 }
 
 }  // namespace flightwatt::battery

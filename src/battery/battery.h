@@ -56,6 +56,9 @@ struct BatteryState {
     double rc_voltage_v = 0.0;  ///< across the RC pair; 0 at rest
 };
 
+/// [V points] The integral of the open-circuit voltage from an empty battery up to a state of charge.
+double voltage_integral(const OpenCircuitVoltage& curve, double soc_percent);
+
 /// [Wh] of a full battery at rest: capacity times the mean of the open-circuit voltage over its charge.
 double full_energy_wh(const Battery& battery);
 
@@ -77,29 +80,8 @@ double power_limit_w(const Battery& battery, const BatteryState& state = {});
 /// power is above the limit.
 double internal_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
 
-/// Reads a battery:
-///
-///     name = "pack"                       # optional
-///     model = "paper"                     # the default: a constant voltage_v
-///     voltage_v = 11.1
-///     resistance_ohm = 0.05
-///     capacity_ah = 3.2
-///
-/// or, with model = "thevenin" and no voltage_v,
-///
-///     rc_resistance_ohm = 0.03            # default 0: no RC pair
-///     rc_time_constant_s = 40             # 0.1 to 1e5, due with an RC pair
-///     [open_circuit]
-///     soc_percent = [0, 50, 100]
-///     voltage_v = [9.8, 11.4, 12.5]
-///     standard_error_v = [0.3, 0.1, 0.01] # optional
-///
-/// and in both, optionally, 95 % intervals that hold the value:
-///
-///     [intervals]
-///     resistance_ohm = [0.04, 0.06]       # also capacity_ah, voltage_v, rc_resistance_ohm, ...
-///
-/// Throws InputError for keys missing, unknown or of another model, and values that no battery has.
+/// Reads a battery (docs/formats.md). Throws InputError for keys missing, unknown or of another model, and values
+/// that no battery has.
 Battery read_battery(const std::filesystem::path& path);
 Battery battery_from(const TomlTable& table);
 

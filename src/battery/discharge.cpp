@@ -19,7 +19,7 @@ constexpr double full_percent = units::percent_per_whole;
 /// One step from `time_s` on.
 struct Step {
     const Battery& battery;
-    const PowerOverTime& power_w;
+    const Load& load;
     double time_s;
     BatteryState from;
 };
@@ -31,8 +31,8 @@ BatteryState after(const Step& step, double elapsed_s) {
     const auto rate = [&](const State& x, State& per_s, double time) {
         const BatteryState state{x[0], x[1]};
         // The limit is looked for at the step's samples: this min() only takes away what lies beyond it.
-        const double current_a =
-            internal_current_a(battery, std::min(step.power_w(time), power_limit_w(battery, state)), state);
+        const double current_a = internal_current_a(
+            battery, std::min(step.load.power_w(time), power_limit_w(battery, state)), state);
         per_s[0] = -units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
         per_s[1] = 0.0;
         if (!battery.thevenin) return;
@@ -76,20 +76,16 @@ std::optional<Onset> first_excess(const Step& step, double length_s) {
     if (!limited) return std::nullopt;
     return first_onset(length_s, [&](double elapsed_s) {
         const auto state = step.battery.thevenin ? after(step, elapsed_s) : step.from;
-        return step.power_w(step.time_s + elapsed_s) > power_limit_w(step.battery, state);
+        return step.load.power_w(step.time_s + elapsed_s) > power_limit_w(step.battery, state);
     });
 }
 
 bool is_below_cutoff(const Step& step, double elapsed_s, double cutoff_v) {
     const auto state = after(step, elapsed_s);
     const double power_w =
-        std::min(step.power_w(step.time_s + elapsed_s), power_limit_w(step.battery, state));
+        std::min(step.load.power_w(step.time_s + elapsed_s), power_limit_w(step.battery, state));
     return terminal_voltage_v(step.battery, state, internal_current_a(step.battery, power_w, state)) <
            cutoff_v;
-}
-
-Discharge left(const BatteryState& state, std::optional<Undeliverable> undeliverable = std::nullopt) {
-    return {state.soc_percent, std::nullopt, undeliverable, std::nullopt, state.rc_voltage_v};
 }
 
 /// One step, ended by the first of empty, cut-off voltage and power limit.
@@ -97,69 +93,51 @@ Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
     std::optional<Undeliverable> undeliverable;
     if (const auto excess = first_excess(step, length_s)) {
         const double beyond_s = step.time_s + excess->first_s;
-        undeliverable = Undeliverable{beyond_s, step.power_w(beyond_s),
+        undeliverable = Undeliverable{beyond_s, step.load.power_w(beyond_s),
                                       power_limit_w(step.battery, after(step, excess->first_s))};
-        if (excess->first_s == 0.0) return left(step.from, undeliverable);  // nothing else comes before it
+        // At once: nothing else comes before it.
+        if (excess->first_s == 0.0) return {step.from, std::nullopt, std::nullopt, undeliverable};
         length_s = excess->last_before_s;
     }
     const auto state = after(step, length_s);
     std::optional<Onset> cut_off;
-    if (cutoff_v > 0.0) {
+    if (cutoff_v > 0.0)
         cut_off = first_onset(length_s, [&](double s) { return is_below_cutoff(step, s, cutoff_v); });
-    }
     std::optional<Onset> empty;
-    if (state.soc_percent <= 0.0) {
+    if (state.soc_percent <= 0.0)
         empty = first_onset(length_s, [&](double s) { return after(step, s).soc_percent <= 0.0; });
-    }
-    if (empty && (!cut_off || empty->first_s <= cut_off->first_s)) {
-        auto end = left({0.0, after(step, empty->first_s).rc_voltage_v});
-        end.empty_at_s = step.time_s + empty->first_s;
-        return end;
-    }
-    if (cut_off) {
-        auto end = left(after(step, cut_off->first_s));
-        end.cut_off_at_s = step.time_s + cut_off->first_s;
-        return end;
-    }
-    return left(state, undeliverable);
+    if (empty && (!cut_off || empty->first_s <= cut_off->first_s))
+        return {{0.0, after(step, empty->first_s).rc_voltage_v}, step.time_s + empty->first_s};
+    if (cut_off) return {after(step, cut_off->first_s), std::nullopt, step.time_s + cut_off->first_s};
+    return {state, std::nullopt, std::nullopt, undeliverable};
 }
 
 }  // namespace
 
-Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double start_s, double end_s,
-                    const BatteryState& state, const DischargeOptions& options) {
-    if (!(end_s >= start_s) || !(options.max_step_s > 0.0) || !(state.soc_percent <= full_percent) ||
-        !(options.cutoff_voltage_v >= 0.0)) {
+Discharge discharge(const Battery& battery, const Load& load, const BatteryState& state,
+                    const DischargeOptions& options) {
+    if (!(load.end_s >= load.start_s) || !(options.max_step_s > 0.0) ||
+        !(state.soc_percent <= full_percent) || !(options.cutoff_voltage_v >= 0.0)) {
         throw std::invalid_argument(
             "discharge: needs start_s <= end_s, a positive step, at most 100 % and no negative voltage");
     }
-    auto result = left(state);
-    if (state.soc_percent <= 0.0) {
-        result.soc_percent = 0.0;
-        result.empty_at_s = start_s;
-        return result;
-    }
+    if (state.soc_percent <= 0.0) return {{0.0, state.rc_voltage_v}, load.start_s};
     double max_step_s = options.max_step_s;
     if (battery.thevenin) max_step_s = std::min(max_step_s, battery.thevenin->rc_time_constant_s / 2.0);
-    const double length_s = end_s - start_s;
+    const double length_s = load.end_s - load.start_s;
     // A quotient a rounding error above a whole number is that number.
     const auto steps =
         static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_step_s * (1.0 - 1e-12))));
-    double time_s = start_s;
+    Discharge result{state};
+    double time_s = load.start_s;
     for (std::uint64_t k = 1; k <= steps; ++k) {
         const double part = static_cast<double>(k) / static_cast<double>(steps);
-        const double next_s = k == steps ? end_s : start_s + length_s * part;
-        result = guarded_step({battery, power_w, time_s, result.state()}, next_s - time_s,
-                              options.cutoff_voltage_v);
+        const double next_s = k == steps ? load.end_s : load.start_s + length_s * part;
+        result = guarded_step({battery, load, time_s, result}, next_s - time_s, options.cutoff_voltage_v);
         if (result.ended_at_s() || result.undeliverable) return result;
         time_s = next_s;
     }
     return result;
-}
-
-Discharge discharge(const Battery& battery, const PowerOverTime& power_w, double start_s, double end_s,
-                    double soc_percent, double max_step_s) {
-    return discharge(battery, power_w, start_s, end_s, BatteryState{soc_percent, 0.0}, {max_step_s, 0.0});
 }
 
 }  // namespace flightwatt::battery

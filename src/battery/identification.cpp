@@ -3,13 +3,10 @@
 #include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "battery/lipo_chart.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <boost/math/tools/roots.hpp>
 
 namespace flightwatt::battery {
 namespace {
@@ -23,7 +20,7 @@ std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segm
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (const auto& [record, initial] : records) {
-        const auto [least, most] = std::minmax_element(record->charge_ah.begin(), record->charge_ah.end());
+        const auto [least, most] = std::ranges::minmax_element(record->charge_ah);
         low = std::min(low, *least + initial);
         high = std::max(high, *most + initial);
     }
@@ -35,8 +32,7 @@ std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segm
 }
 
 bool falls_throughout(const CircuitFit& fit) {
-    return std::adjacent_find(fit.open_circuit_v.begin(), fit.open_circuit_v.end(), std::less<>()) ==
-           fit.open_circuit_v.end();
+    return std::ranges::adjacent_find(fit.open_circuit_v, std::less<>()) == fit.open_circuit_v.end();
 }
 
 /// As many independent samples as neighbours' correlation leaves of the residuals.
@@ -64,20 +60,15 @@ CircuitFit best_fit(std::span<const AlignedRecord> records) {
         if (falls_throughout(fit)) fits.push_back(std::move(fit));
     }
     if (fits.empty()) throw NoAnswerError("the open-circuit voltage does not fall as charge is drawn");
-    return *std::min_element(fits.begin(), fits.end(), [&](const CircuitFit& a, const CircuitFit& b) {
-        return criterion(a, samples) < criterion(b, samples);
-    });
+    return *std::ranges::min_element(fits, {},
+                                     [&](const CircuitFit& fit) { return criterion(fit, samples); });
 }
 
-/// The charge at which the fitted curve has this voltage, 0 to the last knot.
+/// The charge at which the fitted curve, which falls, has this voltage; 0 to the last knot.
 double charge_at_voltage_ah(const CircuitFit& fit, double voltage_v) {
-    const double last_ah = fit.knots_ah.back();
-    if (voltage_v >= open_circuit_voltage_v(fit, 0.0)) return 0.0;
-    if (voltage_v <= fit.open_circuit_v.back()) return last_ah;
-    constexpr int digits = 40;
-    const auto above = [&](double charge_ah) { return open_circuit_voltage_v(fit, charge_ah) - voltage_v; };
-    return boost::math::tools::bisect(above, 0.0, last_ah, boost::math::tools::eps_tolerance<double>(digits))
-        .first;
+    const std::vector<double> rising_v(fit.open_circuit_v.rbegin(), fit.open_circuit_v.rend());
+    const std::vector<double> charge_ah(fit.knots_ah.rbegin(), fit.knots_ah.rend());
+    return interpolate_clamped(rising_v, charge_ah, voltage_v);
 }
 
 /// The open-circuit voltage [V] that a record begins with: at rest, less what the electronics take.
@@ -94,16 +85,14 @@ struct AlignedFit {
 double align(std::vector<AlignedRecord>& records, const CircuitFit& fit) {
     const double resistance_ohm = fit.resistance_ohm + fit.rc_resistance_ohm;
     double highest_v = 0.0;
-    for (const auto& aligned : records) {
+    for (const auto& aligned : records)
         highest_v = std::max(highest_v, initial_voltage_v(*aligned.record, resistance_ohm));
-    }
     double moved_ah = 0.0;
     for (auto& [record, initial_ah] : records) {
         const double below_v = highest_v - initial_voltage_v(*record, resistance_ohm);
         double now_ah = 0.0;
-        if (below_v > std::max(unreadable_v, record->resolution_v)) {
-            now_ah = charge_at_voltage_ah(fit, open_circuit_voltage_v(fit, 0.0) - below_v);
-        }
+        if (below_v > std::max(unreadable_v, record->resolution_v))
+            now_ah = charge_at_voltage_ah(fit, fit.open_circuit_v.front() - below_v);
         moved_ah = std::max(moved_ah, std::abs(now_ah - initial_ah));
         initial_ah = now_ah;
     }
@@ -114,10 +103,9 @@ double align(std::vector<AlignedRecord>& records, const CircuitFit& fit) {
 AlignedFit aligned_fit(std::span<const DischargeRecord> records) {
     AlignedFit aligned;
     for (const auto& record : records) aligned.records.push_back({&record, 0.0});
-    const auto fullest = *std::max_element(
-        aligned.records.begin(), aligned.records.end(), [](const AlignedRecord& a, const AlignedRecord& b) {
-            return a.record->resting_voltage_v < b.record->resting_voltage_v;
-        });
+    const auto fullest = *std::ranges::max_element(aligned.records, {}, [](const auto& aligned_record) {
+        return aligned_record.record->resting_voltage_v;
+    });
     aligned.fit = best_fit({&fullest, 1});
     for (int i = 0; i < alignments; ++i) {
         const double moved_ah = align(aligned.records, aligned.fit);
@@ -145,7 +133,7 @@ std::vector<IdentifiedFlight> identified_flights(const AlignedFit& aligned) {
         flight.resting_voltage_v = record->resting_voltage_v;
         flight.initial_charge_ah = initial_ah;
         flight.drawn_ah = record->charge_ah.back();
-        const auto used = std::count(record->used.begin(), record->used.end(), true);
+        const auto used = used_samples(*record);
         flight.samples = static_cast<std::size_t>(used);
         flight.unused = record->used.size() - flight.samples;
         flight.voltage_rms_v =
@@ -166,8 +154,8 @@ BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
     result.fit = aligned.fit;
     result.errors = circuit_errors(aligned.records, aligned.fit);
     result.flights = identified_flights(aligned);
-    double highest_v = 0.0;
-    for (const auto& record : records) highest_v = std::max(highest_v, record.resting_voltage_v);
+    const double highest_v =
+        std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
     result.cells = options.cells.value_or(lipo_cells(highest_v));
     result.capacity = capacity_of(aligned.fit, result.cells, options.capacity_ah);
     const auto extended = extended_curve(aligned.fit, result.errors.open_circuit_standard_error_v,
@@ -196,9 +184,9 @@ PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& 
     const auto settled_a = settled_current_a(record, circuit.rc_time_constant_s);
     PredictedVoltage predicted;
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        BatteryState state;
-        state.soc_percent = initial_percent - units::percent_of(record.charge_ah[i], battery.capacity_ah);
-        state.rc_voltage_v = circuit.rc_resistance_ohm * settled_a[i];
+        const BatteryState state{
+            initial_percent - units::percent_of(record.charge_ah[i], battery.capacity_ah),
+            circuit.rc_resistance_ohm * settled_a[i]};
         predicted.soc_percent.push_back(state.soc_percent);
         predicted.voltage_v.push_back(terminal_voltage_v(battery, state, record.current_a[i]));
     }
@@ -209,19 +197,18 @@ std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> record
                                          const IdentificationOptions& options) {
     std::vector<LeftOutCheck> checks;
     if (records.size() < 2) return checks;
-    for (std::size_t left_out = 0; left_out < records.size(); ++left_out) {
+    for (std::size_t k = 0; k < records.size(); ++k) {
         std::vector<DischargeRecord> others(records.begin(), records.end());
-        others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
         const auto identified = identify_battery(others, options);
-        const auto& record = records[left_out];
+        const auto& record = records[k];
         const auto predicted = predict_voltage(identified.battery, record);
+        const auto samples = static_cast<double>(used_samples(record));
         double squares = 0.0;
-        double samples = 0.0;
         double beyond = 0.0;
         for (std::size_t i = 0; i < record.time_s.size(); ++i) {
             if (!record.used[i]) continue;
             squares += std::pow(record.voltage_v[i] - predicted.voltage_v[i], 2);
-            samples += 1.0;
             if (predicted.soc_percent[i] < identified.known_down_to_percent) beyond += 1.0;
         }
         checks.push_back({record.flight, std::sqrt(squares / samples), units::percent_of(beyond, samples)});

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "battery/identification/circuit_errors.h"
 #include "battery/identification/circuit_fit.h"
 #include "battery/identification/discharge_record.h"
 #include "battery/identification/open_circuit.h"
@@ -49,7 +48,7 @@ struct BatteryIdentification {
 
 /// Identifies the Thévenin circuit of a battery from flights. The fullest flight, by its resting voltage,
 /// begins at 100 %; the others' initial charge is where their resting voltage lies on the curve. The curve
-/// has as many equal segments as Akaike's criterion finds worth it, counting samples by the autocorrelation
+/// has as many equal segments as Akaike's criterion prefers, counting samples by the autocorrelation
 /// of the residuals, and falls throughout. Throws NoAnswerError where the flights determine no such circuit,
 /// and as capacity_of does.
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
@@ -61,7 +60,7 @@ struct PredictedVoltage {
     std::vector<double> voltage_v;  ///< terminal
 };
 
-/// Foretells a record from its current and resting voltage alone, with a Thévenin battery.
+/// Predicts a record from its current and resting voltage alone, with a Thévenin battery.
 PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record);
 
 /// Identifies the battery without each record in turn and predicts that record. Empty for a single record.

@@ -1,12 +1,47 @@
 #pragma once
 
-#include "compute/power_profile.h"
+#include "base/error.h"
 
-#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace flightwatt::compute {
+
+/// One profiled configuration of a component.
+struct ProfileNode {
+    std::vector<double> qos;  ///< one value a parameter
+    double power_w = 0.0;
+    Location where;
+    std::optional<double> standard_error_w = {};
+    bool is_measured = true;  ///< false: found between measured ones
+};
+
+/// Power of a component as a function of its quality of service (QoS): the nodes of a full grid. A component
+/// without parameters has constant power, one node. A profile may hold what a component draws on top of
+/// another, so a node's power may be zero or, within the noise, below.
+struct PowerProfile {
+    std::string file;
+    std::vector<std::string> parameters;
+    std::vector<std::vector<double>> axes;      ///< the values that each parameter was profiled at, rising
+    std::vector<double> power_w;                ///< of every node; the last parameter runs fastest
+    std::vector<double> standard_error_w = {};  ///< of every node; empty unless all are known
+    std::vector<bool> is_measured = {};         ///< of every node; see ProfileNode
+};
+
+/// The grid of `nodes`, which may come in any order. Throws InputError for no nodes, for a node that is there
+/// twice (at its second place), and for an incomplete grid (naming the first node that is missing).
+PowerProfile make_power_profile(const std::string& file, const std::vector<std::string>& parameters,
+                                std::vector<ProfileNode> nodes);
+
+/// Throws InputError at `where` (the place that asks for the value) if `value` is outside of what the
+/// parameter was profiled at: a profile is never extrapolated. `parameter` counts from 0.
+void require_in_range(const PowerProfile& profile, std::size_t parameter, double value,
+                      const Location& where);
+
+/// Power [W] at `qos` (one value a parameter), multilinear between the nodes around it and exact at them.
+/// Throws InputError, placed in the profile, if a value is out of range.
+double power_w(const PowerProfile& profile, const std::vector<double>& qos);
 
 /// A piece of on-board software.
 struct Component {

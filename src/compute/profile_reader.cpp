@@ -2,11 +2,12 @@
 
 #include "base/csv.h"
 #include "base/number.h"
-#include "compute/powprofiler/power_recording.h"
+#include "base/statistics.h"
 #include "compute/powprofiler/powprofiler_config.h"
 #include "compute/powprofiler/powprofiler_csv.h"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <string_view>
 
@@ -66,8 +67,7 @@ std::vector<ProfileNode> nodes_of(const CsvTable& table, std::size_t first_row,
 /// How many columns stand before power_w; those after it must be evidence.
 std::size_t parameter_count(const CsvTable& table) {
     const auto& header = table.rows.front();
-    const auto power = std::find_if(header.cells.begin(), header.cells.end(),
-                                    [](const auto& cell) { return cell.text == power_column; });
+    const auto power = std::ranges::find(header.cells, power_column, &CsvTable::Cell::text);
     if (power == header.cells.end()) {
         throw InputError(
             {table.file, header.line, header.cells.back().column},
@@ -75,13 +75,18 @@ std::size_t parameter_count(const CsvTable& table) {
             "a profile's columns are its parameters and then power_w");
     }
     for (auto cell = power + 1; cell != header.cells.end(); ++cell) {
-        const auto known = std::find(std::begin(evidence_columns), std::end(evidence_columns), cell->text);
-        if (known != std::end(evidence_columns)) continue;
+        if (std::ranges::find(evidence_columns, cell->text) != std::end(evidence_columns)) continue;
         throw InputError({table.file, header.line, cell->column},
                          fmt::format("the column '{}' follows {}", cell->text, power_column),
                          "parameters stand before it, after it only what `flightwatt profile` writes there");
     }
     return static_cast<std::size_t>(power - header.cells.begin());
+}
+
+std::optional<std::size_t> place_of(const CsvTable& table, std::string_view column) {
+    const auto found = std::ranges::find(table.columns, column);
+    if (found == table.columns.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - table.columns.begin());
 }
 
 PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
@@ -97,27 +102,22 @@ PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
     }
     const auto count = parameter_count(table);
     table.rows.erase(table.rows.begin());
-    std::vector<std::size_t> columns;
     for (const auto& cell : header.cells) table.columns.push_back(cell.text);
-    for (std::size_t i = 0; i < count; ++i) columns.push_back(i);
+    std::vector<std::size_t> columns(count);
+    std::iota(columns.begin(), columns.end(), std::size_t{0});
     const std::vector<std::string> parameters(table.columns.begin(),
                                               table.columns.begin() + static_cast<std::ptrdiff_t>(count));
     refuse_bad_names(parameters, {table.file, header.line});
     auto nodes = nodes_of(table, 0, columns, count);
-    const auto errors = std::find(table.columns.begin(), table.columns.end(), error_column);
-    if (errors != table.columns.end()) {
-        const auto column = static_cast<std::size_t>(errors - table.columns.begin());
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            if (table.rows[i].cells[column].text.empty()) continue;  // of a single sample
-            nodes[i].standard_error_w = cell_number(table, table.rows[i], column);
+    const auto error = place_of(table, error_column);
+    const auto source = place_of(table, source_column);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const auto& row = table.rows[i];
+        // Of a single sample there is no error.
+        if (error && !row.cells[*error].text.empty()) {
+            nodes[i].standard_error_w = cell_number(table, row, *error);
         }
-    }
-    const auto sources = std::find(table.columns.begin(), table.columns.end(), source_column);
-    if (sources != table.columns.end()) {
-        const auto column = static_cast<std::size_t>(sources - table.columns.begin());
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            nodes[i].is_measured = table.rows[i].cells[column].text != interpolated;
-        }
+        if (source) nodes[i].is_measured = row.cells[*source].text != interpolated;
     }
     return make_power_profile(table.file, parameters, std::move(nodes));
 }
@@ -135,12 +135,10 @@ PowerProfile profile_without_header(CsvTable table, const ProfileNaming& naming)
     std::vector<std::size_t> columns;
     std::vector<std::size_t> power;
     for (std::size_t i = 0; i < width; ++i) {
-        if (naming.columns[i] == power_column) {
-            power.push_back(i);
-        } else if (naming.columns[i] != ignored_column) {
-            parameters.push_back(naming.columns[i]);
-            columns.push_back(i);
-        }
+        if (naming.columns[i] == power_column) power.push_back(i);
+        if (naming.columns[i] == power_column || naming.columns[i] == ignored_column) continue;
+        parameters.push_back(naming.columns[i]);
+        columns.push_back(i);
     }
     if (power.size() != 1) {
         throw InputError(naming.where,
@@ -152,16 +150,12 @@ PowerProfile profile_without_header(CsvTable table, const ProfileNaming& naming)
 
 PowerProfile profile_of_combinations(const std::filesystem::path& path, const ProfileNaming& naming) {
     const auto config = read_powprofiler_config(path);
-    require_combinations(config, path);
+    require_recordings(config, path);
     require_names(naming, config.combinations.front().qos.size(), path.string());
     std::vector<ProfileNode> nodes;
     for (const auto& combination : config.combinations) {
-        if (!std::filesystem::exists(combination.recording)) {
-            throw InputError(combination.where,
-                             fmt::format("the recording {} does not exist", combination.recording.string()));
-        }
-        const auto recording = read_power_recording(combination.recording, config.sampling_hz);
-        nodes.push_back({combination.qos, mean_power_w(recording), combination.where, {}});
+        const auto power_w = layer1_power_w(read_csv(combination.recording, CsvHeader::absent));
+        nodes.push_back({combination.qos, mean(power_w), combination.where, {}});
     }
     return make_power_profile(path.string(), naming.parameters, std::move(nodes));
 }
@@ -170,8 +164,7 @@ PowerProfile profile_of_powprofiler(const CsvTable& table, const PowprofilerColu
                                     const ProfileNaming& naming) {
     require_names(naming, columns.parameters.size(), table.file);
     if (columns.parameters.empty()) {
-        return make_power_profile(table.file, {},
-                                  {{{}, mean_power_w(power_recording_from(table)), {table.file}}});
+        return make_power_profile(table.file, {}, {{{}, mean(layer1_power_w(table)), {table.file}}});
     }
     return make_power_profile(table.file, naming.parameters,
                               nodes_of(table, 1, columns.parameters, columns.power));
@@ -195,8 +188,8 @@ PowerProfile read_power_profile(const std::filesystem::path& path, const Profile
     const auto flags = powprofiler_columns(table);
     const auto first_line = table.rows.front().line;
     const auto& cells = table.rows.front().cells;
-    const bool numbers = std::any_of(cells.begin(), cells.end(),
-                                     [](const auto& cell) { return parse_number(cell.text).has_value(); });
+    const bool numbers =
+        std::ranges::any_of(cells, [](const auto& cell) { return parse_number(cell.text).has_value(); });
     if (!naming.columns.empty()) {
         if (flags || !numbers) {
             throw InputError(naming.where, fmt::format("{} has a header", table.file),

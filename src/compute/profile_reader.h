@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "compute/power_profile.h"
+#include "compute/compute_model.h"
 
 #include <filesystem>
 #include <string>

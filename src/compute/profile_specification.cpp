@@ -3,7 +3,6 @@
 #include "base/atomic_file.h"
 #include "base/format_version.h"
 #include "base/toml_numbers.h"
-#include "compute/profiling/sampler_settings_toml.h"
 #include "compute/qos_range.h"
 
 #include <algorithm>
@@ -33,7 +32,7 @@ void refuse_bad_name(const std::string& name, std::string_view also, const Locat
     const auto is_good = [&](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) != 0 || also.find(c) != std::string_view::npos;
     };
-    if (!name.empty() && std::all_of(name.begin(), name.end(), is_good) && name.front() != '.') return;
+    if (!name.empty() && std::ranges::all_of(name, is_good) && name.front() != '.') return;
     throw InputError(where, fmt::format("'{}' is no name for a file and a column", name),
                      fmt::format("use letters, digits and {}", also));
 }
@@ -88,8 +87,8 @@ std::vector<QosRange> ranges_from(const TomlTable& component) {
         }
         QosRange range{name, values_from(*table, name)};
         if (range.values.empty()) throw InputError(where, fmt::format("{} has no values", name));
-        std::sort(range.values.begin(), range.values.end());
-        if (std::adjacent_find(range.values.begin(), range.values.end()) != range.values.end()) {
+        std::ranges::sort(range.values);
+        if (std::ranges::adjacent_find(range.values) != range.values.end()) {
             throw InputError(where, fmt::format("{} has a value twice", name));
         }
         ranges.push_back(std::move(range));
@@ -117,7 +116,7 @@ WrittenComponent component_from(const TomlTable& table, const std::string& name,
     }
     WrittenComponent component{name, {}, ranges_from(table), timing_from(table, timing), true, where};
     component.alone = table.optional_boolean("alone").value_or(true);
-    const bool is_recorded = specification.sampler.kind == "recorded";
+    const bool is_recorded = specification.sampler.kind == SamplerKind::recorded;
     if (is_recorded && !table.has("command")) return component;
     component.command = table.strings("command");
     component.where = table.where("command");
@@ -136,8 +135,7 @@ ProfiledComponent multiplied_out(const std::string& name, const std::vector<Writ
     ProfiledComponent component{name, {}, {}, timing};
     double count = 1.0;
     for (const auto& range : ranges) {
-        if (std::find(component.parameters.begin(), component.parameters.end(), range.name) !=
-            component.parameters.end()) {
+        if (std::ranges::find(component.parameters, range.name) != component.parameters.end()) {
             throw InputError(where, fmt::format("two components of {} have a parameter {}", name, range.name),
                              "call one of them differently");
         }
@@ -154,9 +152,9 @@ ProfiledComponent multiplied_out(const std::string& name, const std::vector<Writ
             for (const auto& word : part.command) words.push_back(with_qos(word, component.parameters, qos));
             configuration.commands.push_back(std::move(words));
         }
-        if (sampler.kind == "recorded") {
+        if (sampler.kind == SamplerKind::recorded) {
             auto file = with_qos(sampler.file, component.parameters, qos);
-            const std::string placeholder = "{component}";
+            constexpr std::string_view placeholder = "{component}";
             const auto at = file.find(placeholder);
             if (at != std::string::npos) file.replace(at, placeholder.size(), name);
             configuration.recording = sampler.folder / file;
@@ -189,8 +187,7 @@ void add_together(const TomlTable& root, const std::vector<WrittenComponent>& wr
         if (names.size() < 2) throw InputError(where, "fewer than two components cannot run together");
         std::vector<WrittenComponent> parts;
         for (const auto& name : names) {
-            const auto found = std::find_if(written.begin(), written.end(),
-                                            [&](const auto& component) { return component.name == name; });
+            const auto found = std::ranges::find(written, name, &WrittenComponent::name);
             if (found == written.end()) {
                 throw InputError(where, fmt::format("there is no component '{}'", name));
             }
@@ -198,10 +195,11 @@ void add_together(const TomlTable& root, const std::vector<WrittenComponent>& wr
         }
         const auto name = group.optional_string("name").value_or(fmt::format("{}", fmt::join(names, "+")));
         refuse_bad_name(name, "_-+.", where);
-        for (const auto& component : specification.components) {
-            if (component.name == name) throw InputError(where, fmt::format("a second '{}'", name));
+        auto& components = specification.components;
+        if (std::ranges::find(components, name, &ProfiledComponent::name) != components.end()) {
+            throw InputError(where, fmt::format("a second '{}'", name));
         }
-        specification.components.push_back(
+        components.push_back(
             multiplied_out(name, parts, timing_from(group, timing), specification.sampler, where));
     }
 }
@@ -233,7 +231,7 @@ ProfileSpecification parse_profile_specification(std::string_view text, const st
     }
     add_together(root, written, timing, specification);
     if (specification.components.empty()) throw InputError(components.where(), "there is nothing to profile");
-    if (specification.sampler.kind == "recorded") {
+    if (specification.sampler.kind == SamplerKind::recorded) {
         require_recorded_file(root.table("sampler"), specification.components);
         if (specification.sampler.idle_file.empty()) specification.idle_s = 0.0;
     }

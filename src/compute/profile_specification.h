@@ -44,27 +44,9 @@ struct ProfileSpecification {
     SamplerSettings sampler;
 };
 
-/// Reads a specification; paths in it are relative to it. A .cfg is powprofiler's, either of its kinds
-/// ([components] to run, [combinations] of recordings). Anything else is TOML:
-///
-///     duration_s = 10            # none: until the command ends, at most timeout_s (600)
-///     warm_up_s = 2
-///     repeats = 3
-///     seed = 1                   # of the order of the runs
-///     idle_s = 10                # 0: idle power is not measured
-///     above_idle = false         # true: power_w is what comes on top of idle
-///     [sampler]                  # all of it optional
-///     kind = "auto"              # or ina3221, ina3221-iio, ina3221-hwmon, rapl, power_supply, command,
-///     recorded interval_s = 0.1 rails = ["VDD_IN"] command = ["meter"]        # kind command: prints watts,
-///     a number a line file = "{component}-{fps}.csv"   # kind recorded: CSV with time_s and power_w, or
-///     tegrastats idle_file = "idle.csv" [components.detection] command = ["yolo", "--rate", "{fps}"] alone =
-///     true               # false: only as a part of [[together]] qos = { fps = { from = 2, to = 10, step = 2
-///     }, size = [320, 640] }
-///     [[together]]               # at the same time, over the product of their ranges
-///     components = ["detection", "encryption"]
-///
-/// duration_s, warm_up_s and timeout_s may stand in a component and in [[together]] too. Throws InputError
-/// with file, line and column.
+/// Reads a specification (docs/formats.md); paths in it are relative to it. A .cfg is powprofiler's, either of its
+/// kinds ([components] to run, [combinations] of recordings). Anything else is TOML. Throws InputError with file,
+/// line and column.
 ProfileSpecification read_profile_specification(const std::filesystem::path& path);
 
 /// The same from TOML text; `path` for messages and what is relative to it.

@@ -5,12 +5,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::compute {
 namespace {
-
-constexpr int written_parameter_flag = 200;  // of powprofiler
 
 std::string comments_of(const ComponentEstimate& component, const ProfileOutcome& outcome,
                         const ProfileSpecification& specification) {
@@ -56,6 +53,30 @@ std::string row_of(const NodeEstimate& node, const std::optional<PowerEstimate>&
                              node.total.repeats);
 }
 
+/// The idle computer as a component without parameters, for missions of profiles above it.
+std::string idle_csv(const PowerEstimate& idle) {
+    return fmt::format(
+        "# Power of the idle computer, before the components ran\n"
+        "power_w,standard_error_w,duration_s,energy_j,samples\n{:.6f},{},{:.6f},{:.6f},{}\n",
+        idle.power_w, number_or(idle.standard_error_w, 6, ""), idle.duration_s, idle.energy_j, idle.samples);
+}
+
+/// powprofiler's layer 2, header of flags: 200, 201, ... the parameters, 100 total power, 130 energy, power times
+/// duration. Measured nodes only: what powprofiler writes, it measured.
+std::string powprofiler_layer2_csv(const ComponentEstimate& component) {
+    std::string text;
+    for (std::size_t i = 0; i < component.parameters.size(); ++i) {
+        text += fmt::format("{},", 200 + i);
+    }
+    text += "100,130\n";
+    for (const auto& node : component.nodes) {
+        if (!node.is_measured) continue;
+        for (const double value : node.qos) text += fmt::format("{},", value);
+        text += fmt::format("{:.7g},{:.7g}\n", node.total.power_w, node.total.energy_j);
+    }
+    return text;
+}
+
 void write_powprofiler(const ProfileOutcome& outcome, const std::filesystem::path& folder) {
     for (const auto& component : outcome.components) {
         if (component.nodes.empty()) continue;
@@ -90,27 +111,6 @@ std::string layer2_csv(const ComponentEstimate& component, const ProfileOutcome&
     if (outcome.idle) text += "above_idle_power_w,";
     text += "duration_s,energy_j,samples,repeats,source\n";
     for (const auto& node : component.nodes) text += row_of(node, outcome.idle, specification.above_idle);
-    return text;
-}
-
-std::string idle_csv(const PowerEstimate& idle) {
-    return fmt::format(
-        "# Power of the idle computer, before the components ran\n"
-        "power_w,standard_error_w,duration_s,energy_j,samples\n{:.6f},{},{:.6f},{:.6f},{}\n",
-        idle.power_w, number_or(idle.standard_error_w, 6, ""), idle.duration_s, idle.energy_j, idle.samples);
-}
-
-std::string powprofiler_layer2_csv(const ComponentEstimate& component) {
-    std::string text;
-    for (std::size_t i = 0; i < component.parameters.size(); ++i) {
-        text += fmt::format("{},", written_parameter_flag + static_cast<int>(i));
-    }
-    text += "100,130\n";
-    for (const auto& node : component.nodes) {
-        if (!node.is_measured) continue;
-        for (const double value : node.qos) text += fmt::format("{},", value);
-        text += fmt::format("{:.7g},{:.7g}\n", node.total.power_w, node.total.energy_j);
-    }
     return text;
 }
 

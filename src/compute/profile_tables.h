@@ -26,13 +26,6 @@ std::string number_or(double value, int decimals, const std::string& unknown);
 std::string layer2_csv(const ComponentEstimate& component, const ProfileOutcome& outcome,
                        const ProfileSpecification& specification);
 
-/// The idle computer as a component without parameters, for missions of profiles above it.
-std::string idle_csv(const PowerEstimate& idle);
-
-/// powprofiler's layer 2, header of flags: 200, 201, ... the parameters, 100 total power, 130 energy, power
-/// times duration. Measured nodes only: what powprofiler writes, it measured.
-std::string powprofiler_layer2_csv(const ComponentEstimate& component);
-
 /// powprofiler's layer 1: 100, total power, no time. It takes the samples for equally spaced.
 std::string powprofiler_layer1_csv(const PowerTrace& trace);
 

@@ -2,8 +2,9 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "compute/profiling/spread_nodes.h"
-#include "compute/profiling/thin_plate.h"
+#include "compute/profile_interpolation.h"
+#include "compute/qos_range.h"
+#include "compute/sensors/open_sampler.h"
 
 #include <algorithm>
 #include <chrono>
@@ -16,14 +17,6 @@
 namespace flightwatt::compute {
 namespace {
 
-/// As many as say how well they are interpolated: one more than a plane needs.
-void require_enough(std::size_t trials, const ProfiledComponent& component) {
-    const auto fewest = std::max<std::size_t>(3, component.parameters.size() + 2);
-    if (trials >= fewest) return;
-    throw UsageError(
-        fmt::format("--trials is {}, expected {} or more for {}", trials, fewest, component.name));
-}
-
 std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& specification,
                                                    std::optional<std::size_t> trials) {
     std::vector<std::vector<std::size_t>> chosen;
@@ -31,11 +24,16 @@ std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& s
         std::vector<std::size_t> nodes(component.configurations.size());
         std::iota(nodes.begin(), nodes.end(), std::size_t{0});
         if (trials && *trials < nodes.size()) {
-            require_enough(*trials, component);
-            std::vector<std::vector<double>> points;
+            // As many as say how well they are interpolated: one more than a plane needs.
+            const auto fewest = std::max<std::size_t>(3, component.parameters.size() + 2);
+            if (*trials < fewest) {
+                throw UsageError(fmt::format("--trials is {}, expected {} or more for {}", *trials, fewest,
+                                             component.name));
+            }
+            QosPoints points;
             for (const auto& configuration : component.configurations) points.push_back(configuration.qos);
             nodes = spread_nodes(points, *trials);
-            std::sort(nodes.begin(), nodes.end());
+            std::ranges::sort(nodes);
         }
         chosen.push_back(std::move(nodes));
     }
@@ -46,36 +44,30 @@ ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specific
                      const RunFrame& frame) {
     const auto& settings = specification.sampler;
     const bool is_idle = run.component == idle_component;
-    const ProfiledConfiguration* configuration =
-        is_idle ? nullptr : &specification.components[run.index].configurations[run.node];
+    const bool is_recorded = settings.kind == SamplerKind::recorded;
+    ProfiledConfiguration configuration{{}, {}, settings.folder / settings.idle_file};
     ProfileTiming timing;
-    if (is_idle) {
-        timing.duration_s = specification.idle_s;
-    } else {
-        timing = specification.components[run.index].timing;
+    if (!is_idle) {
+        const auto& component = specification.components[run.index];
+        configuration = component.configurations[run.node];
+        timing = component.timing;
+    } else if (!is_recorded) {
+        timing.duration_s = specification.idle_s;  // a recording of it counts as long as it is
     }
-    if (settings.kind == "recorded") {
-        const auto file = is_idle ? settings.folder / settings.idle_file : configuration->recording;
-        if (is_idle) timing.duration_s.reset();  // as long as it is
-        const auto interval_s =
-            settings.interval_is_given ? std::optional(settings.interval_s) : std::nullopt;
-        return run_of_recording(read_power_trace(file, interval_s), timing, settings.interval_s);
-    }
-    if (is_idle) return run_component({}, timing, frame);
-    return run_component(configuration->commands, timing, frame);
+    if (!is_recorded) return run_component(configuration.commands, timing, frame);
+    const auto interval_s = settings.interval_is_given ? std::optional(settings.interval_s) : std::nullopt;
+    return run_of_recording(read_power_trace(configuration.recording, interval_s), timing,
+                            settings.interval_s);
 }
 
 void do_run(ProfileRun& run, const ProfileSpecification& specification, const ProfilerOptions& options,
             PowerSampler& sampler) {
     const auto path = options.folder / run.layer1;
     make_directories(path.parent_path());
-    RunFrame frame;
-    frame.sampler = &sampler;
-    frame.interval_s = specification.sampler.interval_s;
-    frame.output = std::filesystem::path(path).replace_extension(".txt");
-    frame.signals = options.signals;
-    frame.caught = options.caught;
-    auto result = execute(run, specification, frame);
+    auto output = std::filesystem::path(path).replace_extension(".txt");
+    auto result = execute(
+        run, specification,
+        {&sampler, specification.sampler.interval_s, std::move(output), options.signals, options.caught});
     run.status = result.status;
     run.note = std::move(result.note);
     run.trace = std::move(result.trace);
@@ -103,9 +95,7 @@ void await_meter(PowerSampler& sampler, const ProfilerOptions& options) {
 void do_runs(std::vector<ProfileRun>& runs, const ProfileSpecification& specification,
              const ProfilerOptions& options, PowerSampler& sampler) {
     std::size_t done = 0;
-    if (std::any_of(runs.begin(), runs.end(), [](const auto& run) { return !run.is_done; })) {
-        await_meter(sampler, options);
-    }
+    if (!std::ranges::all_of(runs, &ProfileRun::is_done)) await_meter(sampler, options);
     for (auto& run : runs) {
         if (!run.is_done) {
             do_run(run, specification, options, sampler);
@@ -128,9 +118,9 @@ std::vector<PowerEstimate> repeats_of(const std::vector<ProfileRun>& runs, const
 }
 
 /// Fills in the configurations that were not run.
-void interpolate(const std::vector<std::vector<double>>& missing, ComponentEstimate& estimate) {
+void interpolate(const QosPoints& missing, ComponentEstimate& estimate) {
     if (missing.empty() || estimate.nodes.empty()) return;
-    std::vector<std::vector<double>> known;
+    QosPoints known;
     std::vector<double> power_w;
     for (const auto& node : estimate.nodes) {
         known.push_back(node.qos);
@@ -146,8 +136,7 @@ void interpolate(const std::vector<std::vector<double>>& missing, ComponentEstim
         node.total.standard_error_w = estimate.interpolation->rms_w;
         estimate.nodes.push_back(std::move(node));
     }
-    std::sort(estimate.nodes.begin(), estimate.nodes.end(),
-              [](const auto& a, const auto& b) { return a.qos < b.qos; });
+    std::ranges::sort(estimate.nodes, {}, &NodeEstimate::qos);
 }
 
 PowerEstimate idle_of(const std::vector<ProfileRun>& runs) {
@@ -156,8 +145,7 @@ PowerEstimate idle_of(const std::vector<ProfileRun>& runs) {
     throw NoAnswerError(fmt::format("no idle power: {} {}", to_string(idle.status), idle.note));
 }
 
-}  // namespace
-
+/// Layer 2 from the runs; configurations that were not to be run are interpolated, those that failed are not in it.
 ComponentEstimate estimate_component(const ProfiledComponent& component, std::size_t index,
                                      const std::vector<ProfileRun>& runs) {
     ComponentEstimate estimate{
@@ -168,7 +156,7 @@ ComponentEstimate estimate_component(const ProfiledComponent& component, std::si
         tried.insert(run.node);
         if (run.status != RunStatus::ok) estimate.failures.push_back(run);
     }
-    std::vector<std::vector<double>> missing;
+    QosPoints missing;
     for (std::size_t node = 0; node < component.configurations.size(); ++node) {
         const auto& qos = component.configurations[node].qos;
         const auto repeats = repeats_of(runs, component.name, node);
@@ -181,18 +169,18 @@ ComponentEstimate estimate_component(const ProfiledComponent& component, std::si
     return estimate;
 }
 
+}  // namespace
+
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options) {
     ProfileOutcome outcome;
     outcome.runs = planned_runs(specification, chosen_nodes(specification, options.trials));
     recall_runs(outcome.runs, options.folder);
-    PowerSampler sampler;
-    if (specification.sampler.kind == "recorded") {
-        sampler.kind = sampler.source = "recorded";
-    } else {
-        sampler = open_sampler(specification.sampler);
-    }
+    const bool is_recorded = specification.sampler.kind == SamplerKind::recorded;
+    PowerSampler sampler{SamplerKind::recorded, "recorded", {}, {}};
+    if (!is_recorded) sampler = open_sampler(specification.sampler);
     if (options.opened) options.opened(sampler);
-    outcome.sampler = sampler.source == sampler.kind ? sampler.kind : sampler.kind + ": " + sampler.source;
+    outcome.sampler = to_string(sampler.kind);
+    if (!is_recorded) outcome.sampler += ": " + sampler.source;
     make_directories(options.folder);
     do_runs(outcome.runs, specification, options, sampler);
     if (specification.idle_s > 0.0) outcome.idle = idle_of(outcome.runs);

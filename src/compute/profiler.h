@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compute/leave_one_out.h"
+#include "compute/profile_interpolation.h"
 #include "compute/profile_specification.h"
 #include "compute/profiling/profile_runs.h"
 
@@ -47,14 +47,10 @@ struct ProfilerOptions {
     std::function<void(const ProfileRun&, std::size_t done, std::size_t all)> progress;
 };
 
-/// Profiles: runs what is not done yet, one run after the other, keeping runs.csv and layer 1 in the folder
-/// up to date after each. Throws UsageError for trials too few to interpolate from, Interrupted (the folder then tells how far it came), NoAnswerError where
-/// there is no sampler or the idle computer could not be measured, InputError of the sampler's files.
+/// Profiles: runs what is not done yet, one run after the other, keeping runs.csv and layer 1 in the folder up to
+/// date after each. Throws UsageError for trials too few to interpolate from, Interrupted (the folder then tells
+/// how far it came), NoAnswerError where there is no sampler or the idle computer could not be measured,
+/// InputError of the sampler's files.
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options);
-
-/// Layer 2 from the runs; configurations that were not to be run are interpolated, those that failed are
-/// not in it.
-ComponentEstimate estimate_component(const ProfiledComponent& component, std::size_t index,
-                                     const std::vector<ProfileRun>& runs);
 
 }  // namespace flightwatt::compute

@@ -6,6 +6,9 @@
 
 namespace flightwatt::compute {
 
+/// Configurations of a component: one value a parameter each.
+using QosPoints = std::vector<std::vector<double>>;
+
 /// A parameter of quality of service and the values that it is profiled at.
 struct QosRange {
     std::string name;
@@ -20,7 +23,7 @@ std::vector<double> evenly_spaced(double from, double to, double step);
 std::vector<double> multiplied(double from, double to, double factor);
 
 /// Every combination of the values, the last parameter running fastest; one empty combination of no ranges.
-std::vector<std::vector<double>> combinations_of(const std::vector<QosRange>& ranges);
+QosPoints combinations_of(const std::vector<QosRange>& ranges);
 
 /// "fps=4 key_bits=32", or with other texts between name and value and between parameters.
 std::string spell_qos(const std::vector<std::string>& parameters, const std::vector<double>& qos,
@@ -29,5 +32,19 @@ std::string spell_qos(const std::vector<std::string>& parameters, const std::vec
 /// `text` with every {name} of a parameter replaced by its value; other braces stay (they may be a shell's).
 std::string with_qos(const std::string& text, const std::vector<std::string>& parameters,
                      const std::vector<double>& qos);
+
+/// How the values of a parameter become coordinates from 0 to 1.
+enum class AxisScale {
+    value,  ///< in proportion
+    rank    ///< by their place among the values that occur: fits ranges that double
+};
+
+/// Points in the unit cube, each axis scaled by the values that occur on it. An
+/// axis with one value is 0.
+QosPoints unit_points(const QosPoints& points, AxisScale scale);
+
+/// `count` of the points, as indices in the order chosen: first the corners of their range, then always the
+/// one farthest from those chosen (maximin), by rank. All of them if count is not less.
+std::vector<std::size_t> spread_nodes(const QosPoints& points, std::size_t count);
 
 }  // namespace flightwatt::compute

@@ -1,8 +1,8 @@
 #include "flight/chosen_track.h"
 
 #include "base/error.h"
+#include "flight/flight_series.h"
 #include "flight/sources/power_source.h"
-#include "flight/track.h"
 
 #include <algorithm>
 
@@ -12,8 +12,11 @@
 namespace flightwatt::flight {
 namespace {
 
-template <typename Accept>
-Track first_that_varies(const FlightSeries& series, std::string_view name, Accept&& accept) {
+constexpr auto any_source = [](const Track&) { return true; };
+
+template <typename Accept = decltype(any_source)>
+Track first_that_varies(const FlightSeries& series, std::string_view name,
+                        const Accept& accept = any_source) {
     const Track* constant = nullptr;
     for (const auto& track : series.tracks) {
         if (track.name != name || track.empty() || !track.device.empty() || !accept(track)) continue;
@@ -21,10 +24,6 @@ Track first_that_varies(const FlightSeries& series, std::string_view name, Accep
         if (constant == nullptr) constant = &track;
     }
     return constant == nullptr ? Track{} : *constant;
-}
-
-Track first_that_varies(const FlightSeries& series, std::string_view name) {
-    return first_that_varies(series, name, [](const Track&) { return true; });
 }
 
 Track first_of(const FlightSeries& series, std::string_view name) {
@@ -135,13 +134,6 @@ void require_power(const FlightSeries& series, const std::string& holds) {
         {series.file}, fmt::format("holds no measured power of aircraft {}{}", series.aircraft_id, reason),
         fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE{}{}",
                     holds.empty() ? "" : "; it holds ", holds));
-}
-
-void replace_track(FlightSeries& series, Track track) {
-    const auto is_same = [&](const Track& other) { return other.name == track.name; };
-    const auto at = std::find_if(series.tracks.begin(), series.tracks.end(), is_same) - series.tracks.begin();
-    std::erase_if(series.tracks, is_same);
-    series.tracks.insert(series.tracks.begin() + at, std::move(track));
 }
 
 }  // namespace flightwatt::flight

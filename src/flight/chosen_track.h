@@ -39,7 +39,4 @@ std::vector<std::string> warnings_of(const FlightSeries& series);
 /// and, with `holds`, what the log holds instead.
 void require_power(const FlightSeries& series, const std::string& holds = "");
 
-/// Puts a track into the series in place of all of its name.
-void replace_track(FlightSeries& series, Track track);
-
 }  // namespace flightwatt::flight

@@ -4,9 +4,10 @@
 #include "flight/chosen_track.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
-#include <functional>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -16,11 +17,11 @@ namespace {
 constexpr int manual_mode = 0;
 constexpr int auto2_mode = 2;
 
-/// A change of a state (mode or block).
+/// A change of a state (mode or block); of a message without states, that it came.
 struct Change {
     double time_s;
-    int from;
-    int to;
+    int from = 0;
+    int to = 0;
 };
 
 std::vector<Change> changes_of(const Track& state) {
@@ -33,21 +34,9 @@ std::vector<Change> changes_of(const Track& state) {
     return changes;
 }
 
-/// The change nearest to the edge among those that match, if one is within reach.
-void add_nearest(std::vector<EdgeWitness>& witnesses, double edge_s, const std::vector<Change>& changes,
-                 const std::function<bool(const Change&)>& matches,
-                 const std::function<std::string(const Change&)>& describe) {
-    const Change* nearest = nullptr;
-    for (const auto& change : changes) {
-        const double distance = std::abs(change.time_s - edge_s);
-        if (distance > witness_reach_s || !matches(change)) continue;
-        if (nearest == nullptr || distance < std::abs(nearest->time_s - edge_s)) nearest = &change;
-    }
-    if (nearest != nullptr)
-        witnesses.push_back({describe(*nearest), nearest->time_s, nearest->time_s - edge_s});
-}
+using BlockNames = std::map<int, std::string>;
 
-bool name_contains(const std::map<int, std::string>& names, int block, std::string_view word) {
+bool name_contains(const BlockNames& names, int block, std::string_view word) {
     const auto found = names.find(block);
     if (found == names.end()) return false;
     std::string lower;
@@ -58,52 +47,61 @@ bool name_contains(const std::map<int, std::string>& names, int block, std::stri
     return lower.find(word) != std::string::npos;
 }
 
-std::vector<EdgeWitness> events_of(const FlightSeries& series, EdgeKind kind, double edge_s) {
-    std::vector<EdgeWitness> witnesses;
-    const auto modes = changes_of(chosen_track(series, "mode"));
-    const auto blocks = changes_of(chosen_track(series, "block"));
-    const auto mode_text = [](const Change& c) { return fmt::format("mode {} -> {}", c.from, c.to); };
-    const auto block_text = [&](const Change& c) {
-        const auto name = [&](int block) {
-            const auto found = series.block_names.find(block);
-            return found == series.block_names.end() ? fmt::format("{}", block) : found->second;
-        };
-        return fmt::format("block {} -> {}", name(c.from), name(c.to));
+/// Which changes of a track speak of an edge.
+struct Sign {
+    EdgeKind edge;
+    const char* track;
+    bool (*matches)(const BlockNames& names, const Change& change);
+};
+
+bool leaves_takeoff(const BlockNames& names, const Change& c) {
+    return name_contains(names, c.from, "takeoff");
+}
+
+bool begins_to_land(const BlockNames& names, const Change& c) {
+    return name_contains(names, c.to, "land") && !name_contains(names, c.from, "land");
+}
+
+constexpr Sign signs[] = {
+    {EdgeKind::lift_off, "takeoff", [](const BlockNames&, const Change&) { return true; }},
+    {EdgeKind::takeoff_end, "block", leaves_takeoff},
+    {EdgeKind::takeoff_end, "mode", [](const BlockNames&, const Change& c) { return c.to == auto2_mode; }},
+    {EdgeKind::landing_start, "block", begins_to_land},
+    {EdgeKind::landing_start, "mode",
+     [](const BlockNames&, const Change& c) { return c.from == auto2_mode; }},
+    {EdgeKind::touchdown, "mode", [](const BlockNames&, const Change& c) { return c.to == manual_mode; }},
+};
+
+std::string event_text(const FlightSeries& series, std::string_view track, const Change& change) {
+    if (track == "takeoff") return "TAKEOFF";
+    if (track == "mode") return fmt::format("mode {} -> {}", change.from, change.to);
+    const auto name = [&](int block) {
+        const auto found = series.block_names.find(block);
+        return found == series.block_names.end() ? fmt::format("{}", block) : found->second;
     };
-    const auto& names = series.block_names;
-    switch (kind) {
-        case EdgeKind::lift_off: {
-            std::vector<Change> messages;
-            for (const double time_s : chosen_track(series, "takeoff").time_s)
-                messages.push_back({time_s, 0, 0});
-            add_nearest(
-                witnesses, edge_s, messages, [](const Change&) { return true; },
-                [](const Change&) { return std::string("TAKEOFF"); });
-            break;
+    return fmt::format("block {} -> {}", name(change.from), name(change.to));
+}
+
+/// Of each sign of that edge the nearest one within reach.
+std::vector<EdgeWitness> events_of(const FlightSeries& series, EdgeKind kind, double edge_s) {
+    std::vector<EdgeWitness> events;
+    for (const auto& sign : signs) {
+        if (sign.edge != kind) continue;
+        const auto track = chosen_track(series, sign.track);
+        auto changes = changes_of(track);
+        if (kind == EdgeKind::lift_off) {
+            changes.clear();
+            for (const double time_s : track.time_s) changes.push_back({time_s});
         }
-        case EdgeKind::takeoff_end:
-            add_nearest(
-                witnesses, edge_s, blocks,
-                [&](const Change& c) { return name_contains(names, c.from, "takeoff"); }, block_text);
-            add_nearest(
-                witnesses, edge_s, modes, [](const Change& c) { return c.to == auto2_mode; }, mode_text);
-            break;
-        case EdgeKind::landing_start:
-            add_nearest(
-                witnesses, edge_s, blocks,
-                [&](const Change& c) {
-                    return name_contains(names, c.to, "land") && !name_contains(names, c.from, "land");
-                },
-                block_text);
-            add_nearest(
-                witnesses, edge_s, modes, [](const Change& c) { return c.from == auto2_mode; }, mode_text);
-            break;
-        case EdgeKind::touchdown:
-            add_nearest(
-                witnesses, edge_s, modes, [](const Change& c) { return c.to == manual_mode; }, mode_text);
-            break;
+        const auto distance_s = [&](const Change& change) { return std::abs(change.time_s - edge_s); };
+        std::erase_if(changes, [&](const Change& change) {
+            return distance_s(change) > witness_reach_s || !sign.matches(series.block_names, change);
+        });
+        if (changes.empty()) continue;
+        const auto nearest = *std::ranges::min_element(changes, {}, distance_s);
+        events.push_back({event_text(series, sign.track, nearest), nearest.time_s, nearest.time_s - edge_s});
     }
-    return witnesses;
+    return events;
 }
 
 /// Whether what events_of finds happens at the edge itself, and not somewhere about it.
@@ -112,17 +110,9 @@ bool marks_edge(EdgeKind kind) { return kind == EdgeKind::lift_off || kind == Ed
 }  // namespace
 
 std::string_view to_string(EdgeKind kind) {
-    switch (kind) {
-        case EdgeKind::lift_off:
-            return "lift-off";
-        case EdgeKind::takeoff_end:
-            return "end of take-off";
-        case EdgeKind::landing_start:
-            return "start of landing";
-        case EdgeKind::touchdown:
-            return "touchdown";
-    }
-    return "";
+    constexpr std::array<std::string_view, 4> names{"lift-off", "end of take-off", "start of landing",
+                                                    "touchdown"};
+    return names[static_cast<std::size_t>(kind)];
 }
 
 std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sortie& sortie) {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flight/flight_phases.h"
 #include "flight/flight_series.h"
-#include "flight/segmentation.h"
 
 #include <string>
 #include <string_view>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -33,6 +34,67 @@ struct PerPhase {
     std::array<T, 3> values{};
     T& operator[](Phase phase) { return values[static_cast<std::size_t>(phase)]; }
     const T& operator[](Phase phase) const { return values[static_cast<std::size_t>(phase)]; }
+};
+
+/// The few physical thresholds of the segmentation.
+struct SegmentationOptions {
+    double rest_s = 10.0;                ///< an aircraft rests when, for this long, its motor idles and
+    double rest_height_m = 3.0;          ///< its altitude stays within this range
+    double rest_speed_m_per_s = 4.0;     ///< and (where known) it is no faster than someone who carries it
+    double idle_throttle_percent = 5.0;  ///< idle is up to this (above the log's least, where speed is known)
+    double flight_throttle_percent = 20.0;  ///< what rises without ever using as much is no flight
+    double flight_height_m = 10.0;          ///< what stays below this is a run-up, a taxi or a hop
+    double ground_fraction = 0.025;         ///< of the flight's height: below, it stands or rolls
+    double cruise_fraction = 0.90;          ///< of the height held: there take-off ends and landing begins
+    double hold_s = 30.0;                   ///< a height is held when it grows for this long by less than
+    double hold_fraction = 0.10;            ///< this fraction of the flight's height
+};
+
+/// As the log writes its times.
+inline double to_millisecond(double time_s) { return std::round(time_s * 1000.0) / 1000.0; }
+
+/// Where a phase begins or ends, and what was seen there.
+struct PhaseEdge {
+    double time_s = 0.0;
+    double altitude_m = 0.0;
+    double gap_s = 0.0;  ///< between the altitude samples around it: the edge lies somewhere in there
+    std::optional<double> throttle_percent;
+    std::optional<int> mode;                ///< PPRZ_MODE.ap_mode
+    std::optional<int> block;               ///< NAVIGATION.cur_block
+    std::optional<double> takeoff_after_s;  ///< the nearest TAKEOFF message, in seconds after this edge
+};
+
+/// One phase of a sortie, in the log's own seconds.
+struct PhaseSpan {
+    Phase phase = Phase::cruise;
+    PhaseEdge start;
+    PhaseEdge end;
+    bool complete = true;  ///< false if the log begins or ends inside of it
+    double duration_s() const { return to_millisecond(end.time_s - start.time_s); }
+};
+
+/// From lift-off to touchdown.
+struct Sortie {
+    std::size_t number = 1;         ///< its place among those of the log
+    std::vector<PhaseSpan> phases;  ///< in order; a log that begins or ends in the air lacks some
+    double ground_altitude_m = 0.0;
+    double height_m = 0.0;  ///< median height above the ground while in the upper half of it
+
+    double start_s() const { return phases.front().start.time_s; }
+    double end_s() const { return phases.back().end.time_s; }
+};
+
+/// Something that moved or ran on the ground and is no flight.
+struct GroundEvent {
+    double start_s = 0.0;
+    double end_s = 0.0;
+    std::string what;  ///< "run-up: throttle to 65 %, height 0.4 m"
+};
+
+struct FlightPhases {
+    std::vector<Sortie> sorties;
+    std::vector<GroundEvent> ground_events;
+    std::vector<std::string> warnings;
 };
 
 }  // namespace flightwatt::flight

@@ -1,17 +1,103 @@
 #include "flight/flight_series.h"
 
-namespace flightwatt::flight {
+#include <algorithm>
+#include <cmath>
 
-std::string_view to_string(CurrentOrigin origin) {
-    switch (origin) {
-        case CurrentOrigin::sensor:
-            return "measured by a sensor";
-        case CurrentOrigin::throttle:
-            return "computed from throttle";
-        case CurrentOrigin::unknown:
-            break;
+namespace flightwatt::flight {
+namespace {
+
+double interpolate(const Track& track, std::size_t after, double time_s) {
+    if (after == 0) return track.value.front();
+    if (after == track.time_s.size()) return track.value.back();
+    const double begin_s = track.time_s[after - 1];
+    const double part = (time_s - begin_s) / (track.time_s[after] - begin_s);
+    return std::lerp(track.value[after - 1], track.value[after], part);
+}
+
+/// Most messages come in the order of their times, each a time of its own.
+bool is_track(const std::vector<double>& time_s, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (!std::isfinite(values[i]) || (i > 0 && time_s[i] <= time_s[i - 1])) return false;
     }
-    return "unknown";
+    return true;
+}
+
+Track cut_track(const Track& track, double until_s) {
+    const auto end = std::upper_bound(track.time_s.begin(), track.time_s.end(), until_s);
+    const auto count = end - track.time_s.begin();
+    return {track.name,
+            track.source,
+            track.device,
+            track.since_s,
+            {track.time_s.begin(), end},
+            {track.value.begin(), track.value.begin() + count}};
+}
+
+void cut_skipped(std::vector<telemetry::SkippedLines>& skipped, double until_s) {
+    for (auto& skip : skipped) {
+        std::erase_if(skip.lines, [&](const auto& at) { return at.time_s > until_s; });
+    }
+    std::erase_if(skipped, [](const auto& skip) { return skip.lines.empty(); });
+    std::sort(skipped.begin(), skipped.end(),
+              [](const auto& a, const auto& b) { return a.first_line() < b.first_line(); });
+}
+
+}  // namespace
+
+Track make_track(const std::vector<double>& time_s, const std::vector<double>& values, Merge merge) {
+    Track track;
+    if (is_track(time_s, values)) {
+        track.time_s = time_s;
+        track.value = values;
+        return track;
+    }
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isfinite(values[i])) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
+    std::size_t merged = 0;  // how many rows the last point is made of
+    for (const auto i : order) {
+        if (!track.empty() && track.time_s.back() == time_s[i]) {
+            ++merged;
+            auto& value = track.value.back();
+            value = merge == Merge::latest ? values[i]
+                                           : value + (values[i] - value) / static_cast<double>(merged);
+            continue;
+        }
+        merged = 1;
+        track.time_s.push_back(time_s[i]);
+        track.value.push_back(values[i]);
+    }
+    return track;
+}
+
+double value_at(const Track& track, double time_s) {
+    const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), time_s);
+    return interpolate(track, static_cast<std::size_t>(after - track.time_s.begin()), time_s);
+}
+
+double state_at(const Track& track, double time_s) {
+    const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), time_s);
+    const auto index = static_cast<std::size_t>(after - track.time_s.begin());
+    return track.value[index == 0 ? 0 : index - 1];
+}
+
+std::vector<double> resample(const Track& track, const std::vector<double>& time_s) {
+    std::vector<double> values;
+    values.reserve(time_s.size());
+    std::size_t after = 0;
+    for (const double t : time_s) {
+        while (after < track.time_s.size() && track.time_s[after] <= t) ++after;
+        values.push_back(interpolate(track, after, t));
+    }
+    return values;
+}
+
+bool is_constant(const Track& track) {
+    return std::all_of(track.value.begin(), track.value.end(),
+                       [&](double value) { return value == track.value.front(); });
 }
 
 const std::vector<std::string>& track_names() {
@@ -40,6 +126,26 @@ const std::vector<std::string>& track_names() {
                                                 "takeoff",
                                                 "ground_altitude_m"};
     return names;
+}
+
+void replace_track(FlightSeries& series, Track track) {
+    const auto is_same = [&](const Track& other) { return other.name == track.name; };
+    const auto at = std::find_if(series.tracks.begin(), series.tracks.end(), is_same) - series.tracks.begin();
+    std::erase_if(series.tracks, is_same);
+    series.tracks.insert(series.tracks.begin() + at, std::move(track));
+}
+
+FlightSeries cut_series(const FlightSeries& series, double until_s) {
+    FlightSeries cut = series;
+    cut.tracks.clear();
+    for (const auto& track : series.tracks) {
+        if (track.since_s <= until_s) cut.tracks.push_back(cut_track(track, until_s));
+    }
+    std::erase_if(cut.assumed_definitions,
+                  [&](const auto& definition) { return definition.since_s > until_s; });
+    cut_skipped(cut.skipped, until_s);
+    if (cut.clock_restart && cut.clock_restart->known_s > until_s) cut.clock_restart.reset();
+    return cut;
 }
 
 }  // namespace flightwatt::flight

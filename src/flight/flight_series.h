@@ -1,6 +1,6 @@
 #pragma once
 
-#include "telemetry/telemetry_log.h"
+#include "telemetry/log_notes.h"
 
 #include <limits>
 #include <map>
@@ -24,15 +24,29 @@ struct Track {
     bool operator==(const Track&) const = default;
 };
 
-/// Where the autopilot's current came from.
-enum class CurrentOrigin {
-    unknown,
-    sensor,   ///< the airframe converts an ADC reading
-    throttle  ///< computed from throttle: a power model fitted to it is circular
+/// What several values at the same time become.
+enum class Merge {
+    mean,   ///< measurements
+    latest  ///< counters and states: the one that stands last in the log
 };
 
-/// "measured by a sensor", "computed from throttle" or "unknown".
-std::string_view to_string(CurrentOrigin origin);
+/// A track, without a name, from raw rows: values that are not finite are dropped, times sorted, equal times merged.
+/// `time_s` and `values` are equally long.
+Track make_track(const std::vector<double>& time_s, const std::vector<double>& values, Merge merge);
+
+/// Linear between the track's points, its first and last value outside. The track must not be empty.
+double value_at(const Track& track, double time_s);
+
+/// The last value at or before `time_s` (the first value before the track begins). Not for an empty track.
+double state_at(const Track& track, double time_s);
+
+/// value_at for every time, in one pass: `time_s` must rise.
+std::vector<double> resample(const Track& track, const std::vector<double>& time_s);
+
+/// True if the track holds one value throughout (or nothing).
+bool is_constant(const Track& track);
+
+using telemetry::CurrentOrigin;
 
 /// The log's clock began anew: what stands behind is another recording.
 struct ClockRestart {
@@ -70,5 +84,12 @@ struct FlightSeries {
 /// Every name that a track can have, in the order of the series file's columns: altitude_m,
 /// throttle_percent, voltage_v, current_a, power_w, charge_ah, energy_wh, east_m, north_m, ...
 const std::vector<std::string>& track_names();
+
+/// Puts a track into the series in place of all of its name.
+void replace_track(FlightSeries& series, Track track);
+
+/// The series as it would have been read from a log that ends at `until_s` (the log's own seconds), in every
+/// field: nothing later is left. What is known before a flight stays.
+FlightSeries cut_series(const FlightSeries& series, double until_s);
 
 }  // namespace flightwatt::flight

@@ -1,11 +1,9 @@
 #pragma once
 
 #include "flight/flight_series.h"
-#include "flight/segmentation.h"
 
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace flightwatt::flight {
@@ -30,14 +28,14 @@ double integrated_energy_wh(const FlightSeries& series, double start_s, double e
 double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s,
                   double end_s);
 
+/// The mean of airspeed^3 [m^3/s^3] of the samples in [start_s, end_s]: gusts count, as they do for drag.
+/// std::nullopt if fewer than half of the seconds between have a sample within 5 s.
+std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, double start_s, double end_s);
+
 /// A longer interval without a power sample is a gap: three usual ones [s].
 double gap_threshold_s(const std::vector<double>& time_s);
 
 /// Median interval of the power samples [s].
 double usual_interval_s(const std::vector<double>& time_s);
-
-/// The phases CSV: sortie, phase, start_s, end_s, duration_s, samples, mean_power_w, energy_wh, ... and the
-/// evidence at both edges; a witness that is absent leaves its cell empty.
-std::string phases_csv(const FlightSeries& series, const FlightPhases& phases);
 
 }  // namespace flightwatt::flight

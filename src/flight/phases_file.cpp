@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "flight/phase_statistics.h"
 
 #include <cmath>
 #include <optional>
@@ -57,6 +58,47 @@ PhaseSpan span_of(const RowReader& row) {
 }
 
 }  // namespace
+
+std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
+    CsvWriter csv({"sortie",
+                   "phase",
+                   "start_s",
+                   "end_s",
+                   "duration_s",
+                   "samples",
+                   "mean_power_w",
+                   "energy_wh",
+                   "counter_energy_wh",
+                   "gaps",
+                   "longest_gap_s",
+                   "complete",
+                   "start_altitude_m",
+                   "start_gap_s",
+                   "start_throttle_percent",
+                   "start_mode",
+                   "start_block",
+                   "start_to_takeoff_message_s",
+                   "end_altitude_m",
+                   "end_gap_s",
+                   "end_throttle_percent",
+                   "end_mode",
+                   "end_block",
+                   "end_to_takeoff_message_s"});
+    const auto altitude = [](const PhaseEdge& edge) { return fmt::format("{:.2f}", edge.altitude_m); };
+    for (const auto& sortie : phases.sorties) {
+        for (const auto& span : sortie.phases) {
+            const auto& [phase, start, end, complete] = span;
+            const auto statistics = phase_statistics(series, start.time_s, end.time_s);
+            csv.add(sortie.number, to_string(phase), start.time_s, end.time_s, span.duration_s(),
+                    statistics.samples, statistics.mean_power_w, statistics.energy_wh,
+                    statistics.counter_energy_wh, statistics.gaps, statistics.longest_gap_s, complete,
+                    altitude(start), start.gap_s, start.throttle_percent, start.mode, start.block,
+                    start.takeoff_after_s, altitude(end), end.gap_s, end.throttle_percent, end.mode,
+                    end.block, end.takeoff_after_s);
+        }
+    }
+    return csv.text();
+}
 
 FlightPhases read_phases_csv(const std::filesystem::path& path) {
     const auto table = read_csv(path);

@@ -1,14 +1,18 @@
 #include "flight/power_check.h"
 
+#include "base/piecewise_linear.h"
+#include "base/statistics.h"
 #include "base/units.h"
 #include "flight/chosen_track.h"
+#include "flight/flight_series.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/sources/power_source.h"
-#include "flight/track.h"
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,6 +27,12 @@ constexpr double faulty_counter_return = 0.05;
 constexpr double faulty_rest_part = 0.10;  // of the samples at rest
 constexpr double faulty_closure_percent = 10.0;
 
+/// The samples [first, last).
+struct SampleRange {
+    std::size_t first;
+    std::size_t last;
+};
+
 /// What the power's sensor and counters say, on the clock of the power samples; empty where not logged.
 struct PowerRecord {
     std::vector<double> time_s;
@@ -32,9 +42,10 @@ struct PowerRecord {
     std::vector<double> charge_ah;
     std::vector<double> energy_wh;
     std::vector<double> throttle_percent;
+    std::vector<SampleRange> flown;  ///< the samples of each sortie
 };
 
-PowerRecord record_of(const FlightSeries& series) {
+PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
     auto power = power_track(series);
     const auto on_clock = [&](const char* name) { return chosen_at(series, name, power.time_s); };
     PowerRecord record;
@@ -45,19 +56,14 @@ PowerRecord record_of(const FlightSeries& series) {
     record.throttle_percent = on_clock("throttle_percent");
     record.time_s = std::move(power.time_s);
     record.power_w = std::move(power.value);
+    const auto& time_s = record.time_s;
+    for (const auto& sortie : phases.sorties) {
+        const auto first = std::lower_bound(time_s.begin(), time_s.end(), sortie.start_s());
+        const auto last = std::upper_bound(first, time_s.end(), sortie.end_s());
+        record.flown.push_back({static_cast<std::size_t>(first - time_s.begin()),
+                                static_cast<std::size_t>(last - time_s.begin())});
+    }
     return record;
-}
-
-bool is_in_flight(const FlightPhases& phases, double time_s) {
-    return std::any_of(phases.sorties.begin(), phases.sorties.end(), [&](const Sortie& sortie) {
-        return time_s >= sortie.phases.front().start.time_s && time_s <= sortie.phases.back().end.time_s;
-    });
-}
-
-double median_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 /// Indices of the power samples at rest with the motor off.
@@ -84,17 +90,16 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a,
     constexpr std::size_t enough = 10;
     if (current_a.empty() || resting.size() < enough) return std::nullopt;
     std::vector<double> values;
-    values.reserve(resting.size());
     for (const auto i : resting) values.push_back(current_a[i]);
-    const double middle = median_of(values);
+    const double middle = upper_median(values);
     std::vector<double> distances;
-    distances.reserve(values.size());
     for (const double value : values) distances.push_back(std::abs(value - middle));
-    const double reach = 5.0 * std::max(median_of(distances), 1e-6);  // beyond 3 sigma is no idling
+    const double reach =
+        5.0 * std::max(upper_median(std::move(distances)), 1e-6);  // beyond 3 sigma is no idling
+    std::erase_if(values, [&](double value) { return std::abs(value - middle) > reach; });
     IdleCurrent idle;
     double squares = 0.0;
     for (const double value : values) {
-        if (std::abs(value - middle) > reach) continue;
         ++idle.samples;
         const double delta = value - idle.mean_a;
         idle.mean_a += delta / static_cast<double>(idle.samples);
@@ -106,14 +111,15 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a,
 
 /// How far a rising counter ran back in flight, over what it counted there. On the ground a pack may be
 /// changed.
-double counter_return(const std::vector<double>& time_s, const std::vector<double>& counter,
-                      const FlightPhases& phases) {
+double counter_return(const std::vector<double>& counter, const std::vector<SampleRange>& flown) {
+    if (counter.empty()) return 0.0;
     double returned = 0.0;
     double counted = 0.0;
-    for (std::size_t i = 1; i < counter.size(); ++i) {
-        if (!is_in_flight(phases, time_s[i - 1]) || !is_in_flight(phases, time_s[i])) continue;
-        const double step = counter[i] - counter[i - 1];
-        (step < 0.0 ? returned : counted) += std::abs(step);
+    for (const auto& [first, last] : flown) {
+        for (auto i = first + 1; i < last; ++i) {
+            const double step = counter[i] - counter[i - 1];
+            (step < 0.0 ? returned : counted) += std::abs(step);
+        }
     }
     return counted > 0.0 ? returned / counted : returned > 0.0 ? 1.0 : 0.0;
 }
@@ -128,22 +134,16 @@ double power_difference(const PowerRecord& record) {
         if (std::abs(product) < compared_power_w) continue;
         differences.push_back(std::abs(record.power_w[i] - product) / std::abs(product));
     }
-    return differences.empty() ? 0.0 : median_of(std::move(differences));
+    return differences.empty() ? 0.0 : upper_median(std::move(differences));
 }
 
-bool is_constant_in_flight(const PowerRecord& record, const FlightPhases& phases) {
-    for (const auto& sortie : phases.sorties) {
-        std::vector<double> flown;
-        for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-            const bool inside = record.time_s[i] >= sortie.phases.front().start.time_s &&
-                                record.time_s[i] <= sortie.phases.back().end.time_s;
-            if (inside) flown.push_back(record.power_w[i]);
-        }
-        const bool varies =
-            std::any_of(flown.begin(), flown.end(), [&](double w) { return w != flown.front(); });
-        if (flown.size() >= 10 && !varies) return true;
-    }
-    return false;
+bool is_constant_in_flight(const PowerRecord& record) {
+    constexpr std::size_t enough = 10;
+    return std::any_of(record.flown.begin(), record.flown.end(), [&](const SampleRange& flown) {
+        const auto power_w = std::span(record.power_w).subspan(flown.first, flown.last - flown.first);
+        return power_w.size() >= enough &&
+               std::ranges::count(power_w, power_w.front()) == std::ssize(power_w);
+    });
 }
 
 /// What part of the samples at rest has a current that only a running motor draws.
@@ -156,20 +156,19 @@ double loaded_rest_part(const PowerRecord& record, const std::vector<std::size_t
     return loaded < enough ? 0.0 : static_cast<double>(loaded) / static_cast<double>(resting.size());
 }
 
-double mean_power_in_flight_w(const PowerRecord& record, const FlightPhases& phases) {
+/// Of the samples' power, whose mean has the same sign.
+double power_sum_in_flight_w(const PowerRecord& record) {
     double sum_w = 0.0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        if (!is_in_flight(phases, record.time_s[i])) continue;
-        sum_w += record.power_w[i];
-        ++count;
+    for (const auto& [first, last] : record.flown) {
+        for (auto i = first; i < last; ++i) sum_w += record.power_w[i];
     }
-    return count > 0 ? sum_w / static_cast<double>(count) : 0.0;
+    return sum_w;
 }
 
-void find_power_faults(const PowerRecord& record, const FlightPhases& phases,
-                       const std::vector<std::size_t>& resting, PowerReport& report) {
-    const auto add = [&](std::string text) { report.power_faults.push_back(std::move(text)); };
+std::vector<std::string> power_faults_of(const PowerRecord& record, const std::vector<std::size_t>& resting,
+                                         const PowerReport& report) {
+    std::vector<std::string> faults;
+    const auto add = [&](std::string text) { faults.push_back(std::move(text)); };
     if (const double part = loaded_rest_part(record, resting); part > faulty_rest_part) {
         add(fmt::format("more than {:.0f} A in {:.0f} % of the samples on the ground with the motor off",
                         faulty_idle_current_a, part * units::percent_per_whole));
@@ -180,8 +179,7 @@ void find_power_faults(const PowerRecord& record, const FlightPhases& phases,
     }
     for (const auto& [name, counter] :
          {std::pair{"energy", &record.energy_wh}, std::pair{"charge", &record.charge_ah}}) {
-        if (const double part = counter_return(record.time_s, *counter, phases);
-            part > faulty_counter_return) {
+        if (const double part = counter_return(*counter, record.flown); part > faulty_counter_return) {
             add(fmt::format("the {} counter ran back by {:.0f} % of what it counted in flight", name,
                             part * units::percent_per_whole));
         }
@@ -193,22 +191,21 @@ void find_power_faults(const PowerRecord& record, const FlightPhases& phases,
                             name));
         }
     }
-    if (mean_power_in_flight_w(record, phases) < 0.0) add("power is negative on average in flight");
-    if (is_constant_in_flight(record, phases)) add("power does not change in flight");
+    if (power_sum_in_flight_w(record) < 0.0) add("power is negative on average in flight");
+    if (is_constant_in_flight(record)) add("power does not change in flight");
+    return faults;
 }
 
 /// Integral over counter, less 100 %, over all sorties; absent without a counter that counted.
 std::optional<double> closure_percent(const std::vector<double>& time_s, const std::vector<double>& rate,
                                       const std::vector<double>& counter, const FlightPhases& phases) {
     if (rate.empty() || counter.empty()) return std::nullopt;
-    const Track counted{.time_s = time_s, .value = counter};
     double integral = 0.0;
     double difference = 0.0;
     for (const auto& sortie : phases.sorties) {
-        const double start_s = sortie.phases.front().start.time_s;
-        const double end_s = sortie.phases.back().end.time_s;
-        integral += integrated(time_s, rate, start_s, end_s) / units::seconds_per_hour;
-        difference += value_at(counted, end_s) - value_at(counted, start_s);
+        integral += integrated(time_s, rate, sortie.start_s(), sortie.end_s()) / units::seconds_per_hour;
+        difference += interpolate_clamped(time_s, counter, sortie.end_s()) -
+                      interpolate_clamped(time_s, counter, sortie.start_s());
     }
     if (!(difference > 0.0)) return std::nullopt;
     return (integral / difference - 1.0) * units::percent_per_whole;
@@ -220,22 +217,20 @@ PowerReport check_power_record(const FlightSeries& series, const FlightPhases& p
                                const SegmentationOptions& options) {
     PowerReport report;
     report.origin = series.current_origin;
-    const auto record = record_of(series);
+    const auto record = record_of(series, phases);
     const auto& time_s = record.time_s;
     const auto resting = resting_samples(series, record, options);
     report.idle = idle_current(record.current_a, resting);
     report.energy_closure_percent = closure_percent(time_s, record.power_w, record.energy_wh, phases);
     report.charge_closure_percent = closure_percent(time_s, record.current_a, record.charge_ah, phases);
     const double gap_s = gap_threshold_s(time_s);
-    for (const auto& sortie : phases.sorties) {
-        for (std::size_t i = 1; i < time_s.size(); ++i) {
+    for (const auto& [first, last] : record.flown) {
+        for (auto i = first + 1; i < last; ++i) {
             const double interval_s = time_s[i] - time_s[i - 1];
-            const bool inside = time_s[i - 1] >= sortie.phases.front().start.time_s &&
-                                time_s[i] <= sortie.phases.back().end.time_s;
-            if (inside && interval_s > gap_s) report.gaps.push_back({time_s[i - 1], interval_s});
+            if (interval_s > gap_s) report.gaps.push_back({time_s[i - 1], interval_s});
         }
     }
-    find_power_faults(record, phases, resting, report);
+    report.power_faults = power_faults_of(record, resting, report);
     return report;
 }
 

@@ -1,14 +1,18 @@
 #include "flight/segmentation.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "flight/chosen_track.h"
+#include "flight/flight_series.h"
 #include "flight/segmentation/flight_grid.h"
-#include "flight/track.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
@@ -65,40 +69,42 @@ double median_of_upper_half(const std::vector<double>& heights, double highest) 
     std::vector<double> upper;
     std::copy_if(heights.begin(), heights.end(), std::back_inserter(upper),
                  [&](double h) { return h > 0.5 * highest; });
-    if (upper.empty()) return highest;
-    const auto middle = upper.begin() + static_cast<std::ptrdiff_t>(upper.size() / 2);
-    std::nth_element(upper.begin(), middle, upper.end());
-    return *middle;
+    return upper.empty() ? highest : upper_median(std::move(upper));
 }
 
 /// The ground on both sides. An estimator without a fix rests at any level: where the two differ by more than
 /// a third of the height flown, the later one counts.
-std::pair<double, double> grounds_of(const FlightGrid& grid, const Activity& activity,
-                                     const std::optional<double>& planned_ground_m, bool& disagree) {
+struct Grounds {
+    double before_m = 0.0;
+    double after_m = 0.0;
+    bool disagreed = false;
+};
+
+Grounds grounds_of(const FlightGrid& grid, const Activity& activity,
+                   const std::optional<double>& planned_ground_m) {
     const auto first = grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(activity.span.begin);
     const auto last = grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(activity.span.end);
     const auto [lowest, highest] = std::minmax_element(first, last);
     if (!activity.ground_before_m && !activity.ground_after_m) {
         // In the air from the first to the last line: the flight plan's ground, unless the log goes below it.
-        const double ground = planned_ground_m ? std::min(*planned_ground_m, *lowest) : *lowest;
-        return {ground, ground};
+        const double ground_m = std::min(planned_ground_m.value_or(*lowest), *lowest);
+        return {ground_m, ground_m};
     }
-    const double after = activity.ground_after_m.value_or(activity.ground_before_m.value_or(0.0));
-    double before = activity.ground_before_m.value_or(after);
-    disagree = std::abs(before - after) > std::max(10.0, (*highest - after) / 3.0);
-    if (disagree) before = after;
-    return {before, after};
+    const double after_m = activity.ground_after_m ? *activity.ground_after_m : *activity.ground_before_m;
+    const double before_m = activity.ground_before_m.value_or(after_m);
+    const bool disagree = std::abs(before_m - after_m) > std::max(10.0, (*highest - after_m) / 3.0);
+    return {disagree ? after_m : before_m, after_m, disagree};
 }
 
-Heights heights_of(const FlightGrid& grid, const Activity& activity, std::pair<double, double> grounds) {
+Heights heights_of(const FlightGrid& grid, const Activity& activity, const Grounds& grounds) {
     Heights heights;
     const auto count = activity.span.end - activity.span.begin;
     for (std::size_t i = 0; i < count; ++i) {
         const double part = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0.0;
-        const double ground = std::lerp(grounds.first, grounds.second, part);
-        heights.height_m.push_back(grid.altitude_m[activity.span.begin + i] - ground);
+        const double ground_m = std::lerp(grounds.before_m, grounds.after_m, part);
+        heights.height_m.push_back(grid.altitude_m[activity.span.begin + i] - ground_m);
     }
-    heights.ground_m = grounds.first;
+    heights.ground_m = grounds.before_m;
     heights.highest_m = *std::max_element(heights.height_m.begin(), heights.height_m.end());
     heights.top_m = median_of_upper_half(heights.height_m, heights.highest_m);
     return heights;
@@ -115,20 +121,16 @@ std::string why_no_flight(const FlightGrid& grid, const Activity& activity, cons
                           const SegmentationOptions& options) {
     const double throttle = highest_throttle(grid, activity.span);
     const bool motor_known = !grid.throttle_percent.empty();
-    const bool motor_ran = !motor_known || throttle >= options.flight_throttle_percent;
     if (heights.highest_m < options.flight_height_m) {
-        if (motor_known && throttle > options.idle_throttle_percent) {
-            return fmt::format("run-up, taxi or hop: throttle to {:.0f} %, height to {:.1f} m", throttle,
-                               std::max(heights.highest_m, 0.0));
-        }
-        return fmt::format("carried or rolled: height to {:.1f} m, motor off",
-                           std::max(heights.highest_m, 0.0));
+        const double height_m = std::max(heights.highest_m, 0.0);
+        return motor_known && throttle > options.idle_throttle_percent
+                   ? fmt::format("run-up, taxi or hop: throttle to {:.0f} %, height to {:.1f} m", throttle,
+                                 height_m)
+                   : fmt::format("carried or rolled: height to {:.1f} m, motor off", height_m);
     }
-    if (!motor_ran) {
-        return fmt::format("altitude moved by {:.0f} m with the motor off: an estimator without a fix",
-                           heights.highest_m);
-    }
-    return "";
+    if (!motor_known || throttle >= options.flight_throttle_percent) return "";
+    return fmt::format("altitude moved by {:.0f} m with the motor off: an estimator without a fix",
+                       heights.highest_m);
 }
 
 /// Between two neighbouring points of the grid, where the height crosses `level`.
@@ -215,9 +217,6 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     return edges;
 }
 
-/// As the log writes its times.
-double to_millisecond(double time_s) { return std::round(time_s * 1000.0) / 1000.0; }
-
 /// Between the last sample at or before a time and the first one after it; 0 outside of the samples.
 double gap_around_s(const std::vector<double>& sample_s, double time_s) {
     const auto after = std::upper_bound(sample_s.begin(), sample_s.end(), time_s);
@@ -231,11 +230,6 @@ struct Witnesses {
     Track block;
     Track takeoff;
 };
-
-Witnesses witnesses_of(const FlightSeries& series) {
-    return {chosen_track(series, "altitude_m"), chosen_track(series, "mode"), chosen_track(series, "block"),
-            chosen_track(series, "takeoff")};
-}
 
 PhaseEdge describe_edge(const Witnesses& witnesses, const FlightGrid& grid, double exact_s) {
     PhaseEdge edge;
@@ -282,8 +276,6 @@ Sortie make_sortie(const Witnesses& witnesses, const FlightGrid& grid, const Act
 
 }  // namespace
 
-double PhaseSpan::duration_s() const { return to_millisecond(end.time_s - start.time_s); }
-
 void validate(const SegmentationOptions& options) {
     const auto require = [](bool good, const char* name, double value, const char* expected) {
         if (!good) throw UsageError(fmt::format("{} is {}, expected {}", name, value, expected));
@@ -302,14 +294,14 @@ void validate(const SegmentationOptions& options) {
 FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options) {
     validate(options);
     const auto grid = make_grid(series);
-    const auto witnesses = witnesses_of(series);
+    const Witnesses witnesses{chosen_track(series, "altitude_m"), chosen_track(series, "mode"),
+                              chosen_track(series, "block"), chosen_track(series, "takeoff")};
     const auto ground_m = ground_altitude_m(series);
     FlightPhases phases;
     if (grid.throttle_percent.empty())
         phases.warnings.emplace_back("no throttle: segmented by altitude alone");
     for (const auto& activity : find_activities(grid, find_rests(grid, options), options)) {
-        bool disagree = false;
-        const auto grounds = grounds_of(grid, activity, ground_m, disagree);
+        const auto grounds = grounds_of(grid, activity, ground_m);
         const auto heights = heights_of(grid, activity, grounds);
         auto why = why_no_flight(grid, activity, heights, options);
         if (!why.empty()) {
@@ -317,7 +309,7 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
                 {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1), std::move(why)});
             continue;
         }
-        if (disagree) {
+        if (grounds.disagreed) {
             phases.warnings.push_back(fmt::format(
                 "the ground before the sortie at {:.0f} s was read as {:.0f} m and after it as {:.0f} m: the "
                 "latter counts",
@@ -331,15 +323,13 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
 
 void require_sortie(const FlightSeries& series, const FlightPhases& phases, const std::string& file) {
     if (!phases.sorties.empty()) return;
-    std::string seen = "it stood still throughout";
-    if (!phases.ground_events.empty()) {
-        seen = "seen instead: ";
-        for (std::size_t i = 0; i < std::min<std::size_t>(phases.ground_events.size(), 3); ++i) {
-            const auto& other = phases.ground_events[i];
-            seen += fmt::format("{}{} ({:.0f} to {:.0f} s)", i > 0 ? "; " : "", other.what, other.start_s,
-                                other.end_s);
-        }
+    std::vector<std::string> events;
+    for (const auto& other :
+         std::span(phases.ground_events).first(std::min<std::size_t>(phases.ground_events.size(), 3))) {
+        events.push_back(fmt::format("{} ({:.0f} to {:.0f} s)", other.what, other.start_s, other.end_s));
     }
+    const auto seen = events.empty() ? std::string("it stood still throughout")
+                                     : fmt::format("seen instead: {}", fmt::join(events, "; "));
     const auto power = power_track(series);
     throw InputError(
         {file}, fmt::format("holds no flight in {:.0f} s", power.time_s.back() - power.time_s.front()), seen);

@@ -1,23 +1,103 @@
 #include "flight/telemetry_series.h"
 
-#include "flight/sources/logged_tracks.h"
+#include "base/units.h"
+#include "flight/sources/made_tracks.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <set>
+
+#include <fmt/format.h>
 
 namespace flightwatt::flight {
 namespace {
 
-CurrentOrigin origin_of(telemetry::CurrentOrigin origin) {
-    switch (origin) {
-        case telemetry::CurrentOrigin::sensor:
-            return CurrentOrigin::sensor;
-        case telemetry::CurrentOrigin::throttle:
-            return CurrentOrigin::throttle;
-        case telemetry::CurrentOrigin::unknown:
-            break;
+using units::Quantity;
+
+/// A field that is a track as it stands.
+struct FieldTrack {
+    const char* name;
+    const char* message;
+    const char* field;
+    std::optional<Quantity> quantity;  ///< that the field must have
+    Merge merge;
+};
+
+/// In the order of preference; of different names the order does not matter.
+const std::vector<FieldTrack>& field_tracks() {
+    constexpr auto metre = Quantity::metre;
+    constexpr auto speed = Quantity::metre_per_second;
+    constexpr auto degree = Quantity::degree;
+    static const std::vector<FieldTrack> fields{
+        {"altitude_m", "ESTIMATOR", "z", metre, Merge::mean},
+        {"altitude_m", "ROTORCRAFT_FP", "up", metre, Merge::mean},
+        {"altitude_m", "GPS", "alt", metre, Merge::mean},
+        {"altitude_m", "GPS_INT", "hmsl", metre, Merge::mean},
+        {"altitude_m", "AIR_DATA", "amsl_baro", metre, Merge::mean},
+        {"throttle_percent", "ENERGY", "throttle", Quantity::percent, Merge::mean},
+        {"throttle_percent", "BAT", "throttle", Quantity::percent, Merge::mean},
+        {"voltage_v", "ENERGY", "voltage", Quantity::volt, Merge::mean},
+        {"voltage_v", "ENERGY", "bat", Quantity::volt, Merge::mean},
+        {"voltage_v", "BAT", "voltage", Quantity::volt, Merge::mean},
+        {"voltage_v", "ESC", "bat_volts", Quantity::volt, Merge::mean},
+        {"voltage_v", "POWER_DEVICE", "voltage", Quantity::volt, Merge::mean},
+        {"current_a", "ENERGY", "current", Quantity::ampere, Merge::mean},
+        {"current_a", "ENERGY", "amp", Quantity::ampere, Merge::mean},
+        {"current_a", "BAT", "amps", Quantity::ampere, Merge::mean},
+        {"power_w", "ENERGY", "power", Quantity::watt, Merge::mean},
+        {"charge_ah", "ENERGY", "charge", Quantity::ampere_hour, Merge::latest},
+        {"charge_ah", "ENERGY", "energy", Quantity::ampere_hour, Merge::latest},
+        {"charge_ah", "BAT", "energy", Quantity::ampere_hour, Merge::latest},
+        {"energy_wh", "ENERGY", "energy", Quantity::watt_hour, Merge::latest},
+        {"east_m", "NAVIGATION", "pos_x", metre, Merge::mean},
+        {"east_m", "ROTORCRAFT_FP", "east", metre, Merge::mean},
+        {"east_m", "GPS", "utm_east", metre, Merge::mean},
+        {"north_m", "NAVIGATION", "pos_y", metre, Merge::mean},
+        {"north_m", "ROTORCRAFT_FP", "north", metre, Merge::mean},
+        {"north_m", "GPS", "utm_north", metre, Merge::mean},
+        {"ground_speed_m_per_s", "GPS", "speed", speed, Merge::mean},
+        {"airspeed_m_per_s", "AIRSPEED", "airspeed", speed, Merge::mean},
+        {"airspeed_m_per_s", "AIR_DATA", "airspeed", speed, Merge::mean},
+        {"wind_east_m_per_s", "WIND_INFO", "east", speed, Merge::mean},
+        {"wind_north_m_per_s", "WIND_INFO", "north", speed, Merge::mean},
+        {"latitude_deg", "GPS_INT", "lat", degree, Merge::latest},
+        {"latitude_deg", "GPS_LLA", "lat", degree, Merge::latest},
+        {"longitude_deg", "GPS_INT", "lon", degree, Merge::latest},
+        {"longitude_deg", "GPS_LLA", "lon", degree, Merge::latest},
+        {"heading_deg", "ATTITUDE", "psi", degree, Merge::latest},
+        {"heading_deg", "ROTORCRAFT_FP", "psi", degree, Merge::latest},
+        {"course_deg", "GPS", "course", degree, Merge::latest},
+        {"climb_m_per_s", "ESTIMATOR", "z_dot", speed, Merge::mean},
+        {"climb_m_per_s", "ROTORCRAFT_FP", "vup", speed, Merge::mean},
+        {"climb_m_per_s", "GPS", "climb", speed, Merge::mean},
+        {"roll_deg", "ATTITUDE", "phi", degree, Merge::latest},
+        {"roll_deg", "ROTORCRAFT_FP", "phi", degree, Merge::latest},
+        {"mode", "PPRZ_MODE", "ap_mode", std::nullopt, Merge::latest},
+        {"block", "NAVIGATION", "cur_block", std::nullopt, Merge::latest},
+        {"ground_altitude_m", "NAVIGATION_REF", "ground_alt", metre, Merge::latest},
+    };
+    return fields;
+}
+
+std::size_t place_of(const Track& track) {
+    const auto& names = track_names();
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), track.name) - names.begin());
+}
+
+/// Every candidate of every track that the sender's messages tell, in the order of track_names() and of
+/// preference.
+std::vector<Track> logged_tracks(const telemetry::SenderLog& sender, bool definitions_assumed) {
+    std::vector<Track> tracks;
+    for (const auto& [name, message, field, quantity, merge] : field_tracks()) {
+        const auto* table = sender.table(message);
+        const auto* column = table == nullptr ? nullptr : table->column(field);
+        if (column == nullptr || (quantity && column->quantity != quantity)) continue;
+        tracks.push_back(as_track(name, fmt::format("{}.{}", message, field), *table, column->values, merge));
     }
-    return CurrentOrigin::unknown;
+    add_made_tracks(tracks, sender, definitions_assumed);
+    std::ranges::stable_sort(tracks, {}, place_of);
+    return tracks;
 }
 
 void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log) {
@@ -31,27 +111,29 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
     series.aircraft_name = aircraft.name;
     series.block_names = aircraft.block_names;
     series.planned_ground_altitude_m = aircraft.ground_altitude_m;
-    series.current_origin = origin_of(aircraft.current_origin);
+    series.current_origin = aircraft.current_origin;
 }
 
 /// Times may come a little late; a jump back of a minute is another log, or another boot, behind the first
 /// one. Of all that show it, the pair of times that shows it first.
-void find_restart(ClockRestart& restart, const telemetry::MessageTable& table) {
+std::optional<ClockRestart> restart_in(const telemetry::MessageTable& table) {
     constexpr double late_s = 60.0;
     double latest_s = -std::numeric_limits<double>::infinity();
     const bool none = std::none_of(table.time_s.begin(), table.time_s.end(), [&](double time_s) {
         latest_s = std::max(latest_s, time_s);
         return latest_s - time_s > late_s;
     });
-    if (none) return;
+    std::optional<ClockRestart> restart;
+    if (none) return restart;
     std::set<double> seen_s;
     for (const double time_s : table.time_s) {
         const auto first = seen_s.upper_bound(time_s + late_s);
-        if (first != seen_s.end() && *first < restart.known_s) {
+        if (first != seen_s.end() && (!restart || *first < restart->known_s)) {
             restart = {*first, *seen_s.rbegin(), time_s, table.message};
         }
         seen_s.insert(time_s);
     }
+    return restart;
 }
 
 }  // namespace
@@ -79,14 +161,13 @@ std::vector<telemetry::MessageRequest> flight_messages() {
 }
 
 std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log) {
+    const auto is_telemetry = [](const telemetry::MessageTable& table) {
+        return table.message != "TAKEOFF" && table.message != "PPRZ_MODE" &&
+               table.message != "NAVIGATION_REF";
+    };
     std::vector<std::string> ids;
     for (const auto& sender : log.senders) {
-        const bool sends_telemetry =
-            std::any_of(sender.tables.begin(), sender.tables.end(), [](const auto& table) {
-                return table.message != "TAKEOFF" && table.message != "PPRZ_MODE" &&
-                       table.message != "NAVIGATION_REF";
-            });
-        if (sends_telemetry) ids.push_back(sender.id);
+        if (std::ranges::any_of(sender.tables, is_telemetry)) ids.push_back(sender.id);
     }
     return ids;
 }
@@ -101,9 +182,12 @@ FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string
                                      [&](const telemetry::SenderLog& s) { return s.id == aircraft_id; });
     if (sender == log.senders.end()) return series;
     series.tracks = logged_tracks(*sender, !log.configuration);
-    ClockRestart restart{std::numeric_limits<double>::infinity(), 0.0, 0.0, ""};
-    for (const auto& table : sender->tables) find_restart(restart, table);
-    if (!restart.message.empty()) series.clock_restart = restart;
+    for (const auto& table : sender->tables) {
+        const auto restart = restart_in(table);
+        if (restart && (!series.clock_restart || restart->known_s < series.clock_restart->known_s)) {
+            series.clock_restart = restart;
+        }
+    }
     return series;
 }
 

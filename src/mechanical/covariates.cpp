@@ -1,25 +1,31 @@
 #include "mechanical/covariates.h"
 
-#include "flight/airspeed.h"
+#include "base/statistics.h"
 #include "flight/chosen_track.h"
+#include "flight/phase_statistics.h"
+#include "flight/segmentation.h"
 
 #include <algorithm>
 #include <vector>
 
+#include <fmt/ranges.h>
+
 namespace flightwatt::mechanical {
 namespace {
 
+constexpr std::array<std::string_view, covariate_count> covariate_texts{
+    "height_m",         "initial_voltage_v",    "time_to_cruise_s",        "wind_m_per_s",
+    "airspeed_m_per_s", "ground_speed_m_per_s", "airspeed_cubed_m3_per_s3"};
+
 /// The mean of the track's values from `start_s` on, for early_s; std::nullopt without any.
 std::optional<double> early_mean(const flight::Track& track, double start_s) {
-    double sum = 0.0;
-    std::size_t count = 0;
+    std::vector<double> values;
     for (std::size_t i = 0; i < track.time_s.size(); ++i) {
         if (track.time_s[i] < start_s || track.time_s[i] > start_s + early_s) continue;
-        sum += track.value[i];
-        ++count;
+        values.push_back(track.value[i]);
     }
-    if (count == 0) return std::nullopt;
-    return sum / static_cast<double>(count);
+    if (values.empty()) return std::nullopt;
+    return mean(values);
 }
 
 std::optional<double> resting_voltage_v(const flight::FlightSeries& series, double lift_off_s) {
@@ -35,12 +41,29 @@ std::optional<double> resting_voltage_v(const flight::FlightSeries& series, doub
         voltages.push_back(voltage_v[i]);
     }
     if (voltages.empty()) return std::nullopt;
+    // Of an even number the higher of the middle two: a voltage that was measured.
     const auto middle = voltages.begin() + static_cast<std::ptrdiff_t>(voltages.size() / 2);
-    std::nth_element(voltages.begin(), middle, voltages.end());
+    std::ranges::nth_element(voltages, middle);
     return *middle;
 }
 
 }  // namespace
+
+std::string_view to_string(Covariate covariate) {
+    return covariate_texts[static_cast<std::size_t>(covariate)];
+}
+
+std::optional<Covariate> covariate_from(std::string_view name) {
+    for (const auto covariate : all_covariates) {
+        if (to_string(covariate) == name) return covariate;
+    }
+    return std::nullopt;
+}
+
+std::string_view covariate_names() {
+    static const auto text = fmt::format("{}", fmt::join(covariate_texts, ", "));
+    return text;
+}
 
 Covariates covariates_of(const flight::FlightSeries& series, const flight::Sortie& sortie) {
     Covariates found;

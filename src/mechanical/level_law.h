@@ -1,11 +1,13 @@
 #pragma once
 
-#include "mechanical/covariate.h"
+#include "mechanical/covariates.h"
 
-#include <cstddef>
 #include <optional>
+#include <span>
 
 namespace flightwatt::mechanical {
+
+struct PhaseSamples;
 
 /// How a phase's level, which is its mean power, follows one covariate v, from several flights:
 ///     level = mean_power_w + slope_w (v - mean) / sd
@@ -30,6 +32,11 @@ constexpr bool goes_through_origin(Covariate covariate) { return covariate == Co
 constexpr std::size_t least_flights_of_law(Covariate covariate) {
     return goes_through_origin(covariate) ? 2 : 3;
 }
+
+/// The law of `flights` (those that have the covariate), each counting the same; std::nullopt if fewer than 2
+/// have it, it is the same in all of them, or, for airspeed_cubed, their power is 0 on average. For
+/// airspeed_cubed the flights' values are means over the whole phase, not over its beginning.
+std::optional<LevelLaw> fit_level_law(std::span<const PhaseSamples> flights, Covariate covariate);
 
 /// The level that a law lets expect at one value.
 struct LawLevel {

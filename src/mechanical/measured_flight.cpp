@@ -1,32 +1,87 @@
 #include "mechanical/measured_flight.h"
 
+#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "mechanical/covariates.h"
 
+#include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace flightwatt::mechanical {
+namespace {
+
+constexpr double longest_edge_gap = 0.25;  // of the phase
+
+/// Why a phase cannot be fitted, whatever its samples; empty if it can.
+std::string why_excluded(const flight::PhaseSpan& span) {
+    if (!span.complete) return "the log begins or ends inside of it";
+    const double gap_s = std::max(span.start.gap_s, span.end.gap_s);
+    if (gap_s <= longest_edge_gap * span.duration_s()) return "";
+    return fmt::format("its {} lies in a gap of {:.1f} s", span.start.gap_s == gap_s ? "start" : "end",
+                       gap_s);
+}
+
+std::string why_too_few(const PhaseSamples& samples, std::size_t needed) {
+    if (samples.tau.size() >= needed) return "";
+    return fmt::format("{} samples, {} are needed", samples.tau.size(), needed);
+}
+
+PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& span,
+                        const std::string& flight) {
+    PhaseSamples samples{flight, span.duration_s(), {}, {}, span.start.time_s};
+    for (std::size_t i = 0; i < power.time_s.size(); ++i) {
+        const double time_s = power.time_s[i];
+        if (time_s < span.start.time_s || time_s > span.end.time_s) continue;
+        samples.tau.push_back((time_s - span.start.time_s) / samples.duration_s);
+        samples.power_w.push_back(power.value[i]);
+    }
+    return samples;
+}
+
+bool has_any_phase(const MeasuredFlight& flight) {
+    return std::ranges::any_of(flight.samples.phases.values,
+                               [](const auto& samples) { return samples.has_value(); });
+}
+
+}  // namespace
+
+std::string to_string(const Exclusion& exclusion) {
+    const auto what = exclusion.phase ? to_string(*exclusion.phase) : "it";
+    return fmt::format("{}: {} is excluded from the fit: {}", exclusion.flight, what, exclusion.reason);
+}
+
+std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie) {
+    return sortie == 1 ? flight : fmt::format("{}#{}", flight, sortie);
+}
 
 MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                                 std::size_t needed_samples) {
     MeasuredFlights measured;
+    const auto power = power_track(series);
+    const auto airspeed = chosen_track(series, "airspeed_m_per_s");
     for (const auto& sortie : phases.sorties) {
-        flight::FlightPhases one;
-        one.sorties.push_back(sortie);
-        auto selection = select_samples(series, one, needed_samples);
-        for (auto& exclusion : selection.exclusions) measured.exclusions.push_back(std::move(exclusion));
-        if (selection.flights.empty()) continue;
         MeasuredFlight flight;
-        flight.samples = std::move(selection.flights.front());
-        if (auto& cruise = flight.samples.phases[flight::Phase::cruise]) {
-            cruise->covariates = covariates_of(series, sortie);
-        }
+        flight.samples.flight = flight_name_of_sortie(series.flight, sortie.number);
         for (const auto& span : sortie.phases) {
-            if (!flight.samples.phases[span.phase]) continue;
-            const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
+            const double start_s = span.start.time_s;
+            auto samples = samples_of(power, span, flight.samples.flight);
+            auto why = why_excluded(span);
+            if (why.empty()) why = why_too_few(samples, needed_samples);
+            if (!why.empty()) {
+                measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(why)});
+                continue;
+            }
+            samples.airspeed_cubed_m3_per_s3 =
+                mean_cubed_airspeed_m3_per_s3(airspeed, start_s, span.end.time_s);
+            if (span.phase == flight::Phase::cruise) samples.covariates = covariates_of(series, sortie);
+            const auto statistics = phase_statistics(series, start_s, span.end.time_s);
             flight.energy_wh[span.phase] = statistics.energy_wh;
             flight.counter_energy_wh[span.phase] = statistics.counter_energy_wh;
+            flight.samples.phases[span.phase] = std::move(samples);
         }
+        if (!has_any_phase(flight)) continue;
         measured.flights.push_back(std::move(flight));
         measured.sorties.push_back(sortie.number - 1);
     }
@@ -42,19 +97,16 @@ void exclude_short_phases(MeasuredFlights& measured, std::size_t needed_samples)
     MeasuredFlights kept{{}, std::move(measured.exclusions), {}};
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
-        bool any = false;
         for (const auto phase : flight::all_phases) {
             auto& samples = flight.samples.phases[phase];
-            if (samples && samples->tau.size() < needed_samples) {
-                kept.exclusions.push_back(
-                    {flight.samples.flight, phase, too_few_samples(samples->tau.size(), needed_samples)});
-                samples.reset();
-                flight.energy_wh[phase].reset();
-                flight.counter_energy_wh[phase].reset();
-            }
-            any = any || samples.has_value();
+            auto why = samples ? why_too_few(*samples, needed_samples) : "";
+            if (why.empty()) continue;
+            kept.exclusions.push_back({flight.samples.flight, phase, std::move(why)});
+            samples.reset();
+            flight.energy_wh[phase].reset();
+            flight.counter_energy_wh[phase].reset();
         }
-        if (!any) continue;
+        if (!has_any_phase(flight)) continue;
         kept.flights.push_back(std::move(flight));
         kept.sorties.push_back(measured.sorties[i]);
     }

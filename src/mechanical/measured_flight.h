@@ -1,15 +1,31 @@
 #pragma once
 
 #include "flight/load_flight.h"
-#include "mechanical/flight_samples.h"
 #include "mechanical/validation.h"
 
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace flightwatt::mechanical {
 
-/// What a validation takes from one log: every sortie that select_samples selects, with the measured energy
-/// (phase_statistics) of the selected phases.
+/// What is not fitted, and why.
+struct Exclusion {
+    std::string flight;
+    std::optional<flight::Phase> phase;  ///< absent: the whole flight
+    std::string reason;
+};
+
+/// "NAME: landing is excluded from the fit: REASON".
+std::string to_string(const Exclusion& exclusion);
+
+/// What a sortie is called in a fit: NAME, and NAME#2 from the second on.
+std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie);
+
+/// What a fit or a validation takes from one log: the power samples of complete phases, each on its own
+/// normalised time, and their measured energy (phase_statistics). Every sortie counts as a flight. Phases that
+/// are incomplete, have fewer samples than needed, or begin or end in a gap longer than a quarter of them (so
+/// that their time is not known) are excluded, and reported.
 struct MeasuredFlights {
     std::vector<MeasuredFlight> flights;
     std::vector<Exclusion> exclusions;

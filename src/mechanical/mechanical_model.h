@@ -2,9 +2,7 @@
 
 #include "flight/flight_phases.h"
 #include "mechanical/level_law.h"
-#include "mechanical/uncertainty/phase_uncertainty.h"
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -30,8 +28,6 @@ double energy_j(const FourierModel& model, double time_s);
 
 /// Which end of its range a frequency stands at.
 enum class FrequencyBound { none, low, high };
-
-/// "none", "low", "high".
 std::string_view to_string(FrequencyBound bound);
 
 /// Where the frequency of a fit was allowed to be, as omega * duration [rad].
@@ -39,6 +35,32 @@ struct FrequencyRange {
     double low_rad = 0.0;   ///< below, the basis becomes collinear
     double high_rad = 0.0;  ///< above, the third harmonic is faster than the samples
     FrequencyBound at_bound = FrequencyBound::none;
+};
+
+/// How well the noise of the samples lets a phase's averaged coefficients be known: standard errors of the
+/// weighted mean of these very flights, weights and durations taken as given. How flights differ is another
+/// question: see PhaseSpread.
+struct PhaseErrors {
+    double omega_rad_per_s = 0.0;  ///< 0 if the frequency stands at a bound
+    double a0_w = 0.0;
+    std::vector<double> cos_w;
+    std::vector<double> sin_w;
+    double curve_w = 0.0;             ///< root mean square over the phase of the curve's own standard error
+    double degrees_of_freedom = 0.0;  ///< of the Student's t that makes 95 % intervals of them
+    /// The errors hold for the frequency as given: it stands at a bound, or the data do not show it.
+    bool frequency_is_given = false;
+    double r2 = 0.0;                 ///< of all samples about their own flights' curves and means
+    double condition = 0.0;          ///< of the basis on the samples, columns of length 1; the worst flight's
+    double autocorrelation = 0.0;    ///< of the noise of samples one median gap apart
+    double effective_samples = 0.0;  ///< independent samples that would tell the mean as well
+};
+
+/// How the flights' own curves differ over the phase, at evenly spread parts of it from begin to end.
+struct PhaseSpread {
+    std::vector<double> low_w;   ///< the least of the flights that count (the paper's grey band)
+    std::vector<double> high_w;  ///< the greatest of them
+    std::vector<double> standard_deviation_w;  ///< of one flight about the weighted mean
+    double counted_flights = 0.0;              ///< 1 / sum of squared weights: equal flights worth as much
 };
 
 /// How the flights of one phase differ from the model and change meanwhile: what a prediction's interval
@@ -100,8 +122,19 @@ FourierModel flown_model(const PhaseModel& phase, double flown_s, PhaseClock clo
 
 /// fits/mechanical/NAME.toml. Reading throws InputError with its place for a missing or unknown key, other
 /// numbers of cosines than sines, a duration or frequency that is not positive, a count that is not whole, a
-/// weight outside [0, 1], or errors and spreads that cannot be (see phase_uncertainty_toml.h).
+/// weight outside [0, 1], or errors and spreads that cannot be.
 MechanicalModel read_mechanical_model(const std::filesystem::path& path);
 std::string to_toml(const MechanicalModel& model);
+
+/// How many evenly spread points show every swing of the series over `duration_s`: 16 a period of its highest
+/// harmonic, and at least 1000.
+std::size_t points_of_curve(const FourierModel& model, double duration_s);
+
+/// f [W] at the middles of `points` equal parts of the phase.
+std::vector<double> curve_w(const FourierModel& model, double duration_s, std::size_t points);
+
+/// The root mean square of the difference between two phases' curves [W], each over its own duration: the
+/// curves are compared at equal parts of the phase, whatever the seconds.
+double curve_rms_difference_w(const PhaseModel& a, const PhaseModel& b);
 
 }  // namespace flightwatt::mechanical

@@ -1,43 +1,79 @@
 #include "mechanical/model_errors.h"
 
+#include "base/csv.h"
 #include "base/statistics.h"
-#include "mechanical/flight_envelope.h"
-#include "mechanical/phase_curve.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace flightwatt::mechanical {
 namespace {
 
-std::string phase_curve_csv(const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis) {
+/// Part i of a phase, of `points` from its begin to its end.
+double part_at(std::size_t i, std::size_t points) {
+    return static_cast<double>(i) / static_cast<double>(points - 1);
+}
+
+void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis) {
     const auto& model = fit.model.phases[phase];
     const auto points = points_of_curve(model.fourier, model.duration_s) / 5 + 1;
     const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points);
     const double wide = student_t_half_width(analysis.errors.degrees_of_freedom);
     const double population_wide = spread ? student_t_half_width(spread->counted_flights - 1.0) : 0.0;
-    std::string text;
     for (std::size_t i = 0; i < points; ++i) {
-        const double tau = static_cast<double>(i) / static_cast<double>(points - 1);
+        const double tau = part_at(i, points);
         const double time_s = tau * model.duration_s;
         const double power = power_w(model.fourier, time_s);
         const double error = curve_standard_error_w(analysis, tau);
-        text += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", to_string(phase), tau, time_s,
-                            power, error, power - wide * error, power + wide * error);
-        if (!spread) {
-            text += ",,,,,\n";
-            continue;
+        std::array<std::optional<double>, 5> of_flights;
+        if (spread) {
+            const double reach = population_wide * population_standard_error_w(*spread, i);
+            of_flights = {spread->low_w[i], spread->high_w[i], spread->standard_deviation_w[i], power - reach,
+                          power + reach};
         }
-        const double reach = population_wide * population_standard_error_w(*spread, i);
-        text += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", spread->low_w[i], spread->high_w[i],
-                            spread->standard_deviation_w[i], power - reach, power + reach);
+        csv.add(to_string(phase), tau, time_s, power, error, power - wide * error, power + wide * error,
+                of_flights[0], of_flights[1], of_flights[2], of_flights[3], of_flights[4]);
     }
-    return text;
 }
 
 }  // namespace
+
+std::optional<PhaseSpread> flight_envelope(const PhaseFit& fit, std::span<const double> weights,
+                                           std::size_t points) {
+    const double squares = std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
+    if (std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }) < 2) return std::nullopt;
+    PhaseSpread spread;
+    spread.counted_flights = 1.0 / squares;
+    for (std::size_t i = 0; i < points; ++i) {
+        const double tau = part_at(i, points);
+        std::vector<double> powers;
+        std::vector<double> counts;
+        double mean = 0.0;
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+            if (weights[k] <= 0.0) continue;
+            const auto& flight = fit.flights[k];
+            powers.push_back(power_w(flight.fourier, tau * flight.duration_s));
+            counts.push_back(weights[k]);
+            mean += weights[k] * powers.back();
+        }
+        double square_sum = 0.0;
+        for (std::size_t k = 0; k < powers.size(); ++k) {
+            square_sum += counts[k] * std::pow(powers[k] - mean, 2);
+        }
+        const auto [low, high] = std::ranges::minmax(powers);
+        spread.low_w.push_back(low);
+        spread.high_w.push_back(high);
+        spread.standard_deviation_w.push_back(std::sqrt(square_sum / (1.0 - squares)));
+    }
+    return spread;
+}
+
+double population_standard_error_w(const PhaseSpread& spread, std::size_t i) {
+    return spread.standard_deviation_w[i] / std::sqrt(spread.counted_flights);
+}
 
 flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit) {
     flight::PerPhase<ErrorAnalysis> analyses;
@@ -77,20 +113,22 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit,
             band.low_95_w.push_back(power - reach);
             band.high_95_w.push_back(power + reach);
         }
-        const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points);
-        if (!spread) continue;
-        band.flights_low_w = spread->low_w;
-        band.flights_high_w = spread->high_w;
+        if (const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points)) {
+            band.flights_low_w = spread->low_w;
+            band.flights_high_w = spread->high_w;
+        }
     }
     return bands;
 }
 
 std::string curves_csv(const ModelFit& fit, const flight::PerPhase<PhaseErrorReport>& reports) {
-    std::string text =
-        "phase,tau,time_s,power_w,standard_error_w,low_95_w,high_95_w,flights_low_w,flights_high_w,"
-        "flights_sd_w,population_low_95_w,population_high_95_w\n";
-    for (const auto phase : flight::all_phases) text += phase_curve_csv(fit, phase, reports[phase].analysis);
-    return text;
+    constexpr int digits = 6;
+    CsvWriter csv(
+        {"phase", "tau", "time_s", "power_w", "standard_error_w", "low_95_w", "high_95_w", "flights_low_w",
+         "flights_high_w", "flights_sd_w", "population_low_95_w", "population_high_95_w"},
+        digits);
+    for (const auto phase : flight::all_phases) add_curve(csv, fit, phase, reports[phase].analysis);
+    return csv.text();
 }
 
 }  // namespace flightwatt::mechanical

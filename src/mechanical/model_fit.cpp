@@ -1,13 +1,12 @@
 #include "mechanical/model_fit.h"
 
 #include "base/error.h"
-#include "mechanical/fit/level_law_fit.h"
+#include "mechanical/fit/fourier_basis.h"
+#include "mechanical/level_law.h"
 #include "mechanical/prediction/level_spread.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,7 +16,7 @@ namespace {
 std::vector<std::string> names_of(std::span<const FlightSamples> flights) {
     std::vector<std::string> names;
     for (const auto& flight : flights) {
-        if (std::find(names.begin(), names.end(), flight.flight) != names.end()) {
+        if (std::ranges::find(names, flight.flight) != names.end()) {
             throw UsageError(fmt::format("flight '{}' is given twice", flight.flight));
         }
         names.push_back(flight.flight);
@@ -43,14 +42,10 @@ std::string described(const ModelFitOptions& options, std::size_t flights) {
 
 /// Power beyond any aircraft's overflows on the way; a model of that is none.
 void refuse_what_is_no_number(flight::Phase phase, const FourierModel& model) {
-    double sum = model.a0_w;
-    for (const double value : model.cos_w) sum += value;
-    for (const double value : model.sin_w) sum += value;
-    if (!std::isfinite(sum)) {
-        throw NoAnswerError(
-            fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
-                        to_string(phase)));
-    }
+    if (coefficients_of(model).allFinite()) return;
+    throw NoAnswerError(
+        fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
+                    to_string(phase)));
 }
 
 /// A law with the spread that a prediction needs.
@@ -58,7 +53,7 @@ LevelLaw wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) 
     const auto law = fit_level_law(flights, covariate);
     const auto having = law ? law->flights : 0;
     constexpr std::size_t needed = 3;
-    if (having >= needed && law->residual_sd_w) return *law;
+    if (having >= needed) return *law;
     throw NoAnswerError(fmt::format(
         "the cruise level cannot follow {}: {}, expected {} flights or more that have it and differ in it",
         to_string(covariate),
@@ -96,10 +91,6 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     return fitted;
 }
 
-MechanicalModel fit_mechanical_model(std::span<const FlightSamples> flights, const ModelFitOptions& options) {
-    return fit_model(flights, options).model;
-}
-
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options) {
     const auto names = names_of(flights);
     check_weights(options.weights, names);
@@ -126,6 +117,34 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
         parts.weights[phase] = std::move(fitted.weights);
     }
     return parts;
+}
+
+std::optional<FourierModel> nearest_series(const PhaseModel& model, std::span<const double> tau,
+                                           std::span<const double> power_w) {
+    const auto order = static_cast<int>(model.fourier.cos_w.size());
+    const double theta_rad = model.fourier.omega_rad_per_s * model.duration_s;
+    const auto fit = solve_least_squares(fourier_basis(tau, order, theta_rad), as_vector(power_w));
+    if (!fit) return std::nullopt;
+    return series_of(fit->coefficients, model.fourier.omega_rad_per_s);
+}
+
+std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSamples> flights,
+                                                      const PhaseFit& fit) {
+    std::vector<DownWeightedSample> found;
+    if (fit.loss == Loss::none || fit.loss_scale_w <= 0.0) return found;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const auto& samples = flights[i];
+        for (std::size_t j = 0; j < samples.tau.size(); ++j) {
+            const double time_s = samples.tau[j] * samples.duration_s;
+            const double residual_w = samples.power_w[j] - power_w(fit.flights[i].fourier, time_s);
+            const double weight = sample_weight(fit.loss, residual_w / fit.loss_scale_w);
+            if (weight < 0.5) {
+                found.push_back({samples.flight, samples.start_s + time_s, residual_w, weight});
+            }
+        }
+    }
+    std::ranges::sort(found, {}, &DownWeightedSample::weight);
+    return found;
 }
 
 }  // namespace flightwatt::mechanical

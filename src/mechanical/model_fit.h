@@ -1,9 +1,6 @@
 #pragma once
 
 #include "mechanical/fit/flight_weights.h"
-#include "mechanical/fit/phase_fit.h"
-#include "mechanical/fit/phase_samples.h"
-#include "mechanical/mechanical_model.h"
 
 #include <optional>
 #include <span>
@@ -16,11 +13,9 @@ struct ModelFitOptions {
     std::string name = "fitted";  ///< of the model
     PhaseFitOptions phases = {};
     WeightOptions weights = {};
-    std::optional<Covariate> level_covariate = {};  ///< of the cruise: what its level is to follow
-    flight::PerPhase<std::optional<int>> orders =
-        {};  ///< where a phase is to have another order than phases.order
+    std::optional<Covariate> level_covariate = {};     ///< of the cruise: what its level is to follow
+    flight::PerPhase<std::optional<int>> orders = {};  ///< where a phase's is to be another than phases.order
 
-    /// The order of one phase.
     int order(flight::Phase phase) const { return orders[phase].value_or(phases.order); }
 };
 
@@ -51,10 +46,26 @@ std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flight
 /// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights
 /// that have it and averaged with their weights. A phase's rms_w is that of the samples about their own
 /// flights' curves. Throws NoAnswerError naming a phase that no flight has, or a flight with too few samples
-/// in a phase (samples_needed tells beforehand; such a phase may be left out of the flight), UsageError for a
-/// flight given twice and for weights that do not fit the flights, and what fit_phase throws.
-MechanicalModel fit_mechanical_model(std::span<const FlightSamples> flights,
-                                     const ModelFitOptions& options = {});
+/// in a phase (samples_needed tells beforehand; such a phase may be excluded), UsageError for a flight given
+/// twice and for weights that do not fit the flights, and what fit_phase throws.
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options = {});
+
+/// The series of the model's order and frequency which is nearest (least squares) to `power_w` at the parts `tau`
+/// of the phase; std::nullopt if the frequency is too low for these to determine one.
+std::optional<FourierModel> nearest_series(const PhaseModel& model, std::span<const double> tau,
+                                           std::span<const double> power_w);
+
+/// A sample whose robust weight is below 0.5.
+struct DownWeightedSample {
+    std::string flight;
+    double log_time_s = 0.0;  ///< on the log's own clock
+    double residual_w = 0.0;  ///< power less the flight's own curve
+    double weight = 1.0;      ///< what it counted, less than a half
+};
+
+/// The samples that counted less than half of a sample on the curve (0.7 % do with normal noise), those that
+/// counted least first. None for a plain fit. `flights` are those that were fitted, in their order.
+std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSamples> flights,
+                                                      const PhaseFit& fit);
 
 }  // namespace flightwatt::mechanical

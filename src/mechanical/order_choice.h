@@ -1,12 +1,11 @@
 #pragma once
 
 #include "mechanical/fit/flight_weights.h"
-#include "mechanical/fit/phase_fit.h"
-#include "mechanical/fit/phase_samples.h"
 
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::mechanical {
@@ -14,19 +13,26 @@ namespace flightwatt::mechanical {
 /// The orders that are tried: from 0, a constant, to this.
 inline constexpr int highest_tried_order = 6;
 
+/// What is predicted from the rest.
+enum class HeldBack { one_flight, blocks_of_time };
+
+/// "leave one flight out", "blocks of time".
+std::string_view to_string(HeldBack held_back);
+
 /// How well series of one order predict what they have not seen.
 struct OrderError {
     int order = 0;
-    std::optional<double> rms_w;  ///< of the power that was held back; absent if a fold cannot be fitted
-    std::string reason;           ///< why it is absent
+    std::vector<double> mean_square_w2;       ///< of the power that was held back, fold by fold
+    std::optional<double> rms_w;              ///< over the folds; absent if one cannot be fitted
+    std::string reason;                       ///< why it is absent
     std::optional<double> behind_best_w2;     ///< mean square error more than the best order's, over folds,
     std::optional<double> standard_error_w2;  ///< and the standard error of that
 };
 
 struct OrderChoice {
-    int order = 0;    ///< the lowest that is within a standard error of the best
-    int best = 0;     ///< that with the least error
-    std::string how;  ///< "leave one flight out" or "blocks of time"
+    int order = 0;  ///< the lowest that is within a standard error of the best
+    int best = 0;   ///< that with the least error
+    HeldBack held_back = HeldBack::one_flight;
     std::size_t folds = 0;
     std::vector<OrderError> errors;  ///< of orders 0 to highest_tried_order
 };

@@ -1,6 +1,7 @@
 #include "mechanical/prediction.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "base/units.h"
 
 #include <algorithm>
@@ -31,63 +32,44 @@ Expectation expect_by_curve(const PhaseForecast& cruise, double flown_s, double 
             cruise.weight_square_sum, static_cast<double>(spread.flights - 1)};
 }
 
-Expectation expect_constant(const PhaseForecast& cruise, double flown_s, double remaining_s) {
+/// What the model's airspeed law or level law lets expect of this flight.
+LawLevel level_by_law(const PhaseModel& model, const FlightProgress& flown, LevelSource source) {
+    if (source == LevelSource::airspeed) {
+        if (!model.airspeed_law) {
+            throw NoAnswerError(
+                "the model has no airspeed law: fewer than 2 of its flights measured airspeed");
+        }
+        if (!flown.airspeed_cubed_m3_per_s3) {
+            throw NoAnswerError("the flight has not measured its airspeed");
+        }
+        return level_at(*model.airspeed_law, *flown.airspeed_cubed_m3_per_s3);
+    }
+    if (!model.level_law) {
+        throw NoAnswerError("the model has no level law: it was fitted without --level-covariate");
+    }
+    const auto covariate = model.level_law->covariate;
+    if (const auto& value = flown.covariates[covariate]) return level_at(*model.level_law, *value);
+    throw NoAnswerError(fmt::format("the flight does not tell its {}, which the model's level follows",
+                                    to_string(covariate)));
+}
+
+Expectation expect(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
+                   LevelSource source) {
+    const double flown_s = flown.cruise_s();
     auto expected = expect_by_curve(cruise, flown_s, remaining_s);
+    if (source == LevelSource::curve) return expected;
     const double mean_w =
         (expected.flown_w * flown_s + expected.remaining_w * remaining_s) / (flown_s + remaining_s);
     expected.shape_flown_w = expected.flown_w - mean_w;
     expected.shape_remaining_w = expected.remaining_w - mean_w;
     expected.flown_w = expected.remaining_w = mean_w;
-    return expected;
-}
-
-/// A level from elsewhere, even over the time.
-Expectation expect_level(const PhaseForecast& cruise, double flown_s, double remaining_s,
-                         const LawLevel& level) {
-    auto expected = expect_constant(cruise, flown_s, remaining_s);
+    if (source == LevelSource::constant) return expected;
+    const auto level = level_by_law(cruise.model, flown, source);
     expected.flown_w = expected.remaining_w = level.power_w;
     expected.level_sd_w = level.sd_w.value();
     expected.weight_square_sum = level.law_variance;
     expected.degrees_of_freedom = level.degrees_of_freedom;
     return expected;
-}
-
-Expectation expect_by_airspeed(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s) {
-    if (!cruise.model.airspeed_law) {
-        throw NoAnswerError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
-    }
-    if (!flown.airspeed_cubed_m3_per_s3) throw NoAnswerError("the flight has not measured its airspeed");
-    return expect_level(cruise, flown.cruise_s(), remaining_s,
-                        level_at(*cruise.model.airspeed_law, *flown.airspeed_cubed_m3_per_s3));
-}
-
-Expectation expect_by_covariate(const PhaseForecast& cruise, const FlightProgress& flown,
-                                double remaining_s) {
-    if (!cruise.model.level_law) {
-        throw NoAnswerError("the model has no level law: it was fitted without --level-covariate");
-    }
-    const auto& law = *cruise.model.level_law;
-    const auto& value = flown.covariates[law.covariate];
-    if (!value) {
-        throw NoAnswerError(fmt::format("the flight does not tell its {}, which the model's level follows",
-                                        to_string(law.covariate)));
-    }
-    return expect_level(cruise, flown.cruise_s(), remaining_s, level_at(law, *value));
-}
-
-Expectation expect(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
-                   LevelSource source) {
-    switch (source) {
-        case LevelSource::curve:
-            return expect_by_curve(cruise, flown.cruise_s(), remaining_s);
-        case LevelSource::constant:
-            return expect_constant(cruise, flown.cruise_s(), remaining_s);
-        case LevelSource::airspeed:
-            return expect_by_airspeed(cruise, flown, remaining_s);
-        case LevelSource::covariate:
-            return expect_by_covariate(cruise, flown, remaining_s);
-    }
-    throw NoAnswerError("no such source of the cruise level");
 }
 
 /// The variances [W^2] of the mean powers x (flown) and y (remaining) less what was expected, by their causes.
@@ -98,9 +80,8 @@ struct Variances {
     double drift_covariance_w2 = 0.0;
 };
 
-/// Of gain = (level + covariance) / (level + flown drift), to first order: level and drift are themselves
-/// estimated, with relative variances 2 / degrees of freedom, and the gain changes oppositely with the
-/// logarithms of both.
+/// To first order: level and drift are themselves estimated, with relative variances 2 / degrees of freedom,
+/// and the gain changes oppositely with the logarithms of both.
 double variance_of_gain(const Variances& of, double level_degrees_of_freedom,
                         double drift_degrees_of_freedom) {
     const double flown_w2 = of.level_w2 + of.flown_drift_w2;
@@ -109,7 +90,7 @@ double variance_of_gain(const Variances& of, double level_degrees_of_freedom,
     return change * change * (2.0 / level_degrees_of_freedom + 2.0 / drift_degrees_of_freedom);
 }
 
-/// The variance of the error y - gain x, share by share (prediction.h).
+/// The variance of the error y - gain x, share by share (docs/methods.md, Eq. 20).
 void add_shares(RestPrediction& rest, const Expectation& expected, const Variances& of,
                 double drift_degrees_of_freedom, double remaining_s) {
     const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
@@ -129,23 +110,38 @@ void add_shares(RestPrediction& rest, const Expectation& expected, const Varianc
                        std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
 }
 
-EnergyEstimate estimate_of(const PhaseForecast& phase, double energy_wh, double duration_s) {
-    EnergyEstimate estimate{energy_wh, phase.model.level_spread.has_value(), 0.0, 0.0};
-    if (!phase.model.level_spread) return estimate;
-    const auto& spread = *phase.model.level_spread;
-    const double sd_wh = units::wh_from_joule(spread.level_sd_w * duration_s);
-    add_share(estimate,
-              {sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1)});
-    return estimate;
+}  // namespace
+
+void add_share(EnergyEstimate& estimate, const VarianceShare& share) {
+    estimate.variance_wh2 += share.variance_wh2;
+    if (share.variance_wh2 > 0.0) {
+        estimate.variance_square_per_degree_of_freedom +=
+            share.variance_wh2 * share.variance_wh2 / share.degrees_of_freedom;
+    }
 }
 
-}  // namespace
+EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b) {
+    return {a.energy_wh + b.energy_wh, a.uncertainty_known && b.uncertainty_known,
+            a.variance_wh2 + b.variance_wh2,
+            a.variance_square_per_degree_of_freedom + b.variance_square_per_degree_of_freedom};
+}
+
+std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate) {
+    if (!estimate.uncertainty_known) return std::nullopt;
+    double half_wh = 0.0;
+    if (estimate.variance_wh2 > 0.0) {
+        const double degrees_of_freedom =
+            estimate.variance_wh2 * estimate.variance_wh2 / estimate.variance_square_per_degree_of_freedom;
+        half_wh = student_t_half_width(degrees_of_freedom) * std::sqrt(estimate.variance_wh2);
+    }
+    return EnergyInterval{std::max(estimate.energy_wh - half_wh, std::min(estimate.energy_wh, 0.0)),
+                          estimate.energy_wh + half_wh};
+}
 
 PhaseForecast forecast_of(const MechanicalModel& model, flight::Phase phase) {
     PhaseForecast forecast{model.phases[phase], 0.0};
     for (const auto& flight : model.flights) {
-        if (const auto& part = flight.phases[phase])
-            forecast.weight_square_sum += part->weight * part->weight;
+        if (const auto& part = flight.phases[phase]) forecast.weight_square_sum += std::pow(part->weight, 2);
     }
     if (forecast.weight_square_sum == 0.0) {
         forecast.weight_square_sum =
@@ -162,7 +158,13 @@ EnergyEstimate predict_rest_before_flight(const PhaseForecast& phase, double flo
     const double duration_s = flown_s + remaining_s;
     const auto curve = flown_model(phase.model, duration_s, PhaseClock::stretched);
     const double rest_j = energy_j(curve, duration_s) - energy_j(curve, flown_s);
-    return estimate_of(phase, units::wh_from_joule(rest_j), remaining_s);
+    EnergyEstimate estimate{units::wh_from_joule(rest_j), phase.model.level_spread.has_value(), 0.0, 0.0};
+    if (!phase.model.level_spread) return estimate;
+    const auto& spread = *phase.model.level_spread;
+    const double sd_wh = units::wh_from_joule(spread.level_sd_w * remaining_s);
+    add_share(estimate,
+              {sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1)});
+    return estimate;
 }
 
 RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,

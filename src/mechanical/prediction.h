@@ -1,11 +1,43 @@
 #pragma once
 
 #include "mechanical/mechanical_model.h"
-#include "mechanical/prediction/drift.h"
-#include "mechanical/prediction/energy_estimate.h"
 #include "mechanical/prediction/flight_progress.h"
+#include "mechanical/prediction/level_spread.h"
+
+#include <optional>
 
 namespace flightwatt::mechanical {
+
+/// An independent cause of uncertainty: its variance and the degrees of freedom that the variance rests on.
+struct VarianceShare {
+    double variance_wh2 = 0.0;
+    double degrees_of_freedom = 0.0;
+};
+
+/// An energy that is predicted. Without `uncertainty_known` there is no interval: one flight alone does not
+/// tell how flights differ.
+struct EnergyEstimate {
+    double energy_wh = 0.0;
+    bool uncertainty_known = true;
+    double variance_wh2 = 0.0;
+    /// Sum over the shares of variance^2 / degrees_of_freedom.
+    double variance_square_per_degree_of_freedom = 0.0;
+};
+
+void add_share(EnergyEstimate& estimate, const VarianceShare& share);
+
+/// Both together, as if they were independent.
+EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b);
+
+struct EnergyInterval {
+    double low_wh = 0.0;
+    double high_wh = 0.0;
+    bool contains(double energy_wh) const { return low_wh <= energy_wh && energy_wh <= high_wh; }
+};
+
+/// 95 % predictive interval: Student's t with Welch and Satterthwaite's degrees of freedom. A low
+/// end below 0 becomes 0: a drone takes no energy back. std::nullopt without known uncertainty.
+std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate);
 
 /// A phase of the model as a prediction needs it.
 struct PhaseForecast {
@@ -18,7 +50,7 @@ PhaseForecast forecast_of(const MechanicalModel& model, flight::Phase phase);
 
 /// Energy of a phase that will take `duration_s`, before the flight: the stretched curve's integral. Its
 /// interval holds the spread of the flights' mean powers (which contains what a flight drifts in a phase)
-/// and that of their average: s^2 (1 + sum of w^2), n - 1 degrees of freedom.
+/// and that of their average (docs/methods.md, Eq. 16).
 EnergyEstimate predict_before_flight(const PhaseForecast& phase, double duration_s);
 
 /// The same from `flown_s` on, without regard to what was measured until then.
@@ -41,22 +73,9 @@ struct RestPrediction {
     double remaining_mean_w = 0.0;
 };
 
-/// Shrinks between model and flight. With x and y the mean power so far and in what remains, less what the
-/// model expects, variance B^2 of the flights' levels and the drift's V(T), C(u, R) within one:
-///     var x = B^2 + V(u),  var y = B^2 + V(R),  cov = B^2 + C(u, R),  gain = cov / var x
-///     y = gain x +- t sqrt(level share + drift share + gain share + shape share)
-/// The error y - gain x has the variance (q the sum of the squared weights: the model is itself an average)
-///     level share = (1 + q) (1 - gain)^2 B^2
-///     drift share = (1 + q) (V(R) - 2 gain C(u, R) + gain^2 V(u))
-/// whose sum is (1 + q) (var y - gain cov). They are split by what they rest on (the derivatives by B^2 and
-/// by the drift's variance), so that Welch and Satterthwaite's degrees of freedom are right: most of the
-/// error is drift where flights differ much, and a low estimate of the drift must not borrow the level's
-/// freedom. Each has n - 1. B^2 and the drift are estimated from the same few flights, so the gain is
-/// uncertain too: gain share = (1 + q) var x var gain, by the delta method. A level that is even over the
-/// time adds the shape share, the square of what the model's curve would add. B^2 is the sample variance of
-/// the flights' mean powers, from which the drift's part in them is not subtracted: between two or three
-/// flights that difference is mostly noise and often 0, and then the interval would be far too narrow. Throws
-/// NoAnswerError if the model has no spread or, for LevelSource::airspeed and covariate, no law, or the
+/// Shrinks between model and flight (docs/methods.md, Eqs. 19 and 20): the difference between measured and
+/// expected mean power so far goes on as far as the flights' levels differ more than power drifts within one.
+/// Throws NoAnswerError if the model has no spread or, for LevelSource::airspeed and covariate, no law, or the
 /// flight did not measure what it asks for.
 RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
                             LevelSource source);

@@ -2,47 +2,25 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "mechanical/fit/level_law_fit.h"
-#include "mechanical/prediction.h"
 #include "mechanical/validation/baselines.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
 namespace {
 
-/// One phase of the flight left out, and the others that have this phase.
+/// One phase of the excluded flight, and the others that have this phase.
 struct Fold {
     flight::Phase phase;
     const PhaseSamples& flown;
     std::vector<PhaseSamples> others;
-    std::optional<std::size_t> nearest;  ///< among `others`
+    std::size_t nearest;  ///< among `others`
 };
-
-std::vector<PhaseSamples> phases_of(std::span<const FlightSamples> flights, flight::Phase phase) {
-    std::vector<PhaseSamples> samples;
-    for (const auto& flight : flights) {
-        if (flight.phases[phase]) samples.push_back(*flight.phases[phase]);
-    }
-    return samples;
-}
-
-/// The nearest flight by the durations of all phases, among those that have this one.
-std::optional<std::size_t> nearest_with(flight::Phase phase, std::span<const FlightSamples> flights,
-                                        const FlightSamples& left_out) {
-    std::vector<FlightSamples> having;
-    std::copy_if(flights.begin(), flights.end(), std::back_inserter(having),
-                 [&](const FlightSamples& flight) { return flight.phases[phase].has_value(); });
-    flight::PerPhase<std::optional<double>> durations;
-    for (const auto p : flight::all_phases) {
-        if (left_out.phases[p]) durations[p] = left_out.phases[p]->duration_s;
-    }
-    return nearest_flight(having, durations);
-}
 
 PhaseForecast forecast_of_others(const Fold& fold, const ModelFitOptions& options) {
     const auto fitted = fit_phase_model(fold.phase, fold.others, options);
@@ -52,13 +30,10 @@ PhaseForecast forecast_of_others(const Fold& fold, const ModelFitOptions& option
 
 using Estimates = std::vector<std::pair<std::string, EnergyEstimate>>;
 
-/// What is known for certain, and what is predicted on top.
 EnergyEstimate after(double known_wh, EnergyEstimate rest) {
     rest.energy_wh += known_wh;
     return rest;
 }
-
-std::string model_of(Covariate covariate) { return fmt::format("by_{}", to_string(covariate)); }
 
 void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Covariate> covariates) {
     const double duration_s = fold.flown.duration_s;
@@ -66,7 +41,8 @@ void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Cova
         const auto power = fold.phase == flight::Phase::cruise
                                ? power_by_covariate(fold.others, covariate, fold.flown.covariates[covariate])
                                : constant_mean(fold.others);
-        if (power) estimates.emplace_back(model_of(covariate), energy_of(*power, duration_s));
+        if (power)
+            estimates.emplace_back(fmt::format("by_{}", to_string(covariate)), energy_of(*power, duration_s));
     }
 }
 
@@ -76,7 +52,7 @@ Estimates predict_phase(const Fold& fold, const ModelFitOptions& options) {
     Estimates estimates{
         {"fourier", predict_before_flight(forecast_of_others(fold, options), duration_s)},
         {"constant_mean", energy_of(mean, duration_s)},
-        {"nearest_flight", energy_of(power_of_flight(fold.others, fold.nearest.value()), duration_s)}};
+        {"nearest_flight", energy_of(power_of_flight(fold.others, fold.nearest), duration_s)}};
     if (fold.phase != flight::Phase::cruise) {
         estimates.emplace_back("airspeed_cubed", energy_of(mean, duration_s));
     } else if (const auto power = power_by_covariate(fold.others, Covariate::airspeed_cubed,
@@ -105,7 +81,7 @@ Estimates predict_cruise_in_flight(const Fold& fold, const FlightProgress& flown
         {"fourier", after(known_wh, predict_rest_before_flight(forecast, flown.cruise_s(), remaining_s))},
         {"constant_mean", after(known_wh, energy_of(constant_mean(fold.others), remaining_s))},
         {"nearest_flight",
-         after(known_wh, energy_of(power_of_flight(fold.others, fold.nearest.value()), remaining_s))}};
+         after(known_wh, energy_of(power_of_flight(fold.others, fold.nearest), remaining_s))}};
     if (!forecast.model.level_spread) return estimates;
     const auto update = [&](const char* name, LevelSource source) {
         estimates.emplace_back(name,
@@ -119,39 +95,38 @@ Estimates predict_cruise_in_flight(const Fold& fold, const FlightProgress& flown
     return estimates;
 }
 
-Estimates estimates_of(const MeasuredFlight& left_out, const Fold& fold, const ModelFitOptions& options,
+Estimates estimates_of(const MeasuredFlight& excluded, const Fold& fold, const ModelFitOptions& options,
                        std::span<const Covariate> covariates) {
-    if (!left_out.flown) {
+    if (!excluded.flown) {
         auto estimates = predict_phase(fold, options);
         add_covariates(estimates, fold, covariates);
         return estimates;
     }
     if (fold.phase == flight::Phase::takeoff) return {};
     if (fold.phase == flight::Phase::landing) return predict_landing_in_flight(fold, options);
-    const double remaining_s = fold.flown.duration_s - left_out.flown->cruise_s();
+    const double remaining_s = fold.flown.duration_s - excluded.flown->cruise_s();
     if (remaining_s <= 0.0) return {};
-    return predict_cruise_in_flight(fold, *left_out.flown, remaining_s, options);
+    return predict_cruise_in_flight(fold, *excluded.flown, remaining_s, options);
 }
 
 FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& model) {
-    const auto found = std::find_if(flight.predictions.begin(), flight.predictions.end(),
-                                    [&](const auto& prediction) { return prediction.model == model; });
+    const auto found = std::ranges::find(flight.predictions, model, &FlightPrediction::model);
     if (found != flight.predictions.end()) return *found;
     return flight.predictions.emplace_back(FlightPrediction{model, {}});
 }
 
-ValidatedFlight validate_flight(const MeasuredFlight& left_out, std::span<const FlightSamples> others,
+ValidatedFlight validate_flight(const MeasuredFlight& excluded, std::span<const FlightSamples> others,
                                 const ModelFitOptions& options, std::span<const Covariate> covariates) {
-    ValidatedFlight flight{left_out.samples.flight, {}, {}, {}};
+    ValidatedFlight flight{excluded.samples.flight, {}, {}, {}};
     for (const auto phase : flight::all_phases) {
-        if (!left_out.samples.phases[phase]) continue;
-        const Fold fold{phase, *left_out.samples.phases[phase], phases_of(others, phase),
-                        nearest_with(phase, others, left_out.samples)};
-        if (fold.others.empty()) continue;
-        for (const auto& [model, estimate] : estimates_of(left_out, fold, options, covariates)) {
+        if (!excluded.samples.phases[phase]) continue;
+        const auto nearest = nearest_flight(others, phase, excluded.samples);
+        if (!nearest) continue;
+        const Fold fold{phase, *excluded.samples.phases[phase], samples_of_phase(others, phase), *nearest};
+        for (const auto& [model, estimate] : estimates_of(excluded, fold, options, covariates)) {
             prediction_of(flight, model).phases[phase] = estimate;
-            flight.measured_wh[phase] = left_out.energy_wh[phase];
-            flight.counter_wh[phase] = left_out.counter_energy_wh[phase];
+            flight.measured_wh[phase] = excluded.energy_wh[phase];
+            flight.counter_wh[phase] = excluded.counter_energy_wh[phase];
         }
     }
     // A model that cannot tell the cruise (no airspeed, no spread) only repeats others in the other phases.
@@ -160,6 +135,12 @@ ValidatedFlight validate_flight(const MeasuredFlight& left_out, std::span<const 
                       [](const auto& prediction) { return !prediction.phases[flight::Phase::cruise]; });
     }
     return flight;
+}
+
+bool was_predicted(const ValidatedFlight& flight, std::optional<flight::Phase> phase) {
+    return std::ranges::any_of(flight::all_phases, [&](flight::Phase p) {
+        return (!phase || p == *phase) && flight.measured_wh[p].has_value();
+    });
 }
 
 }  // namespace
@@ -171,22 +152,76 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
         throw NoAnswerError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
     }
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-            if (flights[i].samples.flight != flights[j].samples.flight) continue;
-            throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself",
-                                         flights[i].samples.flight));
-        }
+    std::set<std::string> names;
+    for (const auto& flight : flights) {
+        if (names.insert(flight.samples.flight).second) continue;
+        throw UsageError(
+            fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
     }
     std::vector<ValidatedFlight> validated;
-    for (std::size_t left_out = 0; left_out < flights.size(); ++left_out) {
+    for (const auto& excluded : flights) {
         std::vector<FlightSamples> others;
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            if (i != left_out) others.push_back(flights[i].samples);
+        for (const auto& other : flights) {
+            if (&other != &excluded) others.push_back(other.samples);
         }
-        validated.push_back(validate_flight(flights[left_out], others, options, covariates));
+        validated.push_back(validate_flight(excluded, others, options, covariates));
     }
     return validated;
+}
+
+std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, const std::string& model,
+                                                std::optional<flight::Phase> phase) {
+    const auto prediction = std::ranges::find(flight.predictions, model, &FlightPrediction::model);
+    if (prediction == flight.predictions.end() || !was_predicted(flight, phase)) return std::nullopt;
+    PredictedEnergy energy;
+    for (const auto p : flight::all_phases) {
+        if ((phase && p != *phase) || !flight.measured_wh[p]) continue;
+        if (!prediction->phases[p]) return std::nullopt;
+        energy.measured_wh += *flight.measured_wh[p];
+        energy.estimate = sum_of(energy.estimate, *prediction->phases[p]);
+    }
+    return energy;
+}
+
+std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, const std::string& model,
+                                   std::optional<flight::Phase> phase) {
+    ModelScore score;
+    double percent = 0.0;
+    std::size_t covered = 0;
+    std::size_t with_interval = 0;
+    for (const auto& flight : flights) {
+        if (!was_predicted(flight, phase)) continue;
+        const auto energy = predicted_energy(flight, model, phase);
+        if (!energy) return std::nullopt;
+        const double error_wh = energy->estimate.energy_wh - energy->measured_wh;
+        ++score.flights;
+        score.mean_absolute_error_wh += std::abs(error_wh);
+        score.bias_wh += error_wh;
+        percent += units::percent_of(std::abs(error_wh), energy->measured_wh);
+        if (const auto interval = interval_95(energy->estimate)) {
+            ++with_interval;
+            if (interval->contains(energy->measured_wh)) ++covered;
+        }
+    }
+    if (score.flights == 0) return std::nullopt;
+    const auto count = static_cast<double>(score.flights);
+    score.mean_absolute_error_wh /= count;
+    score.bias_wh /= count;
+    if (phase != flight::Phase::landing && std::isfinite(percent))
+        score.mean_absolute_error_percent = percent / count;
+    if (with_interval > 0)
+        score.coverage_95 = static_cast<double>(covered) / static_cast<double>(with_interval);
+    return score;
+}
+
+std::vector<std::string> model_names(std::span<const ValidatedFlight> flights) {
+    std::vector<std::string> names;
+    for (const auto& flight : flights) {
+        for (const auto& prediction : flight.predictions) {
+            if (std::ranges::find(names, prediction.model) == names.end()) names.push_back(prediction.model);
+        }
+    }
+    return names;
 }
 
 }  // namespace flightwatt::mechanical

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "mechanical/model_fit.h"
-#include "mechanical/prediction/energy_estimate.h"
-#include "mechanical/prediction/flight_progress.h"
+#include "mechanical/prediction.h"
 
 #include <optional>
 #include <span>
@@ -32,13 +31,13 @@ struct ValidatedFlight {
     std::vector<FlightPrediction> predictions;
 };
 
-/// Leaves each flight out in turn, fits the others and predicts the energy of its phases from their durations
+/// Excludes each flight in turn, fits the others and predicts the energy of its phases from their durations
 /// alone. A phase that no other flight has is not predicted. Models:
 ///   fourier          the model of this project (fit_phase_model)
 ///   constant_mean    the mean power of the other flights
 ///   nearest_flight   the mean power of the flight with the nearest durations
-///   airspeed_cubed   cruise: the LevelLaw of airspeed_cubed at the airspeed that was flown, as if it had been known; other
-///                    phases as constant_mean; only if the flight and two others measured airspeed
+///   airspeed_cubed   cruise: the LevelLaw of airspeed_cubed at the airspeed that was flown, as if it had been
+///                    known; other phases as constant_mean; only if the flight and two others measured airspeed
 ///   by_NAME          cruise: power_by_covariate, for each of `covariates`; other phases as constant_mean
 /// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without
 /// airspeed_cubed and covariates) say of the rest of the cruise is added to what was measured until then, and
@@ -50,5 +49,31 @@ struct ValidatedFlight {
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights,
                                            const ModelFitOptions& options = {},
                                            std::span<const Covariate> covariates = {});
+
+/// How one model did over the flights, in one phase or in the whole.
+struct ModelScore {
+    std::size_t flights = 0;
+    double mean_absolute_error_wh = 0.0;
+    std::optional<double> mean_absolute_error_percent;  ///< of the measured energy; none for landing
+    double bias_wh = 0.0;                               ///< mean of predicted - measured
+    std::optional<double> coverage_95;  ///< part of the flights within the interval; none without intervals
+};
+
+/// The phase's score, or the whole flight's without a phase: the sum over the phases that were predicted.
+/// std::nullopt if the model predicted it for none of the flights, or not for all that another predicted.
+std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, const std::string& model,
+                                   std::optional<flight::Phase> phase);
+
+/// A flight's measured and predicted energy in a phase, or in the whole; std::nullopt where it was not
+/// predicted.
+struct PredictedEnergy {
+    double measured_wh = 0.0;
+    EnergyEstimate estimate;
+};
+std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, const std::string& model,
+                                                std::optional<flight::Phase> phase);
+
+/// The models that predicted anything, in the order in which they are shown.
+std::vector<std::string> model_names(std::span<const ValidatedFlight> flights);
 
 }  // namespace flightwatt::mechanical

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "mission/timeline.h"
+#include "mission/schedule.h"
 
+#include <filesystem>
 #include <limits>
 #include <vector>
 
@@ -21,12 +22,18 @@ struct Disturbance {
     double resistance_factor = 1.0;  ///< the same of all its resistances
 };
 
+using Disturbances = std::vector<Disturbance>;
+
 /// The pack as it really is.
-battery::Battery disturbed(battery::Battery battery, const std::vector<Disturbance>& disturbances);
+battery::Battery disturbed(battery::Battery battery, const Disturbances& disturbances);
 
 /// The disturbances at the same part of the same phase when phases take other durations.
-std::vector<Disturbance> rescale_to_flown_durations(std::vector<Disturbance> disturbances,
-                                                    const flight::PerPhase<double>& planned_s,
-                                                    const flight::PerPhase<double>& flown_s);
+Disturbances rescale_to_flown_durations(Disturbances disturbances, const PerPhase<double>& planned_s,
+                                        const PerPhase<double>& flown_s);
+
+/// Reads a file of disturbances (docs/missions.md) of a mission whose phases take so long. Throws InputError for
+/// unknown keys, values out of range, segments that are empty or not within their phase, phases that are not flown,
+/// and entries that change nothing.
+Disturbances read_disturbances(const std::filesystem::path& path, const PerPhase<double>& duration_s);
 
 }  // namespace flightwatt::mission

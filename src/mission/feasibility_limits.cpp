@@ -3,14 +3,15 @@
 #include "base/units.h"
 #include "mission/planning/depletion_table.h"
 #include "mission/planning/planner.h"
-#include "mission/simulation.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
 #include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::mission {
 namespace {
@@ -33,7 +34,24 @@ double last_good(const SpareOf& spare_of, double good, double bad) {
     return spare_of(high) >= 0.0 ? high : spare_of(low) >= 0.0 ? low : good;
 }
 
-FeasibilityLimit answer(double value, const Mission& at, const Mission& beyond) {
+/// Two values, the first with something to spare and the second without, if there is such a one.
+struct Bracket {
+    double good = 0.0;
+    std::optional<double> bad;
+};
+
+/// From a good value on: `tried.bad`, and so on times `factor` up to `last`.
+Bracket bracket_of(const SpareOf& spare_of, Bracket tried, double factor, double last) {
+    while (spare_of(*tried.bad) >= 0.0) {
+        const double next = *tried.bad * factor;
+        tried = {*tried.bad, next};
+        if (factor > 1.0 ? next > last : next < last) return {tried.good, std::nullopt};
+    }
+    return tried;
+}
+
+/// `beyond` is the mission with a little more than `value`.
+FeasibilityLimit limit_at(double value, const Mission& at, const Mission& beyond) {
     FeasibilityLimit most;
     most.value = value;
     most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
@@ -75,18 +93,31 @@ double short_enough_s(const MissionOfCruise& mission_of, double too_long_s) {
                     fits_s));
 }
 
+std::optional<double> cruise_that_lands(const MissionOfCruise& mission_of, double margin_percent) {
+    const auto with_margin = [&](double cruise_s) {
+        auto mission = mission_of(cruise_s);
+        std::visit([&](MissionSetup& setup) { setup.reserve_soc_percent += margin_percent; }, mission);
+        return mission;
+    };
+    try {
+        return longest_cruise(with_margin).value;
+    } catch (const NoAnswerError&) {
+        return std::nullopt;
+    }
+}
+
+std::optional<double> spare_without_fixed(PlanningProblem problem, double margin_percent) {
+    if (problem.fixed.empty()) return std::nullopt;
+    problem.fixed.clear();
+    const double spare = spare_percent(with_minimum_energy_schedule(problem)) - margin_percent;
+    return spare < 0.0 ? std::nullopt : std::optional(spare);
+}
+
 }  // namespace
 
 std::string to_string(FeasibilityBound bound) {
-    switch (bound) {
-        case FeasibilityBound::charge:
-            return "charge";
-        case FeasibilityBound::power:
-            return "power";
-        case FeasibilityBound::cut_off:
-            return "cut-off";
-    }
-    throw std::logic_error("to_string: no such bound");
+    constexpr std::array names{"charge", "power", "cut-off"};
+    return names.at(static_cast<std::size_t>(bound));
 }
 
 double spare_percent(const Mission& mission) {
@@ -97,11 +128,8 @@ double spare_percent(const Mission& mission) {
     }
     const auto summary = simulate(mission).summary;
     if (summary.feasible) return *summary.final_soc_percent - mission.reserve_soc_percent;
-    const double ended_s = summary.undeliverable   ? summary.undeliverable->time_s
-                           : summary.depleted_at_s ? *summary.depleted_at_s
-                                                   : *summary.cut_off_at_s;
     return -mission.reserve_soc_percent -
-           units::percent_of(summary.duration_s - ended_s, summary.duration_s) - 1e-9;
+           units::percent_of(summary.duration_s - powered_until_s(summary), summary.duration_s) - 1e-9;
 }
 
 FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
@@ -110,22 +138,18 @@ FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
     };
     const auto spare_of = [&](double cruise_s) { return spare_percent(mission_at(cruise_s)); };
     // From a length that fits: schedules may need so much, never so little.
-    double good_s = shortest_cruise_s;
-    while (good_s < longest_cruise_s && !if_it_fits(mission_of, good_s)) good_s *= 2.0;
-    double bad_s = good_s;
-    if (spare_of(good_s) < 0.0) {
-        good_s = short_enough_s(mission_of, bad_s);
-    } else {
-        while (spare_of(bad_s) >= 0.0) {
-            good_s = bad_s;
-            bad_s *= 2.0;
-            if (bad_s > longest_cruise_s) {
-                throw NoAnswerError(fmt::format("a cruise of {:.3g} s still lands with the reserve", good_s));
-            }
-        }
-    }
-    const double cruise_s = last_good(spare_of, good_s, bad_s);
-    return answer(cruise_s, mission_at(cruise_s), mission_at(std::nextafter(cruise_s, bad_s) * (1.0 + 1e-9)));
+    double fits_s = shortest_cruise_s;
+    while (fits_s < longest_cruise_s && !if_it_fits(mission_of, fits_s)) fits_s *= 2.0;
+    Bracket bracket{0.0, fits_s};
+    if (spare_of(fits_s) < 0.0)
+        bracket.good = short_enough_s(mission_of, fits_s);
+    else
+        bracket = bracket_of(spare_of, {fits_s, 2.0 * fits_s}, 2.0, longest_cruise_s);
+    if (!bracket.bad)
+        throw NoAnswerError(fmt::format("a cruise of {:.3g} s still lands with the reserve", bracket.good));
+    const double cruise_s = last_good(spare_of, bracket.good, *bracket.bad);
+    const double beyond_s = std::nextafter(cruise_s, *bracket.bad) * (1.0 + 1e-9);
+    return limit_at(cruise_s, mission_at(cruise_s), mission_at(beyond_s));
 }
 
 Mission with_payload(const Mission& mission, double payload_w) {
@@ -147,18 +171,12 @@ FeasibilityLimit largest_payload(const AnyMission& mission) {
         throw NoAnswerError(fmt::format(
             "without any payload the mission misses its reserve by {:.4g} points already", -spare));
     }
-    double good_w = 0.0;
-    double bad_w = 1.0;
-    while (spare_of(bad_w) >= 0.0) {
-        good_w = bad_w;
-        bad_w *= 2.0;
-        if (bad_w > largest_payload_w) {
-            throw NoAnswerError(fmt::format("a payload of {:.3g} W still lands with the reserve", good_w));
-        }
-    }
-    const double payload_w = last_good(spare_of, good_w, bad_w);
-    return answer(payload_w, with_payload(bare, payload_w),
-                  with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
+    const auto bracket = bracket_of(spare_of, {0.0, 1.0}, 2.0, largest_payload_w);
+    if (!bracket.bad)
+        throw NoAnswerError(fmt::format("a payload of {:.3g} W still lands with the reserve", bracket.good));
+    const double payload_w = last_good(spare_of, bracket.good, *bracket.bad);
+    return limit_at(payload_w, with_payload(bare, payload_w),
+                    with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
 }
 
 std::optional<double> least_capacity_ah(const AnyMission& mission) {
@@ -171,18 +189,64 @@ std::optional<double> least_capacity_ah(const AnyMission& mission) {
     };
     const double own_ah = bare.battery.capacity_ah;
     double good_ah = own_ah;
-    double bad_ah = good_ah;
     while (spare_of(good_ah) < 0.0) {
-        bad_ah = good_ah;
         good_ah *= 2.0;
         if (good_ah > most_times * own_ah) return std::nullopt;
     }
-    while (spare_of(bad_ah) >= 0.0) {
-        good_ah = bad_ah;
-        bad_ah /= 2.0;
-        if (bad_ah * most_times < own_ah) return good_ah;
+    const auto bracket = bracket_of(spare_of, {good_ah, good_ah / 2.0}, 0.5, own_ah / most_times);
+    return bracket.bad ? last_good(spare_of, bracket.good, *bracket.bad) : bracket.good;
+}
+
+InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,
+                                         const MissionOfCruise& mission_of) {
+    InfeasibilityReport report;
+    const double wanted = problem.reserve_soc_percent + plan.margin_percent;
+    const double least_depletion = problem.initial_soc_percent - plan.plan.final_soc_percent;
+    report.short_percent = wanted - plan.plan.final_soc_percent;
+    report.short_wh = units::part_of(full_energy_wh(problem.battery), report.short_percent);
+    report.cut_off_at_s = plan.summary.cut_off_at_s;
+    report.cruise_s = cruise_that_lands(mission_of, plan.margin_percent);
+    report.fixed_spare_percent = spare_without_fixed(problem, plan.margin_percent);
+    const double possible = plan.plan.final_soc_percent - plan.margin_percent;
+    if (possible >= 0.0 && plan.summary.feasible) report.reserve_soc_percent = possible;
+    if (problem.battery.thevenin || problem.cutoff_voltage_v > 0.0) {
+        auto with_margin = problem;
+        with_margin.reserve_soc_percent = wanted;
+        report.capacity_ah = least_capacity_ah(with_margin);
+        return report;
     }
-    return last_good(spare_of, good_ah, bad_ah);
+    // Depletion and margin are parts of the capacity; the reserve stays what it is.
+    const double usable = problem.initial_soc_percent - problem.reserve_soc_percent;
+    if (usable > 0.0)
+        report.capacity_ah = problem.battery.capacity_ah * (least_depletion + plan.margin_percent) / usable;
+    return report;
+}
+
+std::string describe(const MissionSetup& mission, const InfeasibilityReport& report) {
+    std::vector<std::string> remedies;
+    if (report.cruise_s) {
+        remedies.push_back(fmt::format("a cruise {:.1f} s shorter ({:.1f} s)",
+                                       mission.duration_s[Phase::cruise] - *report.cruise_s,
+                                       *report.cruise_s));
+    }
+    if (report.fixed_spare_percent) {
+        remedies.push_back(
+            fmt::format("lower quality where it is fixed (the least leaves {:.2f} points to spare)",
+                        *report.fixed_spare_percent));
+    }
+    if (report.reserve_soc_percent)
+        remedies.push_back(fmt::format("a reserve of at most {:.2f} %", *report.reserve_soc_percent));
+    if (report.capacity_ah) {
+        remedies.push_back(fmt::format("a battery of {:.3f} Ah instead of {:.3f} Ah", *report.capacity_ah,
+                                       mission.battery.capacity_ah));
+    }
+    auto text = fmt::format(
+        "no schedule lands with the reserve: the one that demands least energy is {}short by {:.2f} points "
+        "({:.3f} Wh)",
+        report.cut_off_at_s ? fmt::format("cut off at {:.1f} s, ", *report.cut_off_at_s) : "",
+        report.short_percent, report.short_wh);
+    if (!remedies.empty()) text += fmt::format("; any one of these would do: {}", fmt::join(remedies, ", "));
+    return text;
 }
 
 }  // namespace flightwatt::mission

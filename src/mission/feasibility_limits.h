@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mission/mission.h"
+#include "mission/plan.h"
 
 #include <functional>
 #include <optional>
@@ -8,8 +8,7 @@
 
 namespace flightwatt::mission {
 
-/// The mission as it is with a cruise of so many seconds. May throw InputError where its schedule does not
-/// fit.
+/// The mission with a cruise of so many seconds. May throw InputError where its schedule does not fit.
 using MissionOfCruise = std::function<AnyMission(double cruise_s)>;
 
 /// What forbids more.
@@ -30,8 +29,8 @@ struct FeasibilityLimit {
     FeasibilityBound limited_by = FeasibilityBound::charge;
 };
 
-/// The longest cruise [s] with the mission's schedule, or if it is yet to be planned with the one that
-/// demands least energy. Throws NoAnswerError if no cruise that the schedule fits into is short enough, or none is too long.
+/// The longest cruise [s] with the mission's schedule, or if it is yet to be planned with the one that demands least
+/// energy. Throws NoAnswerError if no cruise that the schedule fits into is short enough, or none is too long.
 FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of);
 
 /// The greatest constant power [W] that the mission can feed besides, all the way. Throws NoAnswerError if it
@@ -48,5 +47,24 @@ std::optional<double> least_capacity_ah(const AnyMission& mission);
 /// State of charge at the end less the reserve [points]: by tables where they hold, else simulated. Negative
 /// if the reserve is not kept, and the more so the earlier the battery ends.
 double spare_percent(const Mission& mission);
+
+/// By how much a mission that no schedule lands with its reserve misses it, and what would mend that, each
+/// measure on its own; a measure that alone is not enough is none.
+struct InfeasibilityReport {
+    double short_percent = 0.0;                 ///< of the schedule that demands least energy
+    double short_wh = 0.0;                      ///< the same, as a part of what a full battery holds
+    std::optional<double> cut_off_at_s;         ///< short is then also what is demanded after the cut-off
+    std::optional<double> cruise_s;             ///< the longest that lands
+    std::optional<double> fixed_spare_percent;  ///< over the reserve, with the least where quality is fixed
+    std::optional<double> reserve_soc_percent;  ///< the greatest that can be kept
+    std::optional<double> capacity_ah;          ///< the least that suffices
+};
+
+/// `plan` is infeasible, of the mission that `mission_of` gives for the cruise as it is.
+InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,
+                                         const MissionOfCruise& mission_of);
+
+/// For people: "short by 2.1 points (0.23 Wh); ...".
+std::string describe(const MissionSetup& mission, const InfeasibilityReport& report);
 
 }  // namespace flightwatt::mission

@@ -1,6 +1,10 @@
 #include "mission/mission.h"
 
+#include "base/piecewise_linear.h"
+
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 namespace flightwatt::mission {
 
@@ -8,12 +12,35 @@ const MissionSetup& setup_of(const AnyMission& mission) {
     return std::visit([](const MissionSetup& setup) -> const MissionSetup& { return setup; }, mission);
 }
 
-std::optional<double> mean_utility(const MissionSetup& mission, const std::vector<ScheduleSegment>& schedule,
-                                   double until_s) {
-    const auto& utilities = mission.utilities;
-    if (std::none_of(utilities.begin(), utilities.end(), [](const auto& u) { return u.has_value(); })) {
-        return std::nullopt;
+double utility_per_s(const Utility& utility, const std::vector<double>& qos) {
+    if (!utility.parameter) return utility.weight;
+    const double q = qos.at(*utility.parameter);
+    switch (utility.shape) {
+        case UtilityShape::linear:
+            return utility.weight * q;
+        case UtilityShape::square_root:
+            return utility.weight * std::sqrt(q);
+        case UtilityShape::logarithm:
+            return utility.weight * std::log1p(q);
+        case UtilityShape::points:
+            return utility.weight * interpolate_extended(utility.points_qos, utility.points_value, q);
     }
+    throw std::logic_error("utility_per_s: no such shape");
+}
+
+double utility_per_s(const std::vector<std::optional<Utility>>& utilities,
+                     const compute::Configuration& configuration) {
+    double sum = 0.0;
+    for (const auto& running : configuration) {
+        if (running.component >= utilities.size() || !utilities[running.component]) continue;
+        sum += utility_per_s(*utilities[running.component], running.qos);
+    }
+    return sum;
+}
+
+std::optional<double> mean_utility(const MissionSetup& mission, const Schedule& schedule, double until_s) {
+    const auto& utilities = mission.utilities;
+    if (std::ranges::none_of(utilities, [](const auto& u) { return u.has_value(); })) return std::nullopt;
     const auto timeline = timeline_of(mission.duration_s);
     double sum = 0.0;
     for (const auto& segment : schedule) {

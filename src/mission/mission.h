@@ -4,8 +4,8 @@
 #include "compute/compute_model.h"
 #include "mechanical/mechanical_model.h"
 #include "mission/schedule.h"
-#include "mission/utility.h"
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <variant>
@@ -13,11 +13,29 @@
 
 namespace flightwatt::mission {
 
+/// How the utility grows with the quality of service q. All are monotone.
+enum class UtilityShape {
+    linear,       ///< q
+    square_root,  ///< sqrt(q)
+    logarithm,    ///< ln(1 + q): 0 at 0
+    points        ///< straight lines between given points
+};
+
+/// The utility of a component's quality of service a second while it runs: weight * shape(q). A component that
+/// is off has none.
+struct Utility {
+    std::optional<std::size_t> parameter;  ///< of the profile; none: the weight itself, whenever it runs
+    double weight = 1.0;
+    UtilityShape shape = UtilityShape::linear;
+    std::vector<double> points_qos;    ///< rising, around the profile's whole range; only of `points`
+    std::vector<double> points_value;  ///< not falling, as many
+};
+
 /// Standard deviations between flights that a mission states itself; what it does not state is looked for in
 /// its models.
 struct Uncertainty {
-    flight::PerPhase<std::optional<double>> level_sd_percent;  ///< of the phase's mean mechanical power
-    flight::PerPhase<std::optional<double>> duration_sd_s;
+    PerPhase<std::optional<double>> level_sd_percent;  ///< of the phase's mean mechanical power
+    PerPhase<std::optional<double>> duration_sd_s;
     std::vector<std::optional<double>> compute_sd_percent;  ///< of each component's power
     std::optional<double> capacity_sd_percent;              ///< of the battery's capacity
 };
@@ -30,7 +48,7 @@ struct MissionSetup {
     mechanical::PhaseClock phase_clock = mechanical::PhaseClock::stretched;
     /// The cruise's mean power under the stated conditions; `mechanical` has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
-    flight::PerPhase<double> duration_s;  ///< 0: the phase is not flown
+    PerPhase<double> duration_s;  ///< 0: the phase is not flown
     battery::Battery battery;
     compute::ComputeModel compute;
     std::vector<std::optional<Utility>> utilities;  ///< one a component (or none at all)
@@ -42,7 +60,7 @@ struct MissionSetup {
 
 /// A mission that can be flown.
 struct Mission : MissionSetup {
-    std::vector<ScheduleSegment> schedule;  ///< in order, covers each instant of each phase exactly once
+    Schedule schedule;  ///< in order, covers each instant of each phase exactly once
 };
 
 /// What a planner may choose for one component.
@@ -68,7 +86,7 @@ struct AdaptivePolicy {
 
 /// A mission whose schedule is yet to be made.
 struct PlanningProblem : MissionSetup {
-    std::vector<ScheduleSegment> fixed;  ///< in order: what is scheduled beforehand
+    Schedule fixed;  ///< in order: what is scheduled beforehand
     PlanSettings plan;
     std::optional<AdaptivePolicy> adaptive;  ///< the schedule is made in flight, again and again
 };
@@ -78,9 +96,15 @@ using AnyMission = std::variant<Mission, PlanningProblem>;
 
 const MissionSetup& setup_of(const AnyMission& mission);
 
+double utility_per_s(const Utility& utility, const std::vector<double>& qos);
+
+/// The utility of a configuration a second: the sum over the components that run and have a utility.
+/// `utilities` has one entry a component of the model (or none at all).
+double utility_per_s(const std::vector<std::optional<Utility>>& utilities,
+                     const compute::Configuration& configuration);
+
 /// Mean utility a second of what a schedule runs up to `until_s` [mission time], over the duration of the
 /// whole mission; none if the mission states no utility.
-std::optional<double> mean_utility(const MissionSetup& mission, const std::vector<ScheduleSegment>& schedule,
-                                   double until_s);
+std::optional<double> mean_utility(const MissionSetup& mission, const Schedule& schedule, double until_s);
 
 }  // namespace flightwatt::mission

@@ -3,7 +3,6 @@
 #include "mission/simulation.h"
 
 #include <optional>
-#include <vector>
 
 namespace flightwatt::mission {
 
@@ -12,7 +11,7 @@ struct Plan {
     bool feasible = false;
     bool deliverable = false;  ///< the battery can deliver the power of some schedule
     /// From the start to the mission's end; if infeasible, the one of least energy demand.
-    std::vector<ScheduleSegment> schedule;
+    Schedule schedule;
     double utility = 0.0;            ///< mean utility a second of the rest of the mission
     double bound = 0.0;              ///< no schedule that keeps the reserve has more; 0 if infeasible
     bool bound_is_proven = true;     ///< false: something charges a battery whose source follows its charge
@@ -27,12 +26,11 @@ struct MissionPlan {
     double margin_percent = 0.0;  ///< kept above the reserve for the sake of the probability
 };
 
-/// Plans a mission and simulates the result; where that ends below the reserve (by rounding, or because a
-/// full battery refused charge, which tables do not know), plans anew with more to spare. The tables deplete
-/// the battery no more than the simulation, so the bound holds nevertheless. With `probability`, the reserve is
-/// kept with that chance: see sampling/level_deviation.h. Infeasible plans are returned as such. Batteries
-/// whose source follows their charge, and those that may be cut off: see planning/plan_by_simulation.h.
-/// Throws InputError if the mission states no utility, or too many choices.
+/// Plans a mission and simulates the result; where that ends below the reserve (by rounding, or because a full battery
+/// refused charge, which tables do not know), plans anew with more to spare. The bound holds nevertheless, as tables
+/// deplete the battery no more than the simulation. With `probability`, the reserve is kept with that chance: see
+/// sampling/level_deviation.h. Infeasible plans are returned as such. Throws InputError if the mission states no
+/// utility, or too many choices.
 MissionPlan plan_mission(const PlanningProblem& problem,
                          const std::optional<double>& probability = std::nullopt);
 

@@ -23,7 +23,7 @@ PreparedMission prepare(const AnyMission& mission) {
 }
 
 FlownMission fly(const PreparedMission& prepared, const SimulationSteps& steps,
-                 const std::vector<Disturbance>& disturbances) {
+                 const Disturbances& disturbances) {
     FlownMission flown;
     std::optional<AdaptiveDecisions> decisions;
     if (prepared.adaptive) {

@@ -4,14 +4,13 @@
 #include "mission/simulation.h"
 
 #include <optional>
-#include <vector>
 
 namespace flightwatt::mission {
 
 /// A mission with all that is decided before take-off.
 struct PreparedMission {
     MissionSetup setup;
-    std::vector<ScheduleSegment> schedule;    ///< empty if a policy makes it in flight
+    Schedule schedule;                        ///< empty if a policy makes it in flight
     std::optional<AdaptivePlanner> adaptive;  ///< such a policy
     ScheduleOrigin origin = ScheduleOrigin::given;
 };
@@ -21,12 +20,12 @@ PreparedMission prepare(const AnyMission& mission);
 
 /// The schedule that was flown, and what came of it.
 struct FlownMission {
-    std::vector<ScheduleSegment> schedule;
+    Schedule schedule;
     Simulation simulation;
 };
 
 /// Flies a mission, under disturbances that nobody knew of beforehand.
 FlownMission fly(const PreparedMission& prepared, const SimulationSteps& steps = {},
-                 const std::vector<Disturbance>& disturbances = {});
+                 const Disturbances& disturbances = {});
 
 }  // namespace flightwatt::mission

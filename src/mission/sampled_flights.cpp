@@ -4,13 +4,12 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/sampling/flight_draws.h"
-#include "mission/simulation/segment_discharge.h"
+#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <future>
-#include <iterator>
 #include <thread>
 
 #include <fmt/format.h>
@@ -19,7 +18,6 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double lasted_tolerance_s = 1e-6;  ///< as in simulation.cpp: empty at the very end has lasted
 constexpr double most_samples = 1e7;
 
 /// How one flight ended.
@@ -37,42 +35,39 @@ struct DrawnFlight {
     std::vector<LoadSegment> segments;
 };
 
-/// Follows the charge through a segment and notes it at `times_s`, of which some have been noted already.
-battery::Discharge follow(const DrawnFlight& flight, const LoadSegment& segment, battery::Discharge charge,
-                          const std::vector<double>& times_s, std::vector<double>& noted_percent) {
-    const double cutoff_voltage_v = flight.setup.cutoff_voltage_v;
-    auto part = segment;
-    while (noted_percent.size() < times_s.size() && times_s[noted_percent.size()] < segment.end_s) {
-        part.end_s = std::max(part.start_s, times_s[noted_percent.size()]);
-        charge = after_segment(flight.battery, cutoff_voltage_v, part, charge);
-        noted_percent.push_back(charge.soc_percent);
-        part.start_s = part.end_s;
-        part.soc_drop_percent = 0.0;
-    }
-    part.end_s = segment.end_s;
-    return after_segment(flight.battery, cutoff_voltage_v, part, charge);
-}
-
+/// Follows the charge through the segments and notes it at `times_s`.
 Landing land(const DrawnFlight& flight, const std::vector<double>& times_s) {
     Landing landing;
-    battery::Discharge charge;
-    charge.soc_percent = flight.setup.initial_soc_percent;
-    for (const auto& segment : flight.segments)
-        charge = follow(flight, segment, charge, times_s, landing.soc_percent);
-    landing.soc_percent.resize(times_s.size(), charge.soc_percent);
+    battery::Discharge charge{{flight.setup.initial_soc_percent}};
+    auto& noted_percent = landing.soc_percent;
+    for (auto part : flight.segments) {
+        const double segment_end_s = part.end_s;
+        const auto follow_until = [&](double time_s) {
+            part.end_s = time_s;
+            charge = after_segment(flight.battery, flight.setup.cutoff_voltage_v, part, charge);
+            part.start_s = time_s;
+            part.soc_drop_percent = 0.0;
+        };
+        while (noted_percent.size() < times_s.size() && times_s[noted_percent.size()] < segment_end_s) {
+            follow_until(std::max(part.start_s, times_s[noted_percent.size()]));
+            noted_percent.push_back(charge.soc_percent);
+        }
+        follow_until(segment_end_s);
+    }
+    noted_percent.resize(times_s.size(), charge.soc_percent);
     landing.final_soc_percent = charge.soc_percent;
-    const double lasted_s = flight.segments.back().end_s - lasted_tolerance_s;
+    const double lasted_s = flight.segments.back().end_s - lasting_tolerance_s;
     landing.depleted = charge.empty_at_s && *charge.empty_at_s < lasted_s;
     landing.battery_failure =
-        landing.depleted || charge.undeliverable || (charge.cut_off_at_s && *charge.cut_off_at_s < lasted_s);
+        charge.undeliverable || (charge.ended_at_s() && *charge.ended_at_s() < lasted_s);
     return landing;
 }
 
 /// Draws and flies flights, and hands each to the place of its number.
 class Sampler {
   public:
-    Sampler(const PreparedMission& prepared, const std::vector<Disturbance>& disturbances,
-            const FlightSpreads& spreads, const SamplingOptions& options)
+    Sampler(const PreparedMission& prepared, const Disturbances& disturbances, const FlightSpreads& spreads,
+            const SamplingOptions& options)
         : prepared_(prepared), disturbances_(disturbances), spreads_(spreads), options_(options) {
         const double duration_s = timeline_of(prepared.setup.duration_s).duration_s;
         for (std::size_t i = 0; i < options.band_times; ++i) {
@@ -113,7 +108,7 @@ class Sampler {
     }
 
     const PreparedMission& prepared_;
-    const std::vector<Disturbance>& disturbances_;
+    const Disturbances& disturbances_;
     const FlightSpreads& spreads_;
     const SamplingOptions& options_;
     std::vector<double> times_s_;
@@ -129,19 +124,17 @@ battery::Interval wilson_interval(double p, double n) {
     return {p == 0.0 ? 0.0 : std::max(0.0, middle - reach), p == 1.0 ? 1.0 : std::min(1.0, middle + reach)};
 }
 
-void count_landings(const std::vector<Landing>& landings, double reserve_percent, SampledFlights& flights) {
-    std::size_t depleted = 0;
-    std::size_t battery_failure = 0;
-    std::size_t below = 0;
-    for (const auto& landing : landings) {
-        depleted += landing.depleted ? 1 : 0;
-        battery_failure += landing.battery_failure ? 1 : 0;
-        below += landing.battery_failure || landing.final_soc_percent < reserve_percent ? 1 : 0;
-    }
+void count_landings(const std::vector<Landing>& landings, SampledFlights& flights) {
     const auto n = static_cast<double>(landings.size());
-    const double p = static_cast<double>(below) / n;
-    flights.probability_depleted = static_cast<double>(depleted) / n;
-    flights.probability_battery_failure = static_cast<double>(battery_failure) / n;
+    const auto share_of = [&](const auto& counts) {
+        return static_cast<double>(std::ranges::count_if(landings, counts)) / n;
+    };
+    const double p = share_of([&](const Landing& landing) {
+        return landing.battery_failure || landing.final_soc_percent < flights.reserve_soc_percent;
+    });
+    flights.probability_depleted = share_of([](const Landing& landing) { return landing.depleted; });
+    flights.probability_battery_failure =
+        share_of([](const Landing& landing) { return landing.battery_failure; });
     flights.probability_below_reserve = p;
     flights.probability_below_reserve_standard_error = std::sqrt(p * (1.0 - p) / n);
     flights.probability_below_reserve_95 = wilson_interval(p, n);
@@ -153,7 +146,7 @@ std::vector<SocBand> bands_of(const std::vector<Landing>& landings, const std::v
     for (std::size_t i = 0; i < times_s.size(); ++i) {
         std::transform(landings.begin(), landings.end(), soc_percent.begin(),
                        [&](const Landing& landing) { return landing.soc_percent[i]; });
-        std::sort(soc_percent.begin(), soc_percent.end());
+        std::ranges::sort(soc_percent);
         bands.push_back({times_s[i], quantile(soc_percent, 0.05), quantile(soc_percent, 0.5),
                          quantile(soc_percent, 0.95)});
     }
@@ -164,15 +157,24 @@ std::vector<SocBand> bands_of(const std::vector<Landing>& landings, const std::v
 
 bool has_spread(const MissionSetup& mission) { return !find_spreads(mission).drawn.empty(); }
 
-void require_spread(const MissionSetup& mission) { spreads_of(mission); }
+void require_spread(const MissionSetup& mission) {
+    if (has_spread(mission)) return;
+    throw InputError({mission.file},
+                     "there is nothing to draw flights from: neither the mechanical model, nor the profiles, "
+                     "nor the battery say how they differ",
+                     "fit the model to two flights or more (flightwatt fit), or state it: [uncertainty] with "
+                     "level_sd_percent = { cruise = 5 }, duration_sd_s = { cruise = 20 }, "
+                     "compute_sd_percent or capacity_sd_percent");
+}
 
-SampledFlights sample_flights(const PreparedMission& prepared, const std::vector<Disturbance>& disturbances,
+SampledFlights sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                               const SamplingOptions& options) {
     if (options.samples < 2 || static_cast<double>(options.samples) > most_samples) {
         throw UsageError(fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples,
                                      most_samples));
     }
-    const auto spreads = spreads_of(prepared.setup);
+    require_spread(prepared.setup);
+    const auto spreads = find_spreads(prepared.setup);
     const Sampler sampler(prepared, disturbances, spreads, options);
     const auto landings = sampler.fly_all();
     SampledFlights flights;
@@ -187,11 +189,11 @@ SampledFlights sample_flights(const PreparedMission& prepared, const std::vector
     for (const auto& landing : landings) final_percent.push_back(landing.final_soc_percent);
     flights.final_soc_mean_percent = mean(final_percent);
     flights.final_soc_sd_percent = sample_sd(final_percent);
-    std::sort(final_percent.begin(), final_percent.end());
+    std::ranges::sort(final_percent);
     for (std::size_t i = 0; i < shown_quantiles_percent.size(); ++i)
         flights.final_soc_quantiles_percent[i] =
             quantile(final_percent, units::part_of(1.0, shown_quantiles_percent[i]));
-    count_landings(landings, prepared.setup.reserve_soc_percent, flights);
+    count_landings(landings, flights);
     flights.bands = bands_of(landings, sampler.times_s());
     return flights;
 }

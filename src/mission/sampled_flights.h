@@ -25,7 +25,7 @@ void require_spread(const MissionSetup& mission);
 /// happen at the same part of each flight. Flights depend on the seed and their own number alone, so the
 /// answer is the same for any number of threads. Throws as require_spread does, and UsageError for fewer than 2
 /// samples or more than 10 million.
-SampledFlights sample_flights(const PreparedMission& prepared, const std::vector<Disturbance>& disturbances,
+SampledFlights sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                               const SamplingOptions& options);
 
 /// For people.

@@ -1,11 +1,42 @@
 #pragma once
 
 #include "compute/compute_model.h"
-#include "mission/timeline.h"
+#include "mechanical/mechanical_model.h"
 
 #include <vector>
 
 namespace flightwatt::mission {
+
+using flight::all_phases;
+using flight::PerPhase;
+using flight::Phase;
+
+/// A time within one phase, in seconds since the phase began.
+struct PhaseSegment {
+    Phase phase = Phase::takeoff;
+    double start_s = 0.0;
+    double end_s = 0.0;
+    bool operator==(const PhaseSegment&) const = default;
+    double duration_s() const { return end_s - start_s; }
+};
+
+/// When each phase is flown, in seconds since the mission began; a phase that is not flown starts as it ends.
+struct MissionTimeline {
+    PerPhase<double> start_s;
+    PerPhase<double> end_s;
+    double duration_s = 0.0;  ///< of the whole mission
+};
+
+MissionTimeline timeline_of(const PerPhase<double>& duration_s);
+
+/// Times of a phase nearer than this are one: percentages of a phase meet seconds only up to rounding.
+constexpr double same_time_tolerance_s(double phase_duration_s) {
+    return 1e-9 * (phase_duration_s > 1.0 ? phase_duration_s : 1.0);
+}
+
+/// Where a time of the mission lies when its phases take other durations: at the same part of the same phase.
+double rescale_to_flown_durations_s(double time_s, const PerPhase<double>& planned_s,
+                                    const PerPhase<double>& flown_s);
 
 /// A part of a phase in which one configuration runs.
 struct ScheduleSegment : PhaseSegment {
@@ -13,16 +44,18 @@ struct ScheduleSegment : PhaseSegment {
     bool operator==(const ScheduleSegment&) const = default;
 };
 
+/// In the order of time.
+using Schedule = std::vector<ScheduleSegment>;
+
 /// Appends a segment; if it runs what the last one of the same phase runs, that one becomes longer.
-void append_merged(std::vector<ScheduleSegment>& schedule, ScheduleSegment segment);
+void append_merged(Schedule& schedule, ScheduleSegment segment);
 
 /// Every different configuration of a schedule, in order of appearance.
-std::vector<compute::Configuration> configurations_of(const std::vector<ScheduleSegment>& schedule);
+std::vector<compute::Configuration> configurations_of(const Schedule& schedule);
 
 /// The schedule when its phases, none of which may be planned to take 0 s, take other durations: each segment
 /// keeps its part of the phase.
-std::vector<ScheduleSegment> rescale_to_flown_durations(std::vector<ScheduleSegment> schedule,
-                                                        const flight::PerPhase<double>& planned_s,
-                                                        const flight::PerPhase<double>& flown_s);
+Schedule rescale_to_flown_durations(Schedule schedule, const PerPhase<double>& planned_s,
+                                    const PerPhase<double>& flown_s);
 
 }  // namespace flightwatt::mission

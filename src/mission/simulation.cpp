@@ -3,7 +3,6 @@
 #include "base/csv.h"
 #include "base/units.h"
 #include "mission/simulation/load_segments.h"
-#include "mission/simulation/segment_discharge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +15,6 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double most_rows = 1e7;
-constexpr double lasting_tolerance_s = 1e-6;  ///< a battery that is empty this near to the end has lasted
 
 void require_output_step(double output_s, double duration_s) {
     if (!(output_s > 0.0) || !std::isfinite(output_s)) {
@@ -45,18 +43,13 @@ std::vector<double> output_times(const LoadSegment& segment, double output_s) {
 /// A row, unless the last one says the same already: not every end of a segment is a jump.
 void add_row(SocCurve& curve, const battery::Battery& battery, const LoadSegment& segment, double time_s,
              const battery::Discharge& state) {
-    SocRow row;
-    row.time_s = time_s;
-    row.phase = segment.phase;
-    row.mechanical_w = mechanical_w(segment, time_s);
-    row.compute_w = segment.compute_w;
-    row.power_w = power_w(segment, time_s);
-    auto now = state.state();
+    SocRow row{time_s, segment.phase, mechanical_w(segment, time_s), segment.compute_w,
+               power_w(segment, time_s)};
+    battery::BatteryState now = state;
     if (const auto ended_at_s = state.ended_at_s()) {
         // Without a load the RC pair discharges itself.
-        if (battery.thevenin) {
+        if (battery.thevenin)
             now.rc_voltage_v *= std::exp((*ended_at_s - time_s) / battery.thevenin->rc_time_constant_s);
-        }
     } else {
         row.current_a = internal_current_a(battery, std::min(row.power_w, power_limit_w(battery, now)), now);
     }
@@ -85,14 +78,13 @@ battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment,
     add_row(curve, battery, segment, times.front(), state);
     for (std::size_t i = 1; i < times.size(); ++i) {
         if (!state.ended_at_s()) {
-            state = discharge(battery, load, times[i - 1], times[i], state.state(), options);
+            state = discharge(battery, {load, times[i - 1], times[i]}, state, options);
             if (state.undeliverable) {
                 add_row(curve, battery, segment, state.undeliverable->time_s, state);
                 return state;
             }
             if (const auto ended_at_s = state.ended_at_s()) {
-                const battery::Discharge before{state.soc_percent, std::nullopt, std::nullopt, std::nullopt,
-                                                state.rc_voltage_v};
+                const battery::Discharge before{static_cast<const battery::BatteryState&>(state)};
                 add_row(curve, battery, segment, *ended_at_s, before);  // the last row with a current,
                 add_row(curve, battery, segment, *ended_at_s, state);   // and the first without
             }
@@ -102,22 +94,17 @@ battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment,
     return state;
 }
 
-void add_energies(const std::vector<LoadSegment>& segments, double delivered_until_s,
-                  MissionSummary& summary) {
+void add_energies(const std::vector<LoadSegment>& segments, MissionSummary& summary) {
+    const double powered_s = powered_until_s(summary);
     for (const auto& segment : segments) {
         summary.mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(segment, segment.end_s));
         summary.compute_energy_wh += units::wh_from_joule(compute_energy_j(segment, segment.end_s));
-        if (segment.start_s >= delivered_until_s) continue;
-        const double until_s = std::min(segment.end_s, delivered_until_s);
+        if (segment.start_s >= powered_s) continue;
+        const double until_s = std::min(segment.end_s, powered_s);
         summary.delivered_energy_wh +=
             units::wh_from_joule(mechanical_energy_j(segment, until_s) + compute_energy_j(segment, until_s));
     }
     summary.energy_wh = summary.mechanical_energy_wh + summary.compute_energy_wh;
-}
-
-double delivered_until_s(const MissionSummary& summary) {
-    if (summary.undeliverable) return summary.undeliverable->time_s;
-    return summary.depleted_at_s.value_or(summary.cut_off_at_s.value_or(summary.duration_s));
 }
 
 /// All but the utility, which depends on the schedule.
@@ -133,7 +120,7 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
     summary.depleted_at_s = ended_early_at_s(end.empty_at_s);
     summary.cut_off_at_s = ended_early_at_s(end.cut_off_at_s);
     if (!end.undeliverable) summary.final_soc_percent = end.soc_percent;
-    add_energies(segments, delivered_until_s(summary), summary);
+    add_energies(segments, summary);
     summary.feasible = !summary.undeliverable && !summary.depleted_at_s && !summary.cut_off_at_s;
     summary.reserve_soc_percent = mission.reserve_soc_percent;
     summary.keeps_reserve = summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent;
@@ -142,68 +129,26 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
 
 }  // namespace
 
-std::string to_string(ScheduleOrigin origin) {
-    switch (origin) {
-        case ScheduleOrigin::given:
-            return "";
-        case ScheduleOrigin::optimal:
-            return "optimal";
-        case ScheduleOrigin::planned:
-            return "planned";
-        case ScheduleOrigin::infeasible:
-            return "no plan keeps the reserve";
-        case ScheduleOrigin::replanned:
-            return "replanned in flight";
-    }
-    throw std::logic_error("to_string: no such origin of a schedule");
-}
-
-Simulation simulate(const MissionSetup& mission, const std::vector<ScheduleSegment>& schedule,
-                    const SimulationSteps& steps, const std::vector<Disturbance>& disturbances) {
+Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationSteps& steps,
+                    const Disturbances& disturbances) {
     const auto segments = disturbed(load_segments(mission, schedule), disturbances);
     if (segments.empty()) throw std::invalid_argument("simulate: the mission has no schedule");
     require_output_step(steps.output_s, segments.back().end_s);
     const Supply supply{disturbed(mission.battery, disturbances),
                         steps.cuts_off ? mission.cutoff_voltage_v : 0.0};
     SocCurve curve;
-    battery::Discharge state{mission.initial_soc_percent, std::nullopt, std::nullopt};
+    battery::Discharge state{{mission.initial_soc_percent}};
     for (const auto& segment : segments) {
         state = run_segment(supply, segment, steps, state, curve);
         if (state.undeliverable) break;
     }
     auto summary = summarize(mission, segments, state);
-    summary.utility = mean_utility(mission, schedule, delivered_until_s(summary));
+    summary.utility = mean_utility(mission, schedule, powered_until_s(summary));
     return {std::move(curve), std::move(summary)};
 }
 
-Simulation simulate(const Mission& mission, const SimulationSteps& steps,
-                    const std::vector<Disturbance>& disturbances) {
+Simulation simulate(const Mission& mission, const SimulationSteps& steps, const Disturbances& disturbances) {
     return simulate(mission, mission.schedule, steps, disturbances);
-}
-
-std::string describe(const MissionSummary& summary) {
-    if (const auto& failure = summary.undeliverable) {
-        return fmt::format(
-            "{}: the battery cannot deliver {:.6g} W at {:.6g} s: its limit U^2 / (4 R) is {:.6g} W",
-            summary.mission, failure->power_w, failure->time_s, failure->limit_w);
-    }
-    auto end = fmt::format("{:.2f} % left after {:.1f} s", *summary.final_soc_percent, summary.duration_s);
-    if (summary.depleted_at_s) {
-        end = fmt::format("empty at {:.1f} s of {:.1f} s", *summary.depleted_at_s, summary.duration_s);
-    } else if (summary.cut_off_at_s) {
-        end = fmt::format("cut off at {:.1f} s of {:.1f} s with {:.2f} % left", *summary.cut_off_at_s,
-                          summary.duration_s, *summary.final_soc_percent);
-    } else if (!summary.keeps_reserve) {
-        end += fmt::format(", less than the reserve of {:.6g} %", summary.reserve_soc_percent);
-    }
-    if (summary.decisions && summary.decisions->without_plan > 0) {
-        end += fmt::format(
-            " (at {} of {} decisions no plan kept the reserve with its margin, and what "
-            "demands least energy was run)",
-            summary.decisions->without_plan, summary.decisions->made);
-    }
-    return fmt::format("{}: {}; {:.3f} Wh, {:.3f} mechanical and {:.3f} computing", summary.mission, end,
-                       summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh);
 }
 
 std::string to_csv(const SocCurve& curve) {

@@ -1,7 +1,7 @@
 #include "report/batch_content.h"
 
-#include "batch/fit_selection.h"
-#include "batch/stored_flights.h"
+#include "batch/batch_files.h"
+#include "batch/flight_record.h"
 
 #include <algorithm>
 #include <iterator>

@@ -2,7 +2,7 @@
 
 #include "base/units.h"
 #include "mechanical/table_one.h"
-#include "mission/comparison.h"
+#include "mission/mission_summary.h"
 #include "report/figures/mission_figures.h"
 #include "report/model_section.h"
 
@@ -112,15 +112,6 @@ Section map_section(Missions missions, const PublishedFigures& published) {
                                            fmt::format("quality-{}", section.figures.size() + 1)));
     }
     return section;
-}
-
-/// Until when what runs counts.
-double powered_until_s(const mission::MissionSummary& summary) {
-    double until_s = summary.duration_s;
-    if (summary.depleted_at_s) until_s = std::min(until_s, *summary.depleted_at_s);
-    if (summary.cut_off_at_s) until_s = std::min(until_s, *summary.cut_off_at_s);
-    if (summary.undeliverable) until_s = std::min(until_s, summary.undeliverable->time_s);
-    return until_s;
 }
 
 /// The missions with the planned one's flight, software and battery, by its utilities.

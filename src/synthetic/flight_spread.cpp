@@ -1,7 +1,7 @@
 #include "synthetic/flight_spread.h"
 
 #include "base/error.h"
-#include "mechanical/phase_curve.h"
+#include "mechanical/model_fit.h"
 
 #include <random>
 #include <utility>
@@ -26,9 +26,7 @@ mechanical::FourierModel deviation_series(flight::Phase phase, const mechanical:
         tau[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(points);
         power_w[i] = band_w(phase, tau[i]) * (deviation.level + deviation.tilt * (2.0 * tau[i] - 1.0));
     }
-    const auto order = static_cast<int>(model.fourier.cos_w.size());
-    auto series =
-        mechanical::nearest_series(tau, power_w, order, model.fourier.omega_rad_per_s, model.duration_s);
+    auto series = mechanical::nearest_series(model, tau, power_w);
     if (!series) throw NoAnswerError("the model's frequency is too low to spread flights about it");
     return *std::move(series);
 }
@@ -43,7 +41,7 @@ mechanical::PhaseModel deviated(flight::Phase phase, const mechanical::PhaseMode
         flown.fourier.sin_w[n] += sign * difference.sin_w[n];
     }
     flown.duration_s *= 1.0 + sign * deviation.duration;
-    flown.fourier.omega_rad_per_s *= model.duration_s / flown.duration_s;  // the curve is stretched with it
+    flown.fourier.omega_rad_per_s *= model.duration_s / flown.duration_s;  // the curve lasts as long
     return flown;
 }
 

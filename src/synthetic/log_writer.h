@@ -1,12 +1,14 @@
 #pragma once
 
+#include "synthetic/synthetic_flight.h"
 #include "telemetry/log_configuration.h"
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// Paparazzi's own formats, for synthetic logs.
+/// Paparazzi's own formats, and what a synthetic aircraft sends in them.
 namespace flightwatt::synthetic {
 
 /// A float as Paparazzi's OCaml server prints what came over the air: "235.", "-0.", "-3e-06", "12.421459".
@@ -29,5 +31,28 @@ struct LogDocument {
 /// A well-formed .log: configuration, the aircraft with its flight plan and current sensor, message
 /// definitions.
 std::string to_log_xml(const LogDocument& document);
+
+/// Everything that a message can tell at one moment.
+struct Moment {
+    double time_s = 0.0;
+    SyntheticState state;
+    double voltage_v = 0.0;
+    double current_a = 0.0;
+    double charge_ah = 0.0;
+    double energy_wh = 0.0;
+    double altitude_m = 0.0;  ///< as the estimator sees it
+    double flight_time_s = 0.0;
+};
+
+/// A periodic telemetry message: its definition and how its fields are written.
+struct Report {
+    double period_s;
+    telemetry::MessageDefinition definition;
+    std::function<std::vector<std::string>(const Moment&)> fields;
+};
+
+/// The telemetry of a synthetic fixed-wing aircraft: the messages that flights are read from, and those that
+/// fill a real log beside them, about as often.
+std::vector<Report> telemetry_reports();
 
 }  // namespace flightwatt::synthetic

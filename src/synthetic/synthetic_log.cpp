@@ -3,7 +3,6 @@
 #include "base/units.h"
 #include "flight/telemetry_series.h"
 #include "synthetic/log_writer.h"
-#include "synthetic/sensor_messages.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "base/number.h"
 
 #include <algorithm>
-#include <array>
+#include <initializer_list>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -166,16 +166,12 @@ LogConfiguration read_log_configuration(const std::filesystem::path& path) {
 
 std::string flight_name(const std::filesystem::path& data_file) {
     auto name = data_file.filename().string();
-    constexpr std::array<std::string_view, 4> compressed{".gz", ".bz2", ".xz", ".zst"};
-    for (const auto ending : compressed) {
-        if (name.ends_with(ending)) name.resize(name.size() - ending.size());
-    }
-    for (const std::string_view ending : {".series.csv", ".data", ".csv"}) {
-        if (name.ends_with(ending)) {
-            name.resize(name.size() - ending.size());
-            break;
-        }
-    }
+    const auto strip_first = [&](std::initializer_list<std::string_view> endings) {
+        const auto found = std::ranges::find_if(endings, [&](auto ending) { return name.ends_with(ending); });
+        if (found != endings.end()) name.resize(name.size() - found->size());
+    };
+    strip_first({".gz", ".bz2", ".xz", ".zst"});
+    strip_first({".series.csv", ".data", ".csv"});
     return name;
 }
 

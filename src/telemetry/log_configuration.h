@@ -1,5 +1,6 @@
 #pragma once
 
+#include "telemetry/log_notes.h"
 #include "telemetry/message_definition.h"
 
 #include <filesystem>
@@ -8,13 +9,6 @@
 #include <string>
 
 namespace flightwatt::telemetry {
-
-/// Where the autopilot's current came from.
-enum class CurrentOrigin {
-    unknown,
-    sensor,    ///< the airframe converts an ADC reading: MilliAmpereOfAdc
-    throttle,  ///< computed from throttle: MILLIAMP_AT_FULL_THROTTLE alone
-};
 
 /// One aircraft of the configuration that a .log embeds.
 struct AircraftConfiguration {

@@ -2,13 +2,11 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "telemetry/data_file.h"
 #include "telemetry/text/line_scanner.h"
-#include "telemetry/text/log_reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -26,45 +24,6 @@ const MessageTable* SenderLog::table(std::string_view message) const {
     return found == tables.end() ? nullptr : &*found;
 }
 
-std::size_t SkippedLines::count() const {
-    return std::accumulate(lines.begin(), lines.end(), std::size_t{0},
-                           [](std::size_t sum, const AtTime& at) { return sum + at.count; });
-}
-
-std::size_t SkippedLines::first_line() const {
-    const auto first = std::min_element(lines.begin(), lines.end(), [](const AtTime& a, const AtTime& b) {
-        return a.first_line < b.first_line;
-    });
-    return first == lines.end() ? 0 : first->first_line;
-}
-
-std::string describe(const SkippedLines& skipped) {
-    return fmt::format("{}: {} line{}, first at line {}", skipped.reason, skipped.count(),
-                       skipped.count() == 1 ? "" : "s", skipped.first_line());
-}
-
-TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                             std::optional<LogConfiguration> configuration,
-                             const std::vector<MessageRequest>& wanted) {
-    TelemetryLog log;
-    log.data_file = data_file;
-    log.flight = flight_name(data_file);
-    log.configuration = std::move(configuration);
-    LogReader reader(log, wanted, text);
-    const auto lines = scan_lines(
-        text, [&](const ScannedLine& line) { reader.read_line(line); }, [&] { reader.read_waiting(); });
-    reader.finish(lines, text.ends_with('\n'));
-    return log;
-}
-
-TelemetryLog read_telemetry(const std::filesystem::path& data_file,
-                            const std::vector<MessageRequest>& wanted) {
-    const DataFile data(data_file);
-    std::optional<LogConfiguration> configuration;
-    if (const auto log_file = find_log_file(data_file)) configuration = read_log_configuration(*log_file);
-    return read_telemetry(data.text(), data_file, std::move(configuration), wanted);
-}
-
 TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
                             std::optional<LogConfiguration> configuration,
                             const std::vector<MessageRequest>& wanted) {
@@ -78,7 +37,6 @@ TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& 
 }
 
 std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_view text) {
-    std::vector<std::pair<std::string, std::size_t>> census;
     const auto is_name = [](std::string_view word) {
         return !word.empty() && word.size() < 64 && std::isupper(static_cast<unsigned char>(word.front())) &&
                std::all_of(word.begin(), word.end(),
@@ -93,7 +51,7 @@ std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_
         if (!words.next(time) || !words.next(sender) || !words.next(name)) return;
         if (parse_number(time) && is_name(name)) ++names[std::string(name)];
     });
-    census.assign(names.begin(), names.end());
+    std::vector<std::pair<std::string, std::size_t>> census(names.begin(), names.end());
     std::stable_sort(census.begin(), census.end(),
                      [](const auto& a, const auto& b) { return a.second > b.second; });
     return census;

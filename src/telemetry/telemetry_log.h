@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 #include "telemetry/log_configuration.h"
+#include "telemetry/log_notes.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -45,33 +46,6 @@ struct SenderLog {
     const MessageTable* table(std::string_view message) const;
 };
 
-/// Lines or values that could not be used, by reason and time. A line that has no time counts to the next one
-/// that has: what stands behind the last message of a log has an infinite time.
-struct SkippedLines {
-    struct AtTime {
-        double time_s = 0.0;
-        std::size_t count = 0;
-        std::size_t first_line = 0;
-        bool operator==(const AtTime&) const = default;
-    };
-    std::string reason;
-    std::vector<AtTime> lines;  ///< by time, which rises strictly
-
-    std::size_t count() const;
-    std::size_t first_line() const;  ///< 0 without any
-    bool operator==(const SkippedLines&) const = default;
-};
-
-/// "ENERGY: another number of fields than the .log defines: 3 lines, first at line 17".
-std::string describe(const SkippedLines& skipped);
-
-/// A message layout that was assumed, for want of a .log, and since when it was needed.
-struct AssumedDefinition {
-    std::string text;  ///< "ENERGY: 2018 (6 fields)"
-    double since_s = 0.0;
-    bool operator==(const AssumedDefinition&) const = default;
-};
-
 struct TelemetryLog {
     std::filesystem::path data_file;
     std::string flight;
@@ -82,17 +56,13 @@ struct TelemetryLog {
     std::size_t lines = 0;
 };
 
-/// Reads the wanted messages of a Paparazzi .data file with its .log (found beside it). Only these messages
-/// are parsed. Throws InputError for a file that cannot be read or holds no telemetry line.
-TelemetryLog read_telemetry(const std::filesystem::path& data_file,
-                            const std::vector<MessageRequest>& wanted);
-
-/// The same for a file whose text is in memory.
+/// Reads the wanted messages of a Paparazzi .data text; only these are parsed. `data_file` is named in errors,
+/// `configuration` is what its .log says. Throws InputError for a text that holds no telemetry line.
 TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
                             std::optional<LogConfiguration> configuration,
                             const std::vector<MessageRequest>& wanted);
 
-/// The same for any text, which need not hold telemetry; `configuration` as in TelemetryLog.
+/// The same for any text, which need not hold telemetry.
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
                              std::optional<LogConfiguration> configuration,
                              const std::vector<MessageRequest>& wanted);

@@ -16,6 +16,8 @@ TEST(Statistics, TheMedianOfAnEvenNumberIsTheMeanOfTheMiddleTwo) {
     EXPECT_EQ(median({3.0}), 3.0);
     EXPECT_EQ(median({5.0, 1.0, 3.0}), 3.0);
     EXPECT_EQ(median({8.0, 1.0, 2.0, 4.0}), 3.0);
+    EXPECT_EQ(upper_median({8.0, 1.0, 2.0, 4.0}), 4.0);
+    EXPECT_EQ(upper_median({5.0, 1.0, 3.0}), 3.0);
 }
 
 TEST(Statistics, QuantilesLieOnStraightLinesBetweenSortedValues) {

@@ -1,7 +1,9 @@
 #include "batch/batch_files.h"
 
 #include "base/atomic_file.h"
-#include "batch/flight_record.h"
+#include "flight/phases_file.h"
+#include "flight/series_file.h"
+#include "helpers/rejected.h"
 #include "helpers/sample_logs.h"
 
 #include <filesystem>
@@ -15,6 +17,7 @@ namespace flightwatt::batch {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 void write_record(const std::filesystem::path& out, const std::string& flight,
@@ -70,6 +73,37 @@ TEST(LeftOvers, AreRemovedFromTheOutputFolderToo) {
     for (const auto& [name, content] : test::contents(out)) left.push_back(name);
     EXPECT_THAT(left, ElementsAre("flights.csv", "flights.csv.backup", "model.toml", "model.toml.Ab3-Ef",
                                   "notes.txt.Ab3dEf"));
+}
+
+TEST(StoredFlights, AreWhatTheBatchLeft) {
+    const auto scratch = test::scratch_dir();
+    test::copy_sample(1, scratch / "in");
+    test::copy_sample(2, scratch / "in", "<b> \"x\"");
+    write_file_atomically(scratch / "in" / "rubbish.data", "rubbish\n");
+    const auto done = test::batch(scratch / "in", scratch / "out");
+    const auto stored = read_stored_flights(scratch / "out");
+    ASSERT_EQ(stored.size(), 3U);
+    EXPECT_EQ(stored[0].record.flight, "<b> \"x\"");
+    EXPECT_EQ(stored[1].record.flight, "opterra_synthetic_01");
+    EXPECT_FALSE(stored[2].record.accepted);
+    EXPECT_THAT(stored[2].record.error, HasSubstr("rubbish.data"));
+    EXPECT_EQ(stored[1].series.current_origin, flight::CurrentOrigin::sensor);
+    ASSERT_EQ(stored[1].record.verdicts.size(), 4U);
+    EXPECT_THAT(stored[1].record.verdicts[0].text, HasSubstr("agrees with TAKEOFF"));
+    const auto files = test::contents(scratch / "out");
+    EXPECT_EQ(to_csv(stored[1].series), files.at("flights/opterra_synthetic_01.series.csv"));
+    EXPECT_EQ(phases_csv(stored[1].series, stored[1].phases),
+              files.at("flights/opterra_synthetic_01.phases.csv"));
+}
+
+TEST(StoredFlights, RefuseWhatIsNoBatchFolder) {
+    const auto scratch = test::scratch_dir();
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no flights/ in it"));
+    make_directories(scratch / "flights");
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no record of a flight"));
+    test::write_text(scratch / "flights" / "a.record.json", "{}");
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }),
+                HasSubstr("run flightwatt batch again"));
 }
 
 }  // namespace

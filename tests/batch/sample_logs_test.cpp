@@ -6,11 +6,11 @@
 #include "base/units.h"
 #include "flight/chosen_track.h"
 #include "flight/load_flight.h"
-#include "flight/phase_statistics.h"
+#include "flight/phases_file.h"
 #include "flight/series_file.h"
 #include "helpers/rejected.h"
+#include "mechanical/mechanical_model.h"
 #include "mechanical/model_fit.h"
-#include "mechanical/phase_curve.h"
 
 #include <filesystem>
 #include <stdexcept>
@@ -37,7 +37,7 @@ mechanical::MechanicalModel fit_of(const std::vector<BatchFlight>& flights) {
     for (const auto& flight : flights) {
         for (const auto& measured : flight.selection.flights) samples.push_back(measured.samples);
     }
-    return fit_mechanical_model(samples);
+    return fit_model(samples).model;
 }
 
 void expect_weights_that_sum_to_one(const mechanical::MechanicalModel& model) {
@@ -57,7 +57,7 @@ TEST(SampleLogs, GiveTableOneBack) {
     const auto published =
         mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
     const auto flights = test::batch(test::source_dir() / "logs", test::scratch_dir() / "out");
-    ASSERT_EQ(flights.size(), 6U;
+    ASSERT_EQ(flights.size(), 6U);
     const auto model = fit_of(flights);
     const flight::PerPhase<double> largest_rms_w{{0.10, 0.10, 0.30}};
     for (const auto phase : flight::all_phases) {

@@ -3,7 +3,7 @@
 
 #include "base/number.h"
 #include "helpers/generated_flights.h"
-#include "mechanical/validation_score.h"
+#include "mechanical/validation.h"
 
 #include <cmath>
 #include <cstdio>

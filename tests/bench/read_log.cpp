@@ -57,7 +57,7 @@ void print_memory(const std::filesystem::path& path) {
 
 int run(std::string_view pass, const std::filesystem::path& path) {
     if (pass == "energy") {
-        const auto log = read_telemetry(path, energy_messages());
+        const auto log = parse_energy(path, telemetry::DataFile(path).text());
         fmt::print("lines {} rows {}\n", log.lines, row_count(log));
     } else if (pass == "words") {
         const auto count = count_words(telemetry::DataFile(path).text());

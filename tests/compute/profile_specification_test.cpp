@@ -65,7 +65,7 @@ components = ["plain", "encryption"]
 TEST(ProfileSpecification, NamesTheRecordings) {
     const auto spec =
         parse("[sampler]\nfile = '{component}/{fps}.csv'\n[components.d]\nqos = { fps = [1, 2.5] }\n");
-    EXPECT_EQ(spec.sampler.kind, "recorded");
+    EXPECT_EQ(spec.sampler.kind, SamplerKind::recorded);
     EXPECT_EQ(spec.idle_s, 0.0);
     EXPECT_EQ(spec.components[0].configurations[1].recording, "dir/d/2.5.csv");
 }

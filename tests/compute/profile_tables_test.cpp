@@ -1,7 +1,7 @@
 #include "compute/profile_tables.h"
 
 #include "base/atomic_file.h"
-#include "compute/power_profile.h"
+#include "compute/compute_model.h"
 #include "compute/profile_reader.h"
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"

@@ -5,7 +5,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/number.h"
-#include "compute/powprofiler/power_recording.h"
+#include "compute/powprofiler/powprofiler_csv.h"
 #include "compute/profile_reader.h"
 #include "compute/profile_tables.h"
 #include "helpers/rejected.h"
@@ -87,8 +87,8 @@ TEST_F(Profiler, WritesLayersThatMissionsRead) {
     ProfileNaming names;
     names.parameters = {"w"};
     EXPECT_EQ(power_w(read_power_profile(folder / "out/powprofiler/load.csv", names), {4.0}), 4.0);
-    EXPECT_EQ(read_power_recording(folder / "out/powprofiler/layer1/load/w=3_repeat_1.csv").power_w.front(),
-              3.0);
+    const auto layer1 = read_csv(folder / "out/powprofiler/layer1/load/w=3_repeat_1.csv", CsvHeader::absent);
+    EXPECT_EQ(layer1_power_w(layer1).front(), 3.0);
     EXPECT_EQ(test::processes_with(folder.string()), 0);
 }
 

@@ -6,7 +6,7 @@
 #include "helpers/document.h"
 #include "helpers/test_paths.h"
 #include "mechanical/mechanical_model.h"
-#include "mission/disturbance_file.h"
+#include "mission/disturbance.h"
 #include "mission/mission_file.h"
 
 #include <algorithm>

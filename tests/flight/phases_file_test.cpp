@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "flight/load_flight.h"
-#include "flight/phase_statistics.h"
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 

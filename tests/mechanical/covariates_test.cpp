@@ -1,5 +1,6 @@
 #include "mechanical/covariates.h"
 
+#include "flight/segmentation.h"
 #include "helpers/sample_columns.h"
 
 #include <gtest/gtest.h>
@@ -27,6 +28,11 @@ TEST(CovariatesOf, TakesWhatWasKnownBeforeTheCruiseAndEarlyInIt) {
     EXPECT_EQ(covariates[Covariate::initial_voltage], 12.5);
     EXPECT_EQ(covariates[Covariate::wind], 3.0);
     EXPECT_FALSE(covariates[Covariate::airspeed]);
+}
+
+TEST(Covariate, IsFoundByItsName) {
+    for (const auto covariate : all_covariates) EXPECT_EQ(covariate_from(to_string(covariate)), covariate);
+    EXPECT_FALSE(covariate_from("height"));
 }
 
 }  // namespace

@@ -3,10 +3,12 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
-#include "mechanical/phase_curve.h"
+#include "mechanical/mechanical_model.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,7 +33,7 @@ std::vector<FlightSamples> made_up_flights(std::size_t count, double noise_w, un
 template <typename Error>
 std::string message_of(const std::vector<FlightSamples>& flights, const ModelFitOptions& options = {}) {
     try {
-        fit_mechanical_model(flights, options);
+        fit_model(flights, options).model;
     } catch (const Error& error) {
         return error.what();
     }
@@ -41,7 +43,7 @@ std::string message_of(const std::vector<FlightSamples>& flights, const ModelFit
 TEST(ModelFit, RegeneratesThePublishedModel) {
     const auto published = test::published_model();
     for (unsigned seed = 1; seed <= 10; ++seed) {
-        const auto model = fit_mechanical_model(made_up_flights(6, 0.2, seed));
+        const auto model = fit_model(made_up_flights(6, 0.2, seed)).model;
         EXPECT_LE(curve_rms_difference_w(model.phases[flight::Phase::takeoff],
                                          published.phases[flight::Phase::takeoff]),
                   0.10);
@@ -59,7 +61,7 @@ TEST(ModelFit, RegeneratesThePublishedModel) {
 
 TEST(ModelFit, RegeneratesEveryCoefficientOfExactFlights) {
     const auto published = test::published_model();
-    const auto model = fit_mechanical_model(made_up_flights(4, 0.0, 1));
+    const auto model = fit_model(made_up_flights(4, 0.0, 1)).model;
     for (const auto phase : flight::all_phases) {
         const auto& is = model.phases[phase].fourier;
         const auto& was = published.phases[phase].fourier;
@@ -74,7 +76,7 @@ TEST(ModelFit, RegeneratesEveryCoefficientOfExactFlights) {
 
 TEST(ModelFit, SaysHowItWasMade) {
     const auto flights = made_up_flights(3, 0.2, 2);
-    const auto model = fit_mechanical_model(flights, {.name = "made-up"});
+    const auto model = fit_model(flights, {.name = "made-up"}).model;
     EXPECT_EQ(model.name, "made-up");
     EXPECT_EQ(model.weighting, "agreement");
     EXPECT_EQ(model.description,
@@ -111,7 +113,7 @@ TEST(ModelFit, SaysHowItWasMade) {
 }
 
 TEST(ModelFit, IsReadBackFromItsFile) {
-    const auto text = to_toml(fit_mechanical_model(made_up_flights(2, 0.2, 3)));
+    const auto text = to_toml(fit_model(made_up_flights(2, 0.2, 3)).model);
     const auto path = test::scratch_dir() / "model.toml";
     write_file_atomically(path, text);
     EXPECT_EQ(to_toml(read_mechanical_model(path)), text);
@@ -120,7 +122,7 @@ TEST(ModelFit, IsReadBackFromItsFile) {
 TEST(ModelFit, AFlightMayLackAPhase) {
     auto flights = made_up_flights(3, 0.2, 4);
     flights[1].phases[flight::Phase::landing].reset();
-    const auto model = fit_mechanical_model(flights);
+    const auto model = fit_model(flights).model;
     EXPECT_EQ(model.phases[flight::Phase::landing].flights, 2U);
     EXPECT_EQ(model.phases[flight::Phase::cruise].flights, 3U);
     EXPECT_FALSE(model.flights[1].phases[flight::Phase::landing]);
@@ -129,9 +131,9 @@ TEST(ModelFit, AFlightMayLackAPhase) {
 
 TEST(ModelFit, TheOrderOfTheFlightsDoesNotMatter) {
     auto flights = made_up_flights(4, 0.1, 5);
-    const auto model = fit_mechanical_model(flights);
+    const auto model = fit_model(flights).model;
     std::reverse(flights.begin(), flights.end());
-    const auto turned = fit_mechanical_model(flights);
+    const auto turned = fit_model(flights).model;
     for (const auto phase : flight::all_phases) {
         EXPECT_NEAR(curve_rms_difference_w(model.phases[phase], turned.phases[phase]), 0.0, 1e-6);
         EXPECT_NEAR(model.flights[0].phases[phase]->weight, turned.flights[3].phases[phase]->weight, 1e-6);
@@ -143,7 +145,7 @@ TEST(ModelFit, WeightsByHandReachTheAverage) {
     ModelFitOptions options;
     options.weights = {Weighting::by_hand,
                        {{"flight1", {}, 1.0}, {"flight2", {}, 0.0}, {"flight2", flight::Phase::cruise, 3.0}}};
-    const auto model = fit_mechanical_model(flights, options);
+    const auto model = fit_model(flights, options).model;
     EXPECT_EQ(model.weighting, "by hand");
     EXPECT_EQ(model.phases[flight::Phase::takeoff].duration_s,
               flights[0].phases[flight::Phase::takeoff]->duration_s);
@@ -164,6 +166,44 @@ TEST(ModelFit, RefusesWhatHasNoAnswer) {
     flights[0].phases[flight::Phase::takeoff]->tau.resize(5);
     flights[0].phases[flight::Phase::takeoff]->power_w.resize(5);
     EXPECT_THAT(message_of<NoAnswerError>(flights), HasSubstr("flight 'flight1' has 5 samples in takeoff"));
+}
+
+/// Two cruises of 0.1 W noise; every 25th sample of the second, from the sixth on, is 8 W too high.
+std::vector<PhaseSamples> with_outliers() {
+    auto flights = test::record_flights(flight::Phase::cruise, 2, 0.1, 1);
+    flights[1].start_s = 1000.0;
+    for (std::size_t j = 5; j < flights[1].tau.size(); j += 25) flights[1].power_w[j] += 8.0;
+    return flights;
+}
+
+TEST(DownWeightedSamples, AreTheOutliersFirst) {
+    const auto flights = with_outliers();
+    const auto fit = fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber});
+    const auto found = down_weighted_samples(flights, fit);
+    const std::size_t outliers = (flights[1].tau.size() - 5 + 24) / 25;
+    ASSERT_GE(found.size(), outliers);
+    EXPECT_LE(found.size(), outliers + 40) << "of normal noise 0.7 % count less than half";
+    for (std::size_t i = 0; i < outliers; ++i) {
+        EXPECT_EQ(found[i].flight, "flight2");
+        EXPECT_NEAR(found[i].residual_w, 8.0, 0.5);
+        EXPECT_LT(found[i].weight, 0.05);
+        EXPECT_GT(found[i].log_time_s, 1000.0);
+    }
+}
+
+TEST(DownWeightedSamples, CountLessThanHalfAndRise) {
+    const auto flights = with_outliers();
+    const auto found =
+        down_weighted_samples(flights, fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber}));
+    ASSERT_FALSE(found.empty());
+    EXPECT_LT(found.back().weight, 0.5);
+    EXPECT_TRUE(std::is_sorted(found.begin(), found.end(),
+                               [](const auto& a, const auto& b) { return a.weight < b.weight; }));
+}
+
+TEST(DownWeightedSamples, AreNoneOfAPlainFit) {
+    const auto flights = with_outliers();
+    EXPECT_TRUE(down_weighted_samples(flights, fit_phase(flight::Phase::cruise, flights)).empty());
 }
 
 }  // namespace

@@ -29,11 +29,11 @@ TEST(OrderChoice, FindsTheOrderThatTheFlightsWereMadeOf) {
     for (const std::size_t order : {0U, 1U, 2U, 3U, 5U}) {
         const auto several = choose_order(flight::Phase::cruise, flights_of_order(order, 4, 1), {}, {});
         EXPECT_EQ(several.order, static_cast<int>(order)) << "leave one flight out";
-        EXPECT_EQ(several.how, "leave one flight out");
+        EXPECT_EQ(to_string(several.held_back), "leave one flight out");
         EXPECT_EQ(several.folds, 4U);
         const auto alone = choose_order(flight::Phase::cruise, flights_of_order(order, 1, 2), {}, {});
         EXPECT_EQ(alone.order, static_cast<int>(order)) << "blocks of time";
-        EXPECT_EQ(alone.how, "blocks of time");
+        EXPECT_EQ(to_string(alone.held_back), "blocks of time");
         EXPECT_EQ(alone.folds, 5U);
     }
 }

@@ -3,7 +3,7 @@
 #include "base/csv.h"
 #include "base/number.h"
 #include "helpers/made_up_flights.h"
-#include "mechanical/phase_curve.h"
+#include "mechanical/mechanical_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

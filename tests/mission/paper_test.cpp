@@ -3,7 +3,7 @@
 
 #include "base/csv.h"
 #include "helpers/paper_missions.h"
-#include "mission/comparison.h"
+#include "mission/simulation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "helpers/paper_missions.h"
 #include "mission/mission_file.h"
-#include "mission/planning/plan_rest.h"
+#include "mission/planning/planner.h"
 #include "mission/sampling/level_deviation.h"
 
 #include <chrono>

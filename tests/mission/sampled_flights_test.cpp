@@ -70,7 +70,7 @@ TEST(SampledFlights, AreTheSameForASeed) {
     EXPECT_EQ(first.final_soc_quantiles_percent, again.final_soc_quantiles_percent);
     EXPECT_NE(first.final_soc_mean_percent, sampled(mission, 500, 8).final_soc_mean_percent);
     // A flight depends on its number alone, not on how many there are or who flies it.
-    const auto spreads = spreads_of(mission);
+    const auto spreads = find_spreads(mission);
     EXPECT_EQ(draw_flight(mission, spreads, 7, 3).duration_s.values,
               draw_flight(mission, spreads, 7, 3).duration_s.values);
     EXPECT_NE(draw_flight(mission, spreads, 7, 3).duration_s.values,
@@ -113,7 +113,7 @@ TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
     mission.uncertainty.compute_sd_percent[0] = 2.0;
     EXPECT_TRUE(has_spread(mission));
     mission.uncertainty.capacity_sd_percent = 0.0;
-    const auto spreads = spreads_of(mission);
+    const auto spreads = find_spreads(mission);
     EXPECT_EQ(spreads.drawn, std::vector<std::string>{"power of detection (sd 2 %, stated)"});
     EXPECT_EQ(spreads.not_drawn.size(), 10U);
 }

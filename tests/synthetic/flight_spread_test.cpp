@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
-#include "mechanical/phase_curve.h"
+#include "mechanical/mechanical_model.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 #include "telemetry/data_file.h"
 
+#include "base/atomic_file.h"
 #include "helpers/rejected.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
@@ -76,6 +77,43 @@ TEST_F(RefusedFile, IsCutOff) {
         ASSERT_EQ(test::run_shell(tool + " -c x.data | head -c 5000 > cut.data", folder).code, 0) << tool;
         EXPECT_THAT(reading("cut.data"), StartsWith("cut.data: cannot be decompressed: ")) << tool;
     }
+}
+
+/// Text that compresses a little, and blanks that become blocks of one repeated byte, by frames of several kinds.
+class ZstdFrames : public RefusedFile {
+  protected:
+    std::string packed_by(const std::string& command) const {
+        std::string text(300000, ' ');
+        for (int i = 0; i < 30000; ++i) text += std::to_string(i * i % 9973) + "\n";
+        write("x", text);
+        EXPECT_EQ(test::run_shell(command + " > packed", folder).code, 0);
+        return read_file(folder / "packed");
+    }
+    std::string reading_of(const std::string& bytes) const {
+        write("bytes.data", bytes);
+        return reading("bytes.data");
+    }
+};
+
+TEST_F(ZstdFrames, AreWholeAtTheirEndsAlone) {
+    for (const auto* command :
+         {"zstd -c x", "zstd --no-check -c x", "cat x | zstd -19 -c", "head -c 10 x | zstd -c"}) {
+        const auto packed = packed_by(command);
+        EXPECT_EQ(reading_of(packed), "") << command;
+        for (std::size_t size = 4; size < packed.size(); size += 1 + packed.size() / 500) {
+            EXPECT_EQ(reading_of(packed.substr(0, size)),
+                      "bytes.data: cannot be decompressed: a zstd frame is cut off; is the file whole?")
+                << command << ", " << size;
+        }
+    }
+}
+
+TEST_F(ZstdFrames, MayFollowOneAnother) {
+    const std::string skippable("\x50\x2A\x4D\x18\x03\0\0\0abc", 11);
+    const auto packed = packed_by("zstd -c x") + skippable + packed_by("head -c 10 x | zstd -c");
+    EXPECT_EQ(reading_of(packed), "");
+    EXPECT_NE(reading_of(packed.substr(0, packed.size() - 1)), "");
+    EXPECT_NE(reading_of(packed + "x"), "");
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 #include "telemetry/telemetry_log.h"
 
-#include "base/error.h"
+#include "helpers/rejected.h"
 #include "helpers/test_paths.h"
+#include "telemetry/data_file.h"
 
 #include <cmath>
-#include <fstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -95,7 +96,6 @@ TEST(TelemetryLog, KeepsSendersApartAndReadsWindowsLineEnds) {
 TEST(TelemetryLog, KeepsSendersInTheOrderOfTheirFirstLine) {
     std::string text = "1 7 ENERGY 0 12. 0. 0. 0. 0.\n";
     for (int i = 2; i < 100; ++i) text += std::to_string(i) + " 20 GPS 1\n";
-    // Read message by message, the first of sender 3 comes before the first of sender 20.
     text += "100 20 PONG \n101 3 ENERGY 69 11.5 3. 34.5 0.1 0.2\n";
     const auto log = parse_telemetry(
         text, "x.data",
@@ -124,27 +124,18 @@ TEST(TelemetryLog, SurvivesEveryCutAndEveryChangedByte) {
     }
 }
 
-TEST(TelemetryLog, RefusesFilesWithoutTelemetry) {
-    const auto folder = test::scratch_dir();
-    const auto expect_error = [&](const std::filesystem::path& path, const std::string& message) {
-        try {
-            read_telemetry(path, energy);
-            FAIL() << path;
-        } catch (const InputError& error) {
-            EXPECT_THAT(error.what(), HasSubstr(message));
-        }
-    };
-    std::ofstream(folder / "rubbish.data", std::ios::binary) << std::string(
-        "\x7F"
-        "ELF\0\1 \2 \3\n\0\0\0 x y",
-        18);
-    expect_error(folder / "missing.data", "does not exist");
-    expect_error(folder / "rubbish.data", "holds no telemetry");
+TEST(TelemetryLog, RefusesTextsWithoutTelemetry) {
+    const std::string rubbish("\x7F\x45LF\0\1 \2 \3\n\0\0\0 x y", 18);
+    EXPECT_THAT(test::rejected([&] { read_telemetry(rubbish, "rubbish.data", std::nullopt, energy); }),
+                HasSubstr("holds no telemetry"));
 }
 
 TEST(TelemetryLog, ReadsTheRealLogs) {
     FLIGHTWATT_NEEDS_SHARED();
-    const auto log = read_telemetry(test::shared_dir() / "flights" / "20_07_05__10_26_44.data", energy);
+    const auto file = test::shared_dir() / "flights" / "20_07_05__10_26_44.data";
+    const DataFile data(file);
+    const auto configuration = read_log_configuration(find_log_file(file).value());
+    const auto log = read_telemetry(data.text(), file, configuration, energy);
     ASSERT_EQ(log.senders.size(), 1u);
     EXPECT_EQ(log.senders[0].id, "20");
     EXPECT_EQ(log.senders[0].table("ENERGY")->time_s.size(), 945u);

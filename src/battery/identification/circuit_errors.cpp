@@ -1,6 +1,5 @@
-#include "battery/identification/circuit_errors.h"
-
 #include "base/statistics.h"
+#include "battery/identification/circuit_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,16 +23,9 @@ struct Block {
 
 /// Rounding of a voltage that hardly moves is the same for the whole block; of one that does, it is noise.
 double common_rounding_v(const DischargeRecord& record, const std::vector<double>& voltages_v) {
-    double mean = 0.0;
-    double squares = 0.0;
-    double count = 0.0;
-    for (const double value : voltages_v) {
-        count += 1.0;
-        const double delta = value - mean;
-        mean += delta / count;
-        squares += delta * (value - mean);
-    }
-    const bool still = std::sqrt(squares / count) < record.resolution_v / 2.0;
+    const auto n = static_cast<double>(voltages_v.size());
+    const double variance = n > 1.0 ? sample_variance(voltages_v) * (n - 1.0) / n : 0.0;
+    const bool still = std::sqrt(variance) < record.resolution_v / 2.0;
     return still ? record.resolution_v / std::sqrt(12.0) : 0.0;  // of a uniform distribution
 }
 
@@ -67,9 +59,8 @@ std::vector<Block> blocks_of_records(std::span<const AlignedRecord> records) {
     std::vector<Block> blocks;
     Eigen::Index row = 0;
     for (const auto& [record, charge] : records) {
-        const auto count = std::count(record->used.begin(), record->used.end(), true);
-        blocks.push_back({row, count, 0.0});
-        row += count;
+        blocks.push_back({row, used_samples(*record), 0.0});
+        row += blocks.back().count;
     }
     return blocks;
 }
@@ -101,19 +92,17 @@ Eigen::VectorXd jackknife(const Eigen::MatrixXd& columns, const Eigen::VectorXd&
 
 /// How far the parameters move, in the order of the derivatives, if the curve has twice the segments.
 Eigen::VectorXd moved_by_finer_curve(std::span<const AlignedRecord> records, const CircuitFit& fit) {
-    std::vector<double> knots_ah;
-    for (std::size_t i = 0; i + 1 < fit.knots_ah.size(); ++i) {
+    std::vector<double> knots_ah{fit.knots_ah.front()};
+    for (std::size_t i = 1; i < fit.knots_ah.size(); ++i) {
+        knots_ah.push_back((fit.knots_ah[i - 1] + fit.knots_ah[i]) / 2.0);
         knots_ah.push_back(fit.knots_ah[i]);
-        knots_ah.push_back((fit.knots_ah[i] + fit.knots_ah[i + 1]) / 2.0);
     }
-    knots_ah.push_back(fit.knots_ah.back());
     const auto finer = fit_circuit(records, knots_ah);
     const auto knots = fit.knots_ah.size();
     const bool has_rc = fit.rc_resistance_ohm > 0.0;
     Eigen::VectorXd moved(static_cast<Eigen::Index>(has_rc ? knots + 3 : knots + 1));
-    for (std::size_t i = 0; i < knots; ++i) {
+    for (std::size_t i = 0; i < knots; ++i)
         moved[static_cast<Eigen::Index>(i)] = std::abs(finer.open_circuit_v[2 * i] - fit.open_circuit_v[i]);
-    }
     const auto k = static_cast<Eigen::Index>(knots);
     moved[k] = std::abs(finer.resistance_ohm - fit.resistance_ohm);
     if (has_rc) {
@@ -138,7 +127,7 @@ CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const Circu
     const auto in_time = blocks_of_time(records, errors.block_s);
     errors.blocks = in_time.size();
     const double degrees_of_freedom =
-        static_cast<double>(in_time.size()) - static_cast<double>(columns.cols());
+        static_cast<double>(errors.blocks) - static_cast<double>(columns.cols());
     Eigen::VectorXd half_width =
         jackknife(columns, fit.residual_v, in_time) * student_t_half_width(degrees_of_freedom);
     if (records.size() >= enough_records) {
@@ -148,18 +137,17 @@ CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const Circu
     half_width = half_width.cwiseQuotient(length) + moved_by_finer_curve(records, fit);
 
     const auto knots = static_cast<Eigen::Index>(fit.knots_ah.size());
-    for (Eigen::Index i = 0; i < knots; ++i) {
+    for (Eigen::Index i = 0; i < knots; ++i)
         errors.open_circuit_standard_error_v.push_back(half_width[i] / normal_half_width());
-    }
-    const auto around = [](double value, double half) { return Interval{value - half, value + half}; };
+    const auto around = [](double value, double half) {
+        return Interval{std::max(0.0, value - half), value + half};
+    };
     errors.resistance_ohm = around(fit.resistance_ohm, half_width[knots]);
     if (fit.rc_resistance_ohm > 0.0) {
         errors.rc_resistance_ohm = around(fit.rc_resistance_ohm, half_width[knots + 1]);
-        errors.rc_resistance_ohm.low = std::max(0.0, errors.rc_resistance_ohm.low);
         const double factor = std::exp(std::min(tells_nothing, half_width[knots + 2]));
         errors.rc_time_constant_s = {fit.rc_time_constant_s / factor, fit.rc_time_constant_s * factor};
     }
-    errors.resistance_ohm.low = std::max(0.0, errors.resistance_ohm.low);
     return errors;
 }
 

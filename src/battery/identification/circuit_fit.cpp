@@ -18,24 +18,17 @@ namespace {
 constexpr int grid_points = 48;
 constexpr double longest_part = 0.25;  // of a record: what is slower looks like the open-circuit voltage
 
-Eigen::Index used_samples(std::span<const AlignedRecord> records) {
-    Eigen::Index count = 0;
-    for (const auto& [record, charge] : records) {
-        count += std::count(record->used.begin(), record->used.end(), true);
-    }
-    return count;
-}
-
 /// A channel of the used samples, one after the other.
 template <typename Channel>
 Eigen::VectorXd gathered(std::span<const AlignedRecord> records, const Channel& channel) {
-    Eigen::VectorXd values(used_samples(records));
+    Eigen::Index samples = 0;
+    for (const auto& aligned : records) samples += used_samples(*aligned.record);
+    Eigen::VectorXd values(samples);
     Eigen::Index row = 0;
     for (const auto& aligned : records) {
         const auto& source = channel(aligned);
-        for (std::size_t i = 0; i < source.size(); ++i) {
+        for (std::size_t i = 0; i < source.size(); ++i)
             if (aligned.record->used[i]) values[row++] = source[i];
-        }
     }
     return values;
 }
@@ -65,7 +58,7 @@ Eigen::VectorXd settled(std::span<const AlignedRecord> records, double time_cons
     });
 }
 
-/// The time constants worth a look, as logarithms.
+/// The time constants to search, as logarithms.
 std::pair<double, double> time_constant_range(std::span<const AlignedRecord> records) {
     double longest_s = 0.0;
     std::vector<double> intervals;
@@ -141,9 +134,8 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
         columns.col(knots + 1) = -settled(records, std::exp(log_tau));
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-    if (qr.rank() < columns.cols()) {
+    if (qr.rank() < columns.cols())
         throw NoAnswerError("the flights do not determine the battery: charge and current vary too little");
-    }
     const Eigen::VectorXd solution = qr.solve(voltage_v);
     CircuitFit fit;
     fit.knots_ah = knots_ah;
@@ -153,9 +145,8 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
         fit.rc_resistance_ohm = solution[knots + 1];
         fit.rc_time_constant_s = std::exp(log_tau);
     }
-    if (!(fit.resistance_ohm > 0.0)) {
+    if (!(fit.resistance_ohm > 0.0))
         throw NoAnswerError("the voltage does not fall with the current: no series resistance is seen");
-    }
     fit.residual_v = voltage_v - columns * solution;
     fit.rms_v = std::sqrt(fit.residual_v.squaredNorm() / static_cast<double>(fit.residual_v.size()));
     return fit;
@@ -173,10 +164,6 @@ Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, cons
         -fit.rc_resistance_ohm *
         (settled(records, tau_s * std::exp(step)) - settled(records, tau_s * std::exp(-step))) / (2.0 * step);
     return columns;
-}
-
-double open_circuit_voltage_v(const CircuitFit& fit, double charge_ah) {
-    return interpolate_extended(fit.knots_ah, fit.open_circuit_v, charge_ah);
 }
 
 }  // namespace flightwatt::battery

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "battery/battery.h"
 #include "battery/identification/discharge_record.h"
 
 #include <span>
@@ -36,7 +37,20 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
 /// rc_resistance and the logarithm of rc_time_constant; the last two columns are absent without an RC pair.
 Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
-/// Open-circuit voltage [V] with this charge drawn; beyond the knots the nearest line goes on.
-double open_circuit_voltage_v(const CircuitFit& fit, double charge_ah);
+/// 95 % intervals of a fitted circuit.
+struct CircuitErrors {
+    Interval resistance_ohm;
+    Interval rc_resistance_ohm;   ///< not below 0
+    Interval rc_time_constant_s;  ///< symmetric in the logarithm
+    /// Half the knots' intervals over 1.96: what a normal distribution of the same interval has.
+    std::vector<double> open_circuit_standard_error_v;
+    std::size_t blocks = 0;  ///< of time, that the intervals rest on
+    double block_s = 0.0;
+};
+
+/// By the jackknife over blocks of time, and from three records on over whole records too (docs/methods.md). Two errors
+/// that residuals do not show come on top: rounding of a voltage that stands still, and how far a curve of twice the
+/// segments moves the parameter.
+CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
 }  // namespace flightwatt::battery

@@ -22,26 +22,7 @@ constexpr double idle_current_a = 1.0;   // more than electronics draw
 constexpr double fine_counter_a = 0.05;  // error of a mean current by the counter's resolution
 constexpr std::size_t least_samples = 50;
 
-/// What the record is made of, on the clock of the power samples; empty where not logged.
-struct Channels {
-    std::vector<double> time_s;
-    std::vector<double> voltage_v;
-    std::vector<double> current_a;
-    std::vector<double> charge_ah;
-    std::vector<double> throttle_percent;
-};
-
-Channels channels_of(const flight::FlightSeries& series) {
-    Channels channels;
-    channels.time_s = power_track(series).time_s;
-    channels.voltage_v = chosen_at(series, "voltage_v", channels.time_s);
-    channels.current_a = chosen_at(series, "current_a", channels.time_s);
-    channels.charge_ah = chosen_at(series, "charge_ah", channels.time_s);
-    channels.throttle_percent = chosen_at(series, "throttle_percent", channels.time_s);
-    return channels;
-}
-
-void require_channels(const flight::FlightSeries& series, const Channels& channels) {
+void require_channels(const flight::FlightSeries& series, const DischargeRecord& record) {
     const auto refuse = [&](const std::string& reason, const std::string& hint) {
         throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason), hint);
     };
@@ -52,36 +33,35 @@ void require_channels(const flight::FlightSeries& series, const Channels& channe
             "nothing of the battery",
             "use flights with a current sensor");
     }
-    if (channels.voltage_v.empty()) refuse("has no voltage", needed);
-    if (channels.current_a.empty()) refuse("has no current", needed);
-    if (channels.time_s.size() < least_samples) {
-        refuse(fmt::format("has {} samples, expected at least {}", channels.time_s.size(), least_samples),
+    if (record.voltage_v.empty()) refuse("has no voltage", needed);
+    if (record.current_a.empty()) refuse("has no current", needed);
+    if (record.time_s.size() < least_samples) {
+        refuse(fmt::format("has {} samples, expected at least {}", record.time_s.size(), least_samples),
                needed);
     }
     for (const auto& [name, values] :
-         {std::pair{"voltage", &channels.voltage_v}, {"current", &channels.current_a}}) {
+         {std::pair{"voltage", &record.voltage_v}, {"current", &record.current_a}}) {
         const auto [low, high] = std::minmax_element(values->begin(), values->end());
         if (*low == *high) refuse(fmt::format("its {} is {} throughout", name, *low), needed);
     }
-    if (*std::min_element(channels.voltage_v.begin(), channels.voltage_v.end()) <= 0.0) {
+    if (*std::ranges::min_element(record.voltage_v) <= 0.0)
         refuse("its voltage is not positive throughout", needed);
-    }
 }
 
 /// Charge drawn by the trapezoids of the current [Ah].
-std::vector<double> integrated_charge_ah(const Channels& channels) {
-    std::vector<double> charge(channels.time_s.size(), 0.0);
+std::vector<double> integrated_charge_ah(const DischargeRecord& record) {
+    std::vector<double> charge(record.time_s.size(), 0.0);
     for (std::size_t i = 1; i < charge.size(); ++i) {
-        const double mean_a = (channels.current_a[i - 1] + channels.current_a[i]) / 2.0;
+        const double mean_a = (record.current_a[i - 1] + record.current_a[i]) / 2.0;
         charge[i] =
-            charge[i - 1] + units::ah_from_coulomb(mean_a * (channels.time_s[i] - channels.time_s[i - 1]));
+            charge[i - 1] + units::ah_from_coulomb(mean_a * (record.time_s[i] - record.time_s[i - 1]));
     }
     return charge;
 }
 
 /// The least difference between two of the values that is none of rounding.
 double least_difference(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     double least = values.back() - values.front();
     constexpr double rounding = 1e-9;
     for (std::size_t i = 1; i < values.size(); ++i) {
@@ -91,41 +71,40 @@ double least_difference(std::vector<double> values) {
     return least;
 }
 
-bool has_counter(const Channels& channels) {
-    return !channels.charge_ah.empty() && channels.charge_ah.back() > channels.charge_ah.front();
-}
-
-void add_charge(const Channels& channels, DischargeRecord& record) {
-    const bool counted = has_counter(channels);
-    record.charge_ah = counted ? channels.charge_ah : integrated_charge_ah(channels);
-    for (auto& charge : record.charge_ah) charge -= counted ? channels.charge_ah.front() : 0.0;
+/// `counter_ah` is the on-board counter's charge, or empty.
+void add_charge(const std::vector<double>& counter_ah, DischargeRecord& record) {
+    const auto& time_s = record.time_s;
+    const bool counted = !counter_ah.empty() && counter_ah.back() > counter_ah.front();
+    record.charge_ah = counted ? counter_ah : integrated_charge_ah(record);
+    for (auto& charge : record.charge_ah) charge -= counted ? counter_ah.front() : 0.0;
     // A counter in whole mAh says little of a single interval, but bridges gaps.
-    const bool fine = counted && units::coulomb_from_ah(least_difference(channels.charge_ah)) <
-                                     fine_counter_a * flight::usual_interval_s(channels.time_s);
-    const double counted_from_s = fine ? 0.0 : flight::gap_threshold_s(channels.time_s);
-    record.mean_current_a = channels.current_a;
-    for (std::size_t i = 1; i < channels.time_s.size(); ++i) {
-        const double interval_s = channels.time_s[i] - channels.time_s[i - 1];
-        const double charge_ah = record.charge_ah[i] - record.charge_ah[i - 1];
-        record.mean_current_a[i] = counted && interval_s > counted_from_s
-                                       ? units::coulomb_from_ah(charge_ah) / interval_s
-                                       : (channels.current_a[i - 1] + channels.current_a[i]) / 2.0;
+    const bool fine = counted && units::coulomb_from_ah(least_difference(counter_ah)) <
+                                     fine_counter_a * flight::usual_interval_s(time_s);
+    const double counted_from_s = fine ? 0.0 : flight::gap_threshold_s(time_s);
+    record.mean_current_a = record.current_a;
+    for (std::size_t i = 1; i < time_s.size(); ++i) {
+        const double interval_s = time_s[i] - time_s[i - 1];
+        if (counted && interval_s > counted_from_s) {
+            const double charge_ah = record.charge_ah[i] - record.charge_ah[i - 1];
+            record.mean_current_a[i] = units::coulomb_from_ah(charge_ah) / interval_s;
+        } else {
+            record.mean_current_a[i] = (record.current_a[i - 1] + record.current_a[i]) / 2.0;
+        }
     }
 }
 
-/// Bursts of current that the motor did not draw.
-void mark_used(const Channels& channels, DischargeRecord& record) {
-    record.used.assign(channels.time_s.size(), true);
-    const auto& throttle = channels.throttle_percent;
-    if (throttle.empty() || *std::max_element(throttle.begin(), throttle.end()) < flight_throttle_percent) {
+/// Not used are bursts of current that the motor did not draw.
+void mark_used(const std::vector<double>& throttle_percent, DischargeRecord& record) {
+    record.used.assign(record.time_s.size(), true);
+    if (throttle_percent.empty() || *std::ranges::max_element(throttle_percent) < flight_throttle_percent)
         return;
-    }
-    for (std::size_t i = 0; i < throttle.size(); ++i) {
+    for (std::size_t i = 0; i < throttle_percent.size(); ++i) {
         record.used[i] =
-            throttle[i] > idle_throttle_percent || std::abs(channels.current_a[i]) <= idle_current_a;
+            throttle_percent[i] > idle_throttle_percent || std::abs(record.current_a[i]) <= idle_current_a;
     }
 }
 
+/// The upper one of an even number's two middle values: one that was measured.
 double median_of(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -134,20 +113,17 @@ double median_of(std::vector<double> values) {
 
 void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     double greatest_a = 0.0;
-    for (std::size_t i = 0; i < record.used.size(); ++i) {
+    for (std::size_t i = 0; i < record.used.size(); ++i)
         if (record.used[i]) greatest_a = std::max(greatest_a, record.current_a[i]);
-    }
     const double load_a = std::max(least_load_a, load_part * greatest_a);
     std::size_t end = 0;
     while (end < record.current_a.size() && record.current_a[end] < load_a) ++end;
     if (end == 0 || end == record.current_a.size()) {
-        throw InputError(
-            {series.file},
-            fmt::format("{}: {}", series.flight,
-                        end == 0 ? "its log does not begin at rest, so that its initial charge is "
-                                   "unknown"
-                                 : "nothing loads the battery"),
-            "a log that begins before take-off is needed");
+        const auto* const reason =
+            end == 0 ? "its log does not begin at rest, so that its initial charge is unknown"
+                     : "nothing loads the battery";
+        throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason),
+                         "a log that begins before take-off is needed");
     }
     std::vector<double> voltages_v;
     std::vector<double> currents_a;
@@ -162,19 +138,20 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
 }  // namespace
 
 DischargeRecord discharge_record(const flight::FlightSeries& series) {
-    const auto channels = channels_of(series);
-    require_channels(series, channels);
     DischargeRecord record;
     record.flight = series.flight;
-    record.time_s = channels.time_s;
-    record.voltage_v = channels.voltage_v;
-    record.current_a = channels.current_a;
-    add_charge(channels, record);
-    mark_used(channels, record);
+    record.time_s = power_track(series).time_s;
+    record.voltage_v = chosen_at(series, "voltage_v", record.time_s);
+    record.current_a = chosen_at(series, "current_a", record.time_s);
+    require_channels(series, record);
+    add_charge(chosen_at(series, "charge_ah", record.time_s), record);
+    mark_used(chosen_at(series, "throttle_percent", record.time_s), record);
     add_rest(series, record);
-    record.resolution_v = least_difference(channels.voltage_v);
+    record.resolution_v = least_difference(record.voltage_v);
     return record;
 }
+
+std::ptrdiff_t used_samples(const DischargeRecord& record) { return std::ranges::count(record.used, true); }
 
 std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s) {
     std::vector<double> settled(record.time_s.size(), record.resting_current_a);

@@ -22,15 +22,15 @@ struct DischargeRecord {
     double resolution_v = 0.0;           ///< least difference between two voltages
 };
 
-/// Takes the record from a flight. The charge is the on-board counter's, or the current's integral where
-/// there is none. The mean current between samples is the counter's, too, where it is fine enough, and across
-/// gaps (three usual intervals) in any case. The battery rests until the current first exceeds 15 % of its
-/// greatest; its resting voltage and current are the medians of the last 30 s of that. Samples with more than
-/// 1 A while the throttle idles are not used: the autopilot's current has bursts on the ground that the
-/// voltage knows nothing of. Throws InputError, naming the flight, where voltage or current is missing or
-/// constant, where the current was computed from throttle (then it says nothing of the battery), and where
-/// the log does not begin at rest.
+/// Takes the record from a flight. The charge is the on-board counter's, or the current's integral where there is none;
+/// so is the mean current where the counter is fine enough, and across gaps in any case. The battery rests until the
+/// current first exceeds 15 % of its greatest; its resting voltage and current are the medians of the last 30 s of
+/// that. Samples with more than 1 A while the throttle idles are not used: the autopilot's current has bursts on the
+/// ground that the voltage knows nothing of. Throws InputError, naming the flight, where voltage or current is missing
+/// or constant, where the current was computed from throttle, and where the log does not begin at rest.
 DischargeRecord discharge_record(const flight::FlightSeries& series);
+
+std::ptrdiff_t used_samples(const DischargeRecord& record);
 
 /// The current [A] that has settled in an RC pair of that time constant at every sample: the solution of
 /// tau dx/dt = I - x from the resting current on, exact for a current that is constant between samples.

@@ -1,9 +1,10 @@
 #include "battery/identification/open_circuit.h"
 
+#include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "battery/lipo_chart.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -11,6 +12,11 @@
 namespace flightwatt::battery {
 namespace {
 
+constexpr double greatest_cell_voltage_v = 4.25;
+constexpr std::array chart_soc_percent{0.0,  5.0,  10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0,
+                                       55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 90.0, 95.0, 100.0};
+constexpr std::array chart_cell_v{3.27, 3.61, 3.69, 3.71, 3.73, 3.75, 3.77, 3.79, 3.80, 3.82, 3.84,
+                                  3.85, 3.87, 3.91, 3.95, 3.98, 4.02, 4.08, 4.11, 4.15, 4.20};
 constexpr double empty_cell_v = 3.5;        // at rest: the chart's knee
 constexpr double least_part_percent = 3.0;  // of the chart: less tells no capacity
 constexpr double added_step_percent = 5.0;
@@ -22,16 +28,21 @@ double chart_capacity_ah(double drawn_ah, double cell_voltage_v) {
 
 }  // namespace
 
+double lipo_chart_voltage_v(double soc_percent) {
+    return interpolate_clamped(chart_soc_percent, chart_cell_v, soc_percent);
+}
+
+double lipo_chart_soc_percent(double cell_voltage_v) {
+    return interpolate_clamped(chart_cell_v, chart_soc_percent, cell_voltage_v);
+}
+
+int lipo_cells(double resting_voltage_v) {
+    return static_cast<int>(std::max(1.0, std::ceil(resting_voltage_v / greatest_cell_voltage_v)));
+}
+
 std::string to_string(CapacityOrigin origin) {
-    switch (origin) {
-        case CapacityOrigin::given:
-            return "given";
-        case CapacityOrigin::flown:
-            return "a flight drew all of it";
-        case CapacityOrigin::chart:
-            return "the LiPo chart";
-    }
-    return "";
+    constexpr std::array names{"given", "a flight drew all of it", "the LiPo chart"};
+    return names.at(static_cast<std::size_t>(origin));
 }
 
 Capacity capacity_of(const CircuitFit& fit, int cells, std::optional<double> given_ah) {

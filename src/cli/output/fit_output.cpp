@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "cli/output/json_text.h"
-#include "mechanical/down_weighted.h"
+#include "mechanical/model_fit.h"
 
 #include <algorithm>
 
@@ -180,7 +180,7 @@ void add_order_json(nlohmann::ordered_json& json, flight::Phase phase,
     }
     json["phases"][std::string(to_string(phase))]["order_choice"] = {{"order", choice.order},
                                                                      {"best", choice.best},
-                                                                     {"how", choice.how},
+                                                                     {"how", to_string(choice.held_back)},
                                                                      {"folds", choice.folds},
                                                                      {"errors", errors}};
 }
@@ -192,7 +192,8 @@ void note_order(const StageCall& call, flight::Phase phase, const mechanical::Or
         curve += fmt::format("{}{}: {}", curve.empty() ? "" : ", ", error.order, shown);
     }
     note(call, fmt::format("{}: order {} (least error: {}); RMS error [W] by order, {}, {} folds: {}",
-                           to_string(phase), choice.order, choice.best, choice.how, choice.folds, curve));
+                           to_string(phase), choice.order, choice.best, to_string(choice.held_back),
+                           choice.folds, curve));
     for (const auto& error : choice.errors) {
         if (!error.rms_w) note(call, fmt::format("order {}: {}", error.order, error.reason));
     }

@@ -2,8 +2,8 @@
 
 #include "cli/stage.h"
 #include "cli/terminal.h"
-#include "mission/disturbance_file.h"
-#include "mission/infeasibility_report.h"
+#include "mission/disturbance.h"
+#include "mission/feasibility_limits.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
 

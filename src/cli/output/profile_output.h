@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compute/leave_one_out.h"
+#include "compute/profile_interpolation.h"
 #include "compute/profile_tables.h"
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 
 #include "base/text_table.h"
 #include "mechanical/covariates.h"
-#include "mechanical/validation_score.h"
+#include "mechanical/validation.h"
 
 #include <string>
 #include <vector>

@@ -3,11 +3,9 @@
 #include "base/atomic_file.h"
 #include "base/number.h"
 #include "base/units.h"
-#include "compute/powprofiler/power_recording.h"
 #include "compute/qos_range.h"
 
-#include <algorithm>
-#include <string>
+#include <ranges>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -42,20 +40,13 @@ struct Property {
     std::string_view value;
 };
 
-Property split_at(std::size_t equals, std::string_view line, const Location& where) {
+/// Of a combination at the last '=': values hold none, file names may. Elsewhere it is the other way round.
+Property property_of(std::string_view line, bool is_combination, const Location& where) {
+    const auto equals = is_combination ? line.rfind('=') : line.find('=');
     if (equals == std::string_view::npos) {
         throw InputError(where, fmt::format("'{}' is neither [section] nor name=value", line));
     }
     return {trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1))};
-}
-
-/// Of a combination at the last '=': values hold none, file names may. Elsewhere it is the other way round.
-Property combination_of(std::string_view line, const Location& where) {
-    return split_at(line.rfind('='), line, where);
-}
-
-Property property_of(std::string_view line, const Location& where) {
-    return split_at(line.find('='), line, where);
 }
 
 void read_setting(const Property& property, const Location& where, PowprofilerConfig& config) {
@@ -141,25 +132,21 @@ std::string_view begin_section(std::string_view line, const Location& where, Pow
 PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path) {
     const auto content = read_file(path);
     PowprofilerConfig config;
-    config.sampling_hz = powprofiler_sampling_hz;
-    std::string_view rest = content;
     std::string_view section;
     Location where{path.string()};
-    while (!rest.empty()) {
-        const auto end = std::min(rest.find('\n'), rest.size());
-        auto line = rest.substr(0, end);
-        rest.remove_prefix(std::min(end + 1, rest.size()));
+    for (const auto& part : std::views::split(content, '\n')) {
+        const std::string_view whole(part.begin(), part.end());
+        const auto line = trimmed(whole.substr(0, whole.find('#')));
         ++where.line;
-        line = trimmed(line.substr(0, line.find('#')));
         if (line.empty()) continue;
         if (line.front() == '[' && line.back() == ']') {
             section = begin_section(line, where, config);
         } else if (section == component_section) {
-            read_component(property_of(line, where), where, config.components.back());
+            read_component(property_of(line, false, where), where, config.components.back());
         } else if (section == "[settings]") {
-            read_setting(property_of(line, where), where, config);
+            read_setting(property_of(line, false, where), where, config);
         } else if (section == "[combinations]") {
-            read_combination(combination_of(line, where), where, path.parent_path(), config);
+            read_combination(property_of(line, true, where), where, path.parent_path(), config);
         } else if (section.empty()) {
             throw InputError(where, fmt::format("'{}' stands before any [section]", line));
         } else {
@@ -175,10 +162,16 @@ PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path) {
     return config;
 }
 
-void require_combinations(const PowprofilerConfig& config, const std::filesystem::path& path) {
-    if (!config.combinations.empty()) return;
-    throw InputError({path.string()}, "has no [combinations], lines of file.csv=value,value",
-                     "[components] say how to profile, not what came out");
+void require_recordings(const PowprofilerConfig& config, const std::filesystem::path& path) {
+    if (config.combinations.empty()) {
+        throw InputError({path.string()}, "has no [combinations], lines of file.csv=value,value",
+                         "[components] say how to profile, not what came out");
+    }
+    for (const auto& combination : config.combinations) {
+        if (std::filesystem::exists(combination.recording)) continue;
+        throw InputError(combination.where,
+                         fmt::format("the recording {} does not exist", combination.recording.string()));
+    }
 }
 
 }  // namespace flightwatt::compute

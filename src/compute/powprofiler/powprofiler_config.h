@@ -31,7 +31,7 @@ struct PowprofilerComponent {
 
 /// A powprofiler configuration file: what to run, or what was recorded.
 struct PowprofilerConfig {
-    double sampling_hz = 0.0;  ///< [settings] frequency, or powprofiler's 10 Hz
+    double sampling_hz = 10.0;  ///< [settings] frequency, or what powprofiler samples at unless told
     std::vector<PowprofilerCombination> combinations;
     std::string combinations_name;  ///< the layer 2 that name= asks for, "m2l.csv"
     std::vector<PowprofilerComponent> components;
@@ -43,7 +43,7 @@ struct PowprofilerConfig {
 /// a line that is none of these, and for combinations with different numbers of values.
 PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path);
 
-/// Throws InputError if the file has no [combinations].
-void require_combinations(const PowprofilerConfig& config, const std::filesystem::path& path);
+/// Throws InputError if the file has no [combinations], or one of their recordings does not exist.
+void require_recordings(const PowprofilerConfig& config, const std::filesystem::path& path);
 
 }  // namespace flightwatt::compute

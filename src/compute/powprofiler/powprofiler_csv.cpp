@@ -69,4 +69,21 @@ std::optional<PowprofilerColumns> powprofiler_columns(const CsvTable& table) {
     return PowprofilerColumns{power->second, parameter_columns(column_of, {table.file, header.line})};
 }
 
+std::vector<double> layer1_power_w(const CsvTable& table) {
+    const auto columns = powprofiler_columns(table);
+    if (!columns || !columns->parameters.empty()) {
+        throw InputError({table.file, table.rows.front().line},
+                         "is no powprofiler layer 1, whose first row is 100,101,102",
+                         columns ? "flags from 200 are QoS parameters: this is a layer 2" : "");
+    }
+    std::vector<double> power_w;
+    for (std::size_t i = 1; i < table.rows.size(); ++i) {
+        power_w.push_back(cell_number(table, table.rows[i], columns->power));
+    }
+    if (power_w.empty()) {
+        throw InputError({table.file, table.rows.front().line}, "has a header and no samples");
+    }
+    return power_w;
+}
+
 }  // namespace flightwatt::compute

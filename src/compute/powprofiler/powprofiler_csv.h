@@ -2,7 +2,6 @@
 
 #include "base/csv.h"
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -20,5 +19,9 @@ struct PowprofilerColumns {
 /// The columns of a table that was read without header; std::nullopt if its first row is no row of flags.
 /// Throws InputError if the flags hold no total power, one flag twice, or parameters with a gap.
 std::optional<PowprofilerColumns> powprofiler_columns(const CsvTable& table);
+
+/// The total power [W] of a layer 1 that was read without header: one configuration over time, at equal steps.
+/// Throws InputError for another header, no samples, or a cell that is no number.
+std::vector<double> layer1_power_w(const CsvTable& table);
 
 }  // namespace flightwatt::compute

@@ -1,10 +1,9 @@
-// powprofiler's .cfg as a profile's specification.
-
 #include "compute/powprofiler/powprofiler_config.h"
 #include "compute/profile_specification.h"
 #include "compute/qos_range.h"
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -19,11 +18,9 @@ std::vector<std::string> shell_words(const std::string& line) {
         return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
                std::string_view(" _./,:+@%=-").find(c) != std::string_view::npos;
     };
-    if (!std::all_of(line.begin(), line.end(), is_plain)) return {"/bin/sh", "-c", line};
-    std::istringstream text(line);
-    std::vector<std::string> words;
-    for (std::string word; text >> word;) words.push_back(word);
-    return words;
+    if (!std::ranges::all_of(line, is_plain)) return {"/bin/sh", "-c", line};
+    std::istringstream words(line);
+    return {std::istream_iterator<std::string>(words), {}};
 }
 
 /// The command line at a combination of the ranges.
@@ -54,15 +51,12 @@ ProfiledComponent profiled(const PowprofilerComponent& written) {
 ProfiledComponent profiled_combinations(const PowprofilerConfig& config, const std::filesystem::path& path) {
     auto name = std::filesystem::path(config.combinations_name).stem().string();
     if (name.empty()) name = path.stem().string();
+    require_recordings(config, path);
     ProfiledComponent component{name, {}, {}, {}};
     for (std::size_t i = 1; i <= config.combinations.front().qos.size(); ++i) {
         component.parameters.push_back(fmt::format("qos_{}", i));
     }
     for (const auto& combination : config.combinations) {
-        if (!std::filesystem::exists(combination.recording)) {
-            throw InputError(combination.where,
-                             fmt::format("the recording {} does not exist", combination.recording.string()));
-        }
         component.configurations.push_back({combination.qos, {}, combination.recording});
     }
     return component;
@@ -83,16 +77,15 @@ ProfileSpecification read_powprofiler_specification(const std::filesystem::path&
             throw InputError(config.components.front().where,
                              "the file has [combinations] and components to run", "keep them in two files");
         }
-        specification.sampler.kind = "recorded";
+        specification.sampler.kind = SamplerKind::recorded;
         specification.idle_s = 0.0;
         specification.components.push_back(profiled_combinations(config, path));
         return specification;
     }
     for (const auto& component : config.components) {
-        for (const auto& other : specification.components) {
-            if (other.name == component.name) {
-                throw InputError(component.where, fmt::format("a second component '{}'", other.name));
-            }
+        const auto& others = specification.components;
+        if (std::ranges::find(others, component.name, &ProfiledComponent::name) != others.end()) {
+            throw InputError(component.where, fmt::format("a second component '{}'", component.name));
         }
         specification.components.push_back(profiled(component));
     }

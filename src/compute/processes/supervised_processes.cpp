@@ -2,11 +2,11 @@
 
 #include "base/error.h"
 #include "base/signal_watch.h"
-#include "compute/processes/supervisor.h"
 
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <optional>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,7 +16,6 @@
 namespace flightwatt::compute {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 std::optional<Event> next_event(int events) {
     Event event;
     while (true) {
@@ -40,7 +39,7 @@ std::string to_string(const EndedCommand& ended) {
 }
 
 SupervisedProcesses::SupervisedProcesses(const std::vector<std::vector<std::string>>& commands,
-                                         const Options& options) {
+                                         const SupervisionOptions& options) {
     int ends[2] = {-1, -1};
     if (::pipe2(ends, O_CLOEXEC) != 0) {
         throw OutputError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
@@ -72,7 +71,7 @@ std::vector<EndedCommand> SupervisedProcesses::ended() {
             report_ = event->report;
             continue;
         }
-        const Clock::time_point time{std::chrono::nanoseconds(event->time_ns)};
+        const std::chrono::steady_clock::time_point time{std::chrono::nanoseconds(event->time_ns)};
         const bool started = event->kind == Event::Kind::ended;
         // Of one that cannot be started the exit code follows, and is of no interest.
         all.push_back({event->command, started ? 0 : event->status, started ? event->status : 0, time});

@@ -1,12 +1,10 @@
 #pragma once
 
+#include "compute/processes/supervisor.h"
+
 #include <chrono>
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
-
-#include <sys/types.h>
 
 namespace flightwatt::compute {
 
@@ -21,13 +19,6 @@ struct EndedCommand {
 /// "exit code 3", "killed by SIGSEGV", "cannot be started: No such file or directory".
 std::string to_string(const EndedCommand& ended);
 
-/// What was found when the commands were ended.
-struct EndReport {
-    std::size_t others = 0;  ///< processes that were alive beside the commands themselves
-    bool killed = false;     ///< SIGTERM was not enough
-    std::size_t left = 0;    ///< processes that not even SIGKILL ended
-};
-
 /// Commands (no shell) that run at the same time, each in a process group of its own, below a supervisor: a
 /// process of ours that adopts whatever they fork, also what takes itself away with setsid(). When this
 /// object goes, or the program ends in whatever way, the supervisor ends all of them: SIGTERM first, SIGKILL
@@ -35,13 +26,8 @@ struct EndReport {
 /// processes or files.
 class SupervisedProcesses {
   public:
-    struct Options {
-        int output = -1;  ///< an open file for what the commands print
-        int errors = -1;  ///< and for what they say
-        std::chrono::milliseconds patience{2000};
-    };
-
-    SupervisedProcesses(const std::vector<std::vector<std::string>>& commands, const Options& options);
+    SupervisedProcesses(const std::vector<std::vector<std::string>>& commands,
+                        const SupervisionOptions& options);
     ~SupervisedProcesses();
     SupervisedProcesses(const SupervisedProcesses&) = delete;
     SupervisedProcesses& operator=(const SupervisedProcesses&) = delete;

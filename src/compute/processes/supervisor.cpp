@@ -1,11 +1,15 @@
 #include "compute/processes/supervisor.h"
 
-#include "compute/processes/process_tree.h"
+#include "base/number.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -16,10 +20,47 @@ namespace flightwatt::compute {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using namespace std::chrono_literals;
 
-constexpr int cannot_execute = 127;  // what a shell exits with then
-constexpr auto kill_patience = 5s;   // after SIGKILL only the kernel can delay an end
+/// Of each process: the child, and whether it lives.
+std::multimap<::pid_t, std::pair<::pid_t, bool>> children_by_parent() {
+    std::multimap<::pid_t, std::pair<::pid_t, bool>> children;
+    std::error_code gone;  // a process may end while we look
+    for (std::filesystem::directory_iterator it("/proc", gone), end; it != end; it.increment(gone)) {
+        const auto pid = parse_unsigned(it->path().filename().string());
+        if (!pid) continue;
+        std::ifstream file(it->path() / "stat");
+        std::string stat;
+        if (!std::getline(file, stat, '\0')) continue;
+        // "PID (name) state parent ..."; the name may hold blanks and brackets.
+        std::istringstream fields(stat.substr(std::min(stat.rfind(')'), stat.size() - 1) + 1));
+        char state = 'Z';
+        ::pid_t parent = 0;
+        fields >> state >> parent;
+        children.emplace(parent, std::pair(static_cast<::pid_t>(*pid), state != 'Z' && state != 'X'));
+    }
+    return children;
+}
+
+/// The living processes below `root` (children, their children, ...), from /proc. Zombies are not among them.
+/// What a process forked away with setsid() is still below the nearest ancestor that is a subreaper.
+std::vector<::pid_t> descendants_of(::pid_t root) {
+    const auto children = children_by_parent();
+    std::vector<::pid_t> found;
+    std::vector<::pid_t> open{root};
+    while (!open.empty()) {
+        const auto [first, last] = children.equal_range(open.back());
+        open.pop_back();
+        for (auto child = first; child != last; ++child) {
+            const auto& [pid, lives] = child->second;
+            open.push_back(pid);
+            if (lives) found.push_back(pid);
+        }
+    }
+    return found;
+}
+
+constexpr int cannot_execute = 127;               // what a shell exits with then
+constexpr std::chrono::seconds kill_patience(5);  // after SIGKILL only the kernel can delay an end
 
 void tell(int events, Event event) {
     event.time_ns =
@@ -29,7 +70,7 @@ void tell(int events, Event event) {
 }
 
 [[noreturn]] void become(const std::vector<std::string>& words, std::uint32_t command,
-                         const SupervisedProcesses::Options& options, int events) {
+                         const SupervisionOptions& options, int events) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // should the supervisor itself be killed
     const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -41,7 +82,6 @@ void tell(int events, Event event) {
     sigemptyset(&none);
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
     std::vector<char*> arguments;
-    arguments.reserve(words.size() + 1);
     for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     ::execvp(arguments.front(), arguments.data());
@@ -53,7 +93,7 @@ class Supervisor {
   public:
     Supervisor(int events, std::chrono::milliseconds patience) : events_(events), patience_(patience) {}
 
-    void start(const std::vector<std::string>& words, const SupervisedProcesses::Options& options) {
+    void start(const std::vector<std::string>& words, const SupervisionOptions& options) {
         const auto child = ::fork();
         const auto command = static_cast<std::uint32_t>(commands_.size());
         if (child == 0) become(words, command, options, events_);
@@ -92,7 +132,7 @@ class Supervisor {
                 // Anew every time: they may fork on while they are being killed.
                 for (const auto pid : descendants_of(::getpid())) ::kill(pid, SIGKILL);
             }
-            wait_for_child(10ms);
+            wait_for_child(std::chrono::milliseconds(10));
         }
         report.left = descendants_of(::getpid()).size();
         return report;
@@ -114,8 +154,8 @@ class Supervisor {
 
 }  // namespace
 
-void supervise(const std::vector<std::vector<std::string>>& commands,
-               const SupervisedProcesses::Options& options, int events, ::pid_t parent) {
+void supervise(const std::vector<std::vector<std::string>>& commands, const SupervisionOptions& options,
+               int events, ::pid_t parent) {
     ::setpgid(0, 0);  // Ctrl-C on the terminal is the profiler's to answer
     sigset_t awaited;
     sigemptyset(&awaited);

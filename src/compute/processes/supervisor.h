@@ -1,11 +1,27 @@
 #pragma once
 
-#include "compute/processes/supervised_processes.h"
-
+#include <chrono>
 #include <cstdint>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
 
 /// The process between the profiler and the commands that it runs.
 namespace flightwatt::compute {
+
+struct SupervisionOptions {
+    int output = -1;  ///< an open file for what the commands print
+    int errors = -1;  ///< and for what they say
+    std::chrono::milliseconds patience{2000};
+};
+
+/// What was found when the commands were ended.
+struct EndReport {
+    std::size_t others = 0;  ///< processes that were alive beside the commands themselves
+    bool killed = false;     ///< SIGTERM was not enough
+    std::size_t left = 0;    ///< processes that not even SIGKILL ended
+};
 
 /// What the supervisor tells through its pipe; smaller than PIPE_BUF, so written whole.
 struct Event {
@@ -20,6 +36,6 @@ struct Event {
 /// Starts the commands, adopts what they fork, tells of each that ends, and on SIGTERM, or when `parent` is
 /// gone, ends all of them. To be called in a forked process.
 [[noreturn]] void supervise(const std::vector<std::vector<std::string>>& commands,
-                            const SupervisedProcesses::Options& options, int events, ::pid_t parent);
+                            const SupervisionOptions& options, int events, ::pid_t parent);
 
 }  // namespace flightwatt::compute

@@ -4,6 +4,7 @@
 #include "compute/profiling/run_statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <limits>
@@ -58,7 +59,7 @@ class Watch {
     }
 
     ComponentRun run() {
-        while (!is_over()) {
+        while (!over_at_ && Clock::now() < limit()) {
             wait();
             take_ends();
             take_readings();
@@ -73,7 +74,7 @@ class Watch {
                ticks(timing_.duration_s ? timing_.warm_up_s + *timing_.duration_s : timing_.timeout_s);
     }
 
-    bool is_over() const { return over_at_ || Clock::now() >= limit(); }
+    Clock::time_point end() const { return std::min(over_at_.value_or(limit()), limit()); }
 
     void wait() {
         const auto until = std::min(next_, limit());
@@ -100,14 +101,13 @@ class Watch {
     }
 
     void take_readings() {
-        // A sensor is asked on a fixed grid of times; moments that were missed are left out, not caught up.
+        // A sensor is asked on a fixed grid of times; moments that were missed are not caught up.
         const bool asks = frame_.sampler->file() < 0;
         if (asks && Clock::now() < next_) return;
         while (next_ <= Clock::now()) next_ += ticks(frame_.interval_s);
         for (const auto& reading : frame_.sampler->read()) {
             const double time_s = seconds(reading.time - start_);
-            const auto end = std::min(over_at_.value_or(limit()), limit());
-            if (time_s < timing_.warm_up_s || reading.time > end) continue;
+            if (time_s < timing_.warm_up_s || reading.time > end()) continue;
             if (!run_.trace.time_s.empty() && time_s <= run_.trace.time_s.back()) continue;
             run_.trace.time_s.push_back(time_s);
             run_.trace.power_w.push_back(reading.power_w);
@@ -116,8 +116,7 @@ class Watch {
 
     void finish() {
         if (run_.status == RunStatus::not_started) return;
-        const auto end = std::min(over_at_.value_or(limit()), limit());
-        run_.duration_s = std::max(0.0, seconds(end - start_) - timing_.warm_up_s);
+        run_.duration_s = std::max(0.0, seconds(end() - start_) - timing_.warm_up_s);
         const bool ended_first = over_at_ && *over_at_ < limit();
         if (!run_.note.empty()) {
             run_.status = RunStatus::failed;
@@ -155,34 +154,19 @@ void note_ending(const EndReport& report, bool ended_by_itself, ComponentRun& ru
 
 }  // namespace
 
-std::string to_string(RunStatus status) {
-    switch (status) {
-        case RunStatus::ok:
-            return "ok";
-        case RunStatus::failed:
-            return "failed";
-        case RunStatus::ended_early:
-            return "ended_early";
-        case RunStatus::timed_out:
-            return "timed_out";
-        case RunStatus::not_started:
-            return "not_started";
-        case RunStatus::no_samples:
-            return "no_samples";
-    }
-    return "?";
+std::string_view to_string(RunStatus status) {
+    constexpr std::array<std::string_view, 6> names{"failed",      "ended_early", "timed_out",
+                                                    "not_started", "no_samples",  "ok"};
+    return names[static_cast<std::size_t>(status)];
 }
 
 ComponentRun run_component(const std::vector<std::vector<std::string>>& commands, const ProfileTiming& timing,
                            const RunFrame& frame) {
     if (commands.empty()) return Watch(Clock::now(), nullptr, timing, frame).run();
     const OutputFile output(frame.output);
-    SupervisedProcesses::Options options;
-    options.output = output.file();
-    options.errors = output.file();
-    options.patience = std::chrono::duration_cast<std::chrono::milliseconds>(ticks(frame.patience_s));
+    const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(ticks(frame.patience_s));
     const auto start = Clock::now();  // before, or a late start of ours would make theirs look short
-    SupervisedProcesses processes(commands, options);
+    SupervisedProcesses processes(commands, {output.file(), output.file(), patience});
     auto run = Watch(start, &processes, timing, frame).run();
     const bool by_itself =
         run.status != RunStatus::timed_out && (run.status != RunStatus::ok || !timing.duration_s);

@@ -7,13 +7,14 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace flightwatt::compute {
 
 /// What became of a run. Only `ok` has power.
 enum class RunStatus { failed, ended_early, timed_out, not_started, no_samples, ok };
 
-std::string to_string(RunStatus status);
+std::string_view to_string(RunStatus status);
 
 /// The power of a configuration while it ran once.
 struct ComponentRun {

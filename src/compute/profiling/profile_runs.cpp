@@ -17,17 +17,13 @@
 namespace flightwatt::compute {
 namespace {
 
-constexpr const char* header =
-    "component,configuration,repeat,status,note,samples,duration_s,power_w,standard_error_w,energy_j,"
-    "interval_mean_s,interval_sd_s,interval_max_s,layer1,fingerprint\n";
-
 /// Of everything in the specification that decides what a run measures; not of programs' files, nor of the
 /// order of the runs.
 std::string fingerprint_of(const SamplerSettings& sampler, const ProfileTiming& timing,
                            const ProfiledConfiguration& configuration) {
     Fingerprint fingerprint;
     const auto add = [&](const std::string& text) { fingerprint.add(text); };
-    add(sampler.kind);
+    add(std::string(to_string(sampler.kind)));
     add(sampler.sysfs.string());
     add(fmt::format("{} {} {}", sampler.interval_s, fmt::join(sampler.rails, "\n"),
                     fmt::join(sampler.command, "\n")));
@@ -39,7 +35,7 @@ std::string fingerprint_of(const SamplerSettings& sampler, const ProfileTiming& 
 }
 
 std::string layer1_name(const std::string& component, std::string configuration, std::size_t repeat) {
-    std::replace(configuration.begin(), configuration.end(), ' ', '_');
+    std::ranges::replace(configuration, ' ', '_');
     return fmt::format("layer1/{}/{}{}repeat_{}.csv", component, configuration,
                        configuration.empty() ? "" : "_", repeat);
 }
@@ -61,64 +57,48 @@ std::string key_of(const std::string& component, const std::string& configuratio
     return fmt::format("{}\n{}\n{}", component, configuration, repeat);
 }
 
-/// What an earlier call said of a run.
-struct Record {
-    std::string status;
-    std::string note;
-    std::string fingerprint;
-    std::string duration_s;
-};
+/// What an earlier call said of a run, by column.
+using Record = std::map<std::string, std::string>;
 
 std::map<std::string, Record> read_records(const std::filesystem::path& folder) {
     std::map<std::string, Record> records;
     std::error_code none;
     if (!std::filesystem::exists(folder / runs_name, none)) return records;
     const auto table = read_csv(folder / runs_name);
-    const auto column = [&](std::string_view name) { return column_index(table, name); };
-    const auto component = column("component");
-    const auto configuration = column("configuration");
-    const auto repeat = column("repeat");
-    const auto status = column("status");
-    const auto note = column("note");
-    const auto fingerprint = column("fingerprint");
-    const auto duration = column("duration_s");
     for (const auto& row : table.rows) {
-        const auto text = [&](std::size_t index) { return row.cells[index].text; };
-        records[key_of(text(component), text(configuration), text(repeat))] = {
-            text(status), text(note), text(fingerprint), text(duration)};
+        Record record;
+        for (std::size_t i = 0; i < row.cells.size(); ++i) record[table.columns[i]] = row.cells[i].text;
+        records[key_of(record["component"], record["configuration"], record["repeat"])] = record;
     }
     return records;
 }
 
 /// Whether the run could be taken over from its record and its layer 1.
-bool recall(ProfileRun& run, const Record& record, const std::filesystem::path& folder) {
-    const auto duration_s = parse_number(record.duration_s);
-    if (record.fingerprint != run.fingerprint || record.status != to_string(RunStatus::ok) || !duration_s) {
+bool recall(ProfileRun& run, Record& record, const std::filesystem::path& folder) {
+    const auto duration_s = parse_number(record["duration_s"]);
+    if (record["fingerprint"] != run.fingerprint || record["status"] != to_string(RunStatus::ok) ||
+        !duration_s) {
         return false;
     }
     run.trace = read_power_trace(folder / run.layer1, std::nullopt);
     run.estimate = estimate_run(run.trace, *duration_s);
     run.status = RunStatus::ok;
-    run.note = record.note;
+    run.note = record["note"];
     return true;
 }
 
-std::string row_of(const ProfileRun& run) {
-    auto row = fmt::format("{},{},{},{},{}", run.component, csv_cell(run.configuration), run.repeat,
-                           to_string(run.status), csv_cell(run.note));
-    if (run.status == RunStatus::ok) {
-        const auto jitter = jitter_of({run.trace});
-        row += fmt::format(",{},{:.6f},{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{}", run.estimate.samples,
-                           run.estimate.duration_s, run.estimate.power_w,
-                           std::isfinite(run.estimate.standard_error_w)
-                               ? fmt::format("{:.6f}", run.estimate.standard_error_w)
-                               : "",
-                           run.estimate.energy_j, jitter.mean_s, jitter.sd_s, jitter.max_s,
-                           csv_cell(run.layer1));
-    } else {
-        row += ",,,,,,,,,";
-    }
-    return row + "," + run.fingerprint + "\n";
+void add_row(CsvWriter& csv, const ProfileRun& run) {
+    const bool has_power = run.status == RunStatus::ok;
+    const auto& estimate = run.estimate;
+    const auto jitter = jitter_of({run.trace});
+    const auto number = [&](double value) {
+        return has_power && std::isfinite(value) ? fmt::format("{:.6f}", value) : "";
+    };
+    csv.add(run.component, run.configuration, run.repeat, to_string(run.status), run.note,
+            has_power ? std::optional(estimate.samples) : std::nullopt, number(estimate.duration_s),
+            number(estimate.power_w), number(estimate.standard_error_w), number(estimate.energy_j),
+            number(jitter.mean_s), number(jitter.sd_s), number(jitter.max_s), has_power ? run.layer1 : "",
+            run.fingerprint);
 }
 
 }  // namespace
@@ -181,11 +161,13 @@ void write_layer1(const ProfileRun& run, const std::filesystem::path& folder) {
 }
 
 void write_runs(const std::vector<ProfileRun>& runs, const std::filesystem::path& folder) {
-    std::string text = header;
+    CsvWriter csv({"component", "configuration", "repeat", "status", "note", "samples", "duration_s",
+                   "power_w", "standard_error_w", "energy_j", "interval_mean_s", "interval_sd_s",
+                   "interval_max_s", "layer1", "fingerprint"});
     for (const auto& run : runs) {
-        if (run.is_done) text += row_of(run);
+        if (run.is_done) add_row(csv, run);
     }
-    write_file_atomically(folder / runs_name, text);
+    write_file_atomically(folder / runs_name, csv.text());
 }
 
 }  // namespace flightwatt::compute

@@ -5,7 +5,6 @@
 #include "compute/profiling/run_statistics.h"
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #include "compute/profiling/run_statistics.h"
 
+#include "base/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,11 +18,7 @@ std::vector<double> intervals_of(const PowerTrace& run) {
     return intervals_s;
 }
 
-double mean_of(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// 1 + 2 sum rho: how many samples of the series are worth one independent one; at least 1.
+/// 1 + 2 sum rho: how many samples of the series count as one independent one; at least 1.
 double correlation_time(const std::vector<double>& deviations) {
     const auto covariance = [&](std::size_t lag) {
         double sum = 0.0;
@@ -40,11 +38,11 @@ double correlation_time(const std::vector<double>& deviations) {
 
 double standard_error_of(const std::vector<double>& values) {
     if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
-    const double mean = mean_of(values);
+    const double average = mean(values);
     std::vector<double> deviations;
     double squares = 0.0;
     for (const double value : values) {
-        deviations.push_back(value - mean);
+        deviations.push_back(value - average);
         squares += deviations.back() * deviations.back();
     }
     const auto n = static_cast<double>(values.size());
@@ -60,7 +58,7 @@ SamplingJitter jitter_of(const std::vector<PowerTrace>& runs) {
         all.insert(all.end(), intervals.begin(), intervals.end());
     }
     if (all.empty()) return {};
-    SamplingJitter jitter{mean_of(all), 0.0, *std::max_element(all.begin(), all.end())};
+    SamplingJitter jitter{mean(all), 0.0, std::ranges::max(all)};
     for (const double interval : all) jitter.sd_s += (interval - jitter.mean_s) * (interval - jitter.mean_s);
     jitter.sd_s = std::sqrt(jitter.sd_s / static_cast<double>(all.size()));
     return jitter;
@@ -69,17 +67,11 @@ SamplingJitter jitter_of(const std::vector<PowerTrace>& runs) {
 PowerEstimate estimate_run(const PowerTrace& run, double duration_s) {
     auto weights = intervals_of(run);
     auto sorted = weights;
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     weights.insert(weights.begin(), sorted.empty() ? 1.0 : sorted[sorted.size() / 2]);
-    PowerEstimate estimate;
-    estimate.power_w = std::inner_product(weights.begin(), weights.end(), run.power_w.begin(), 0.0) /
-                       std::accumulate(weights.begin(), weights.end(), 0.0);
-    estimate.standard_error_w = standard_error_of(run.power_w);
-    estimate.duration_s = duration_s;
-    estimate.energy_j = estimate.power_w * duration_s;
-    estimate.samples = run.power_w.size();
-    estimate.repeats = 1;
-    return estimate;
+    const double power_w = std::inner_product(weights.begin(), weights.end(), run.power_w.begin(), 0.0) /
+                           std::accumulate(weights.begin(), weights.end(), 0.0);
+    return {power_w, standard_error_of(run.power_w), duration_s, power_w * duration_s, run.power_w.size(), 1};
 }
 
 PowerEstimate combine_repeats(const std::vector<PowerEstimate>& repeats) {

@@ -2,7 +2,6 @@
 
 #include "compute/sensors/power_trace.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace flightwatt::compute {

@@ -1,13 +1,11 @@
-#include "compute/sensors/command_sampler.h"
-
 #include "base/number.h"
 #include "compute/processes/supervised_processes.h"
+#include "compute/sensors/open_sampler.h"
 
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
-#include <string_view>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -33,10 +31,10 @@ class Meter {
 
     std::vector<PowerReading> read() {
         std::vector<PowerReading> readings;
-        drain(readings);
+        take_output(readings);
         const auto ended = running_ ? running_->ended() : std::vector<EndedCommand>();
         if (!ended.empty()) {
-            drain(readings);  // what it printed before it ended
+            take_output(readings);  // what it printed before it ended
             require_success(ended.front());
             stop();
         }
@@ -58,12 +56,9 @@ class Meter {
         started_ = Clock::now();
         lines_ = 0;
         pending_.clear();
-        SupervisedProcesses::Options options;
-        options.output = ends[1];
-        options.errors = STDERR_FILENO;
-        options.patience = std::chrono::milliseconds(500);  // it has nothing to put in order
-        running_ =
-            std::make_unique<SupervisedProcesses>(std::vector<std::vector<std::string>>{command_}, options);
+        constexpr std::chrono::milliseconds patience(500);  // it has nothing to put in order
+        running_.emplace(std::vector<std::vector<std::string>>{command_},
+                         SupervisionOptions{ends[1], STDERR_FILENO, patience});
         ::close(ends[1]);
     }
 
@@ -80,7 +75,7 @@ class Meter {
                             (lines_ == 0 ? ", without a reading" : ""));
     }
 
-    void drain(std::vector<PowerReading>& readings) {
+    void take_output(std::vector<PowerReading>& readings) {
         if (output_ < 0) return;
         std::array<char, 4096> buffer;
         while (true) {
@@ -111,7 +106,7 @@ class Meter {
 
     std::vector<std::string> command_;
     double interval_s_;
-    std::unique_ptr<SupervisedProcesses> running_;
+    std::optional<SupervisedProcesses> running_;
     int output_ = -1;
     Clock::time_point started_;
     std::string pending_;    ///< the beginning of a line
@@ -123,7 +118,7 @@ class Meter {
 PowerSampler open_command_sampler(const SamplerSettings& settings) {
     auto meter = std::make_shared<Meter>(settings);
     PowerSampler sampler;
-    sampler.kind = "command";
+    sampler.kind = SamplerKind::command;
     sampler.source = fmt::format("{}", fmt::join(settings.command, " "));
     sampler.read = [meter] { return meter->read(); };
     sampler.file = [meter] { return meter->file(); };

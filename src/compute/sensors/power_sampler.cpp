@@ -1,9 +1,8 @@
 #include "compute/sensors/power_sampler.h"
 
-#include "compute/sensors/command_sampler.h"
-#include "compute/sensors/energy_counters.h"
-#include "compute/sensors/power_rail.h"
-#include "compute/sensors/sensor_rails.h"
+#include "base/toml_numbers.h"
+
+#include <algorithm>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,95 +10,67 @@
 namespace flightwatt::compute {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+/// In the order of SamplerKind; the last one is another name for two of the others, and is not advertised.
+const std::vector<std::string_view> kind_names{"auto",         "ina3221-iio", "ina3221-hwmon", "rapl",
+                                               "power_supply", "command",     "recorded",      "ina3221"};
 
-struct Sensor {
-    std::string kind;
-    std::vector<PowerRail> rails;         ///< either
-    std::vector<EnergyCounter> counters;  ///< or
-
-    std::vector<std::string> names() const {
-        std::vector<std::string> all;
-        for (const auto& rail : rails) all.push_back(rail.name);
-        for (const auto& counter : counters) all.push_back(counter.name);
-        return all;
+SamplerKind kind_of(const TomlTable& table) {
+    const auto name = table.optional_string("kind");
+    if (!name) {
+        return table.has("command") ? SamplerKind::command
+               : table.has("file")  ? SamplerKind::recorded
+                                    : SamplerKind::automatic;
     }
-};
-
-std::vector<Sensor> probe(const std::filesystem::path& sysfs) {
-    return {{"ina3221-iio", iio_rails(sysfs), {}},
-            {"ina3221-hwmon", hwmon_rails(sysfs), {}},
-            {"rapl", {}, energy_counters(sysfs)},
-            {"power_supply", power_supply_rails(sysfs), {}}};
+    if (const auto kind = sampler_kind_from(*name)) return *kind;
+    const std::vector<std::string> names(kind_names.begin(), kind_names.end() - 1);
+    const auto near = nearest_word(*name, names);
+    throw InputError(table.where("kind"), fmt::format("there is no sampler '{}'", *name),
+                     near.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
+                                  : fmt::format("did you mean '{}'?", near));
 }
 
-/// The middle of the time that the reading took.
-template <typename Read>
-PowerReading stamped(const Read& read) {
-    const auto before = Clock::now();
-    const double power_w = read();
-    return {before + (Clock::now() - before) / 2, power_w};
-}
-
-PowerSampler sampler_of_rails(const Sensor& sensor, const std::vector<std::string>& wanted) {
-    std::vector<PowerRail> chosen;
-    std::vector<std::string> sources;
-    for (const auto index : rails_of_total(sensor.names(), wanted)) {
-        chosen.push_back(sensor.rails[index]);
-        sources.push_back(fmt::format("{} ({})", chosen.back().name, chosen.back().source));
-    }
-    PowerSampler sampler;
-    sampler.kind = sensor.kind;
-    sampler.source = fmt::format("{}", fmt::join(sources, " + "));
-    sampler.read = [chosen] {
-        return std::vector<PowerReading>{stamped([&] {
-            double power_w = 0.0;
-            for (const auto& rail : chosen) power_w += rail.read();
-            return power_w;
-        })};
-    };
-    return sampler;
-}
-
-PowerSampler sampler_of(const Sensor& sensor, const std::vector<std::string>& wanted) {
-    return sensor.counters.empty() ? sampler_of_rails(sensor, wanted)
-                                   : sampler_of_counters(sensor.counters, wanted);
-}
-
-std::vector<std::string> lines_of(const std::vector<Sensor>& sensors) {
-    std::vector<std::string> lines;
-    for (const auto& sensor : sensors) {
-        if (sensor.names().empty()) continue;
-        lines.push_back(fmt::format("{}: {}", sensor.kind, fmt::join(sensor.names(), ", ")));
-    }
-    return lines;
-}
-
-/// "ina3221" stands for either way to it.
-bool is_asked_for(const std::string& kind, const Sensor& sensor) {
-    return kind == "auto" || kind == sensor.kind || (kind == "ina3221" && sensor.kind.starts_with("ina3221"));
+/// A setting of another kind of sampler would do nothing.
+void refuse_foreign_key(const TomlTable& table, std::string_view key, SamplerKind kind,
+                        SamplerKind its_kind) {
+    if (!table.has(key) || kind == its_kind) return;
+    throw InputError(table.where(key), fmt::format("{} belongs to the sampler '{}', not to '{}'", key,
+                                                   to_string(its_kind), to_string(kind)));
 }
 
 }  // namespace
 
-PowerSampler open_sampler(const SamplerSettings& settings) {
-    if (settings.kind == "command") return open_command_sampler(settings);
-    std::error_code none;
-    const auto inner = settings.sysfs / "sys";
-    const auto sysfs = std::filesystem::is_directory(inner, none) ? inner : settings.sysfs;
-    const auto sensors = probe(sysfs);
-    for (const auto& sensor : sensors) {
-        if (!is_asked_for(settings.kind, sensor) || sensor.names().empty()) continue;
-        auto sampler = sampler_of(sensor, settings.rails);
-        sampler.found = lines_of(sensors);
-        return sampler;
+std::string_view to_string(SamplerKind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
+
+std::optional<SamplerKind> sampler_kind_from(std::string_view name) {
+    const auto found = std::ranges::find(kind_names, name);
+    if (found == kind_names.end()) return std::nullopt;
+    return static_cast<SamplerKind>(found - kind_names.begin());
+}
+
+SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesystem::path& folder) {
+    SamplerSettings settings;
+    settings.folder = folder;
+    settings.where = root.where();
+    const auto given = root.optional_table("sampler");
+    if (!given) return settings;
+    const auto& table = *given;
+    table.refuse_keys_except({"kind", "interval_s", "rails", "command", "file", "idle_file", "sysfs"});
+    settings.where = table.where();
+    settings.kind = kind_of(table);
+    settings.interval_is_given = table.has("interval_s");
+    settings.interval_s = number_in_or(more_than(0.0), table, "interval_s", settings.interval_s);
+    if (table.has("rails")) settings.rails = table.strings("rails");
+    if (const auto sysfs = table.optional_string("sysfs")) settings.sysfs = settings.folder / *sysfs;
+    refuse_foreign_key(table, "command", settings.kind, SamplerKind::command);
+    refuse_foreign_key(table, "file", settings.kind, SamplerKind::recorded);
+    refuse_foreign_key(table, "idle_file", settings.kind, SamplerKind::recorded);
+    if (settings.kind == SamplerKind::command) {
+        settings.command = table.strings("command");
+        if (settings.command.empty()) throw InputError(table.where("command"), "an empty command");
     }
-    throw NoAnswerError(fmt::format(
-        "there is no {} below {} that can be read; looked for INA3221 (bus/i2c/drivers/ina3221*, bus/iio, "
-        "class/hwmon), RAPL (class/powercap, often for root alone) and class/power_supply; a [sampler] of "
-        "kind "
-        "\"command\" reads any other meter",
-        settings.kind == "auto" ? "power sensor" : "sensor of kind " + settings.kind, sysfs.string()));
+    if (settings.kind == SamplerKind::recorded) settings.file = table.string("file");
+    settings.idle_file = table.optional_string("idle_file").value_or("");
+    return settings;
 }
 
 }  // namespace flightwatt::compute

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "base/error.h"
+#include "base/toml_reader.h"
 
 #include <chrono>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::compute {
@@ -17,9 +18,25 @@ struct PowerReading {
     double power_w = 0.0;
 };
 
+/// `automatic` stands for the first sensor that is there, in this order; `ina3221` for either way to it.
+enum class SamplerKind {
+    automatic,
+    ina3221_iio,
+    ina3221_hwmon,
+    rapl,
+    power_supply,
+    command,
+    recorded,
+    ina3221
+};
+
+/// "auto", "ina3221-iio" and so on.
+std::string_view to_string(SamplerKind kind);
+std::optional<SamplerKind> sampler_kind_from(std::string_view name);
+
 /// Something that tells the power of this computer.
 struct PowerSampler {
-    std::string kind;                ///< one of sampler_kinds
+    SamplerKind kind = SamplerKind::recorded;
     std::string source;              ///< what it reads, for people: "VDD_IN (/sys/...)"
     std::vector<std::string> found;  ///< what probing found, a line a sensor
     /// The readings since the last call: of a sensor the one that it shows now, of a program those that it
@@ -31,24 +48,20 @@ struct PowerSampler {
 
 /// How power is to be sampled.
 struct SamplerSettings {
-    std::string kind = "auto";
+    SamplerKind kind = SamplerKind::automatic;
     std::filesystem::path sysfs = "/sys";
     double interval_s = 0.1;
     bool interval_is_given = false;
     std::vector<std::string> rails;    ///< those that add up to the total; empty: chosen by their names
-    std::vector<std::string> command;  ///< of kind "command": a program that prints watts, a number a line
+    std::vector<std::string> command;  ///< a program that prints watts, a number a line
     std::filesystem::path folder;      ///< that recordings and their idle one are relative to
-    std::string file;                  ///< of kind "recorded": with {component} and {parameter}s in it
+    std::string file;                  ///< recordings: with {component} and {parameter}s in it
     std::string idle_file;             ///< the recording of the idle computer
     Location where;
 };
 
-/// "auto" and what it may stand for, in the order in which it tries, and those that are only taken by name.
-inline const std::vector<std::string> sampler_kinds{"auto",         "ina3221-iio", "ina3221-hwmon", "rapl",
-                                                    "power_supply", "command",     "recorded"};
-
-/// Opens a live sampler: by name, or the first that probing finds. A sysfs root that holds a folder sys/ (a
-/// recorded tree) is entered there. Throws NoAnswerError if there is none, saying where it was looked for.
-PowerSampler open_sampler(const SamplerSettings& settings);
+/// The [sampler] of a profile's specification, or what it is by default; `folder` is what its paths are relative
+/// to. Throws InputError.
+SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesystem::path& folder);
 
 }  // namespace flightwatt::compute

@@ -3,10 +3,14 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "compute/powprofiler/power_recording.h"
+#include "base/number.h"
+#include "base/units.h"
 #include "compute/powprofiler/powprofiler_csv.h"
-#include "compute/sensors/tegrastats.h"
+#include "compute/sensors/power_rails.h"
 
+#include <ctime>
+#include <iomanip>
+#include <regex>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -14,13 +18,66 @@
 namespace flightwatt::compute {
 namespace {
 
-void refuse_stamps_that_do_not_rise(const PowerTrace& trace, const CsvTable& table) {
-    for (std::size_t i = 1; i < trace.time_s.size(); ++i) {
-        if (trace.time_s[i] > trace.time_s[i - 1]) continue;
-        throw InputError({table.file, table.rows[i].line},
-                         fmt::format("time_s = {} follows {}", trace.time_s[i], trace.time_s[i - 1]),
-                         "the time stamps of a recording rise");
+/// Name, power now, average. What is no power either has another unit ("RAM 2448/7850MB") or no slash.
+const std::regex& rail_pattern() {
+    static const std::regex pattern(R"((\w+) (\d+)(?:mW)?/\d+(?:mW)?(?=\s|$))");
+    return pattern;
+}
+
+/// The date that newer versions begin a line with, in seconds of the epoch.
+std::optional<double> date_s(const std::string& line) {
+    std::tm date{};
+    std::istringstream text(line);
+    if (!(text >> std::get_time(&date, "%m-%d-%Y %H:%M:%S"))) return std::nullopt;
+    return static_cast<double>(::timegm(&date));
+}
+
+double total_w(const std::string& line, const Location& where) {
+    std::vector<std::string> names;
+    std::vector<double> power_mw;
+    for (std::sregex_iterator it(line.begin(), line.end(), rail_pattern()), end; it != end; ++it) {
+        names.push_back((*it)[1].str());
+        power_mw.push_back(number_or_nan((*it)[2].str()));
     }
+    double total_mw = 0.0;
+    for (const auto rail : rails_of_total(names, {})) total_mw += power_mw[rail];
+    if (!names.empty()) return units::watt_from_milliwatt(total_mw);
+    throw InputError(where, "has no rail with its power, 'VDD_IN 4936mW/4936mW'",
+                     "keep tegrastats' lines whole");
+}
+
+/// A line has a rail with power now and on average, "VDD_IN 4936mW/4936mW" or, from older boards,
+/// "POM_5V_IN 2545/2600".
+bool is_tegrastats(const std::string& line) { return std::regex_search(line, rail_pattern()); }
+
+/// The rail that carries everything, or the sum of those that add up (rails_of_total). Times are those of the date
+/// column, "11-21-2022 13:41:31", from the first line on, whole seconds; with `interval_s`, lines are that apart.
+PowerTrace trace_of_tegrastats(const std::string& text, const std::string& file,
+                               std::optional<double> interval_s) {
+    PowerTrace trace;
+    std::optional<double> first_date_s;
+    std::istringstream lines(text);
+    std::string line;
+    Location where{file};
+    while (std::getline(lines, line)) {
+        ++where.line;
+        if (line.empty() || line.front() == '#') continue;
+        const auto now_s = date_s(line);
+        if (!first_date_s) first_date_s = now_s;
+        if (!interval_s && !now_s) {
+            throw InputError(where, "has no date and no interval is given",
+                             "give the sampler's interval_s, tegrastats --interval");
+        }
+        const double time_s =
+            interval_s ? static_cast<double>(trace.time_s.size()) * *interval_s : *now_s - *first_date_s;
+        if (!trace.time_s.empty() && time_s <= trace.time_s.back()) {
+            throw InputError(where, "its date is not after the line before",
+                             "dates count whole seconds: give the sampler's interval_s");
+        }
+        trace.time_s.push_back(time_s);
+        trace.power_w.push_back(total_w(line, where));
+    }
+    return trace;
 }
 
 PowerTrace trace_of_csv(const CsvTable& table) {
@@ -28,11 +85,16 @@ PowerTrace trace_of_csv(const CsvTable& table) {
     const auto power = column_index(table, "power_w");
     PowerTrace trace;
     for (const auto& row : table.rows) {
-        trace.time_s.push_back(cell_number(table, row, time));
+        const double time_s = cell_number(table, row, time);
+        if (!trace.time_s.empty() && time_s <= trace.time_s.back()) {
+            throw InputError({table.file, row.line},
+                             fmt::format("time_s = {} follows {}", time_s, trace.time_s.back()),
+                             "the time stamps of a recording rise");
+        }
+        trace.time_s.push_back(time_s);
         trace.power_w.push_back(cell_number(table, row, power));
     }
     if (trace.time_s.empty()) throw InputError({table.file}, "has a header and no samples");
-    refuse_stamps_that_do_not_rise(trace, table);
     return trace;
 }
 
@@ -41,7 +103,7 @@ PowerTrace trace_of_layer1(const CsvTable& table, std::optional<double> interval
         throw InputError({table.file}, "has no time stamps", "give the sampler's interval_s");
     }
     PowerTrace trace;
-    trace.power_w = power_recording_from(table, 1.0 / *interval_s).power_w;
+    trace.power_w = layer1_power_w(table);
     for (std::size_t i = 0; i < trace.power_w.size(); ++i) {
         trace.time_s.push_back(static_cast<double>(i) * *interval_s);
     }
@@ -65,7 +127,7 @@ PowerTrace read_power_trace(const std::filesystem::path& path, std::optional<dou
     const auto file = path.string();
     const auto first = first_line(text);
     // tegrastats knows no header, and its lines no comma at their places.
-    if (is_tegrastats(first)) return parse_tegrastats(text, file, interval_s);
+    if (is_tegrastats(first)) return trace_of_tegrastats(text, file, interval_s);
     if (first.find("time_s") != std::string::npos) return trace_of_csv(parse_csv(text, file));
     const auto table = parse_csv(text, file, CsvHeader::absent);
     if (powprofiler_columns(table)) return trace_of_layer1(table, interval_s);

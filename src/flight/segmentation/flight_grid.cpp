@@ -1,9 +1,10 @@
 #include "flight/segmentation/flight_grid.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "base/units.h"
 #include "flight/chosen_track.h"
-#include "flight/track.h"
+#include "flight/flight_series.h"
 
 #include <algorithm>
 #include <array>
@@ -63,8 +64,7 @@ FlightGrid make_grid(const FlightSeries& series) {
     const auto count = static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
     std::vector<double> time_s(count);
     for (std::size_t i = 0; i < count; ++i) time_s[i] = grid.time_s(i);
-    altitude.value =
-        without_spikes<3>(altitude.value);  // on its own clock, before it is spread over the grid
+    altitude.value = without_spikes<3>(altitude.value);  // on its own clock, before the grid's
     grid.altitude_m = without_spikes<5>(resample(altitude, time_s));
     // As it was when power was sampled: the clock that throttle is asked for on everywhere.
     if (const auto throttle = chosen_at(series, "throttle_percent", power.time_s); !throttle.empty()) {
@@ -122,9 +122,7 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
 double median_altitude_m(const FlightGrid& grid, GridSpan span) {
     std::vector<double> values(grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(span.begin),
                                grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(span.end));
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return upper_median(std::move(values));
 }
 
 }  // namespace flightwatt::flight

@@ -1,6 +1,6 @@
 #include "flight/sources/power_source.h"
 
-#include "flight/track.h"
+#include "flight/flight_series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,25 +10,30 @@
 namespace flightwatt::flight {
 namespace {
 
-const Track* find_source(const FlightSeries& series, std::string_view name, std::string_view source) {
-    const auto found = std::find_if(series.tracks.begin(), series.tracks.end(), [&](const Track& track) {
-        return track.name == name && track.source == source;
-    });
+/// The first candidate of power that `accept` takes; nullptr if there is none.
+template <typename Accept>
+const Track* find_power(const FlightSeries& series, Accept&& accept) {
+    const auto found = std::ranges::find_if(
+        series.tracks, [&](const Track& track) { return track.name == "power_w" && accept(track); });
     return found == series.tracks.end() ? nullptr : &*found;
+}
+
+const Track* find_source(const FlightSeries& series, std::string_view source) {
+    return find_power(series, [&](const Track& track) { return track.source == source; });
 }
 
 /// Voltage times current of one message; nullptr if it lacks one of them.
 const Track* find_product(const FlightSeries& series, std::string_view message) {
-    const auto found = std::find_if(series.tracks.begin(), series.tracks.end(), [&](const Track& track) {
-        return track.name == "power_w" && track.source.starts_with(message) &&
-               track.source.find(" * ") != std::string::npos && track.device.empty();
+    return find_power(series, [&](const Track& track) {
+        return track.source.starts_with(message) && track.source.find(" * ") != std::string::npos &&
+               track.device.empty();
     });
-    return found == series.tracks.end() ? nullptr : &*found;
 }
 
-bool has_message(const FlightSeries& series, std::string_view message) {
-    return std::any_of(series.tracks.begin(), series.tracks.end(), [&](const Track& track) {
-        return track.source.starts_with(message) && track.source.substr(message.size()).starts_with(".");
+/// A track that no message of a log names: a user's CSV, which is believed.
+const Track* plain_power(const FlightSeries& series) {
+    return find_power(series, [](const Track& track) {
+        return track.device.empty() && track.source.find('.') == std::string::npos;
     });
 }
 
@@ -84,27 +89,19 @@ bool take(const Track& candidate, PowerChoice& choice) {
 /// The field ENERGY.power, wherever it stands in the message.
 Track energy_power(const FlightSeries& series) {
     if (energy_and_power_are_exchanged(series)) {
-        auto track = *find_source(series, "power_w", energy_read_as_power);
+        auto track = *find_source(series, energy_read_as_power);
         track.source = "ENERGY.power";
         return track;
     }
-    const auto* track = find_source(series, "power_w", "ENERGY.power");
+    const auto* track = find_source(series, "ENERGY.power");
     return track == nullptr ? Track{} : *track;
-}
-
-/// A track that no message of a log names: a user's CSV, which is believed.
-const Track* plain_power(const FlightSeries& series) {
-    const auto found = std::find_if(series.tracks.begin(), series.tracks.end(), [](const Track& track) {
-        return track.name == "power_w" && track.device.empty() && track.source.find('.') == std::string::npos;
-    });
-    return found == series.tracks.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
 bool energy_and_power_are_exchanged(const FlightSeries& series) {
-    const auto* as_read = find_source(series, "power_w", "ENERGY.power");
-    const auto* other = find_source(series, "power_w", energy_read_as_power);
+    const auto* as_read = find_source(series, "ENERGY.power");
+    const auto* other = find_source(series, energy_read_as_power);
     const auto* product = find_product(series, "ENERGY.");
     if (as_read == nullptr || other == nullptr || product == nullptr) return false;
     const auto exchanged = samples_near(*other, *product);
@@ -146,7 +143,8 @@ PowerChoice choose_power(const FlightSeries& series) {
         }
     }
     if (product != nullptr && take(*product, choice)) return choice;
-    if (has_message(series, "BAT")) {
+    const auto is_bat = [](const Track& track) { return track.source.starts_with("BAT."); };
+    if (std::ranges::any_of(series.tracks, is_bat)) {
         const auto* bat = find_product(series, "BAT.");
         if (bat == nullptr) choice.passed_over.emplace_back("BAT has no current");
         if (bat != nullptr && take(*bat, choice)) return choice;

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/toml_reader.h"
-#include "mechanical/phase_curve.h"
 
 #include <algorithm>
 #include <array>
@@ -22,11 +21,9 @@ constexpr double most_times_exact = 1e3;
 /// Curves that differ by less than this part of their size are equal.
 constexpr double equal_level = 1e-9;
 
-constexpr std::array weighting_names{
-    std::pair(Weighting::uniform, std::string_view("uniform")),
-    std::pair(Weighting::inverse_variance, std::string_view("inverse-variance")),
-    std::pair(Weighting::agreement, std::string_view("agreement")),
-    std::pair(Weighting::by_hand, std::string_view("by hand"))};
+/// In the order of Weighting.
+constexpr std::array<std::string_view, 4> weighting_names{"uniform", "inverse-variance", "agreement",
+                                                          "by hand"};
 
 std::vector<double> normalised(std::vector<double> weights) {
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -35,8 +32,7 @@ std::vector<double> normalised(std::vector<double> weights) {
 }
 
 std::vector<double> by_variance(const PhaseFit& fit) {
-    double largest = 0.0;
-    for (const auto& flight : fit.flights) largest = std::max(largest, flight.rms_w);
+    const double largest = std::ranges::max_element(fit.flights, {}, &FlightCurve::rms_w)->rms_w;
     std::vector<double> weights;
     for (const auto& flight : fit.flights) {
         const auto samples = static_cast<double>(flight.samples);
@@ -73,15 +69,14 @@ std::vector<double> disagreements(const PhaseFit& fit) {
 }
 
 std::vector<double> by_agreement(const PhaseFit& fit) {
-    const auto count = static_cast<double>(fit.flights.size());
-    std::vector<double> equal(fit.flights.size(), 1.0 / count);
-    if (fit.flights.size() <= 2) return equal;
+    const auto count = fit.flights.size();
+    std::vector<double> equal(count, 1.0 / static_cast<double>(count));
+    if (count <= 2) return equal;
     const auto distances = disagreements(fit);
     double usual = median(distances);
     if (usual == 0.0) usual = mean(distances);
     if (usual == 0.0) return equal;
     std::vector<double> weights;
-    weights.reserve(distances.size());
     for (const double distance : distances) weights.push_back(usual / (distance + usual));
     return normalised(std::move(weights));
 }
@@ -104,7 +99,7 @@ double weight_by_hand(const std::string& flight, flight::Phase phase,
 std::vector<double> by_hand(const PhaseFit& fit, flight::Phase phase, const std::vector<HandWeight>& given) {
     std::vector<double> weights;
     for (const auto& flight : fit.flights) weights.push_back(weight_by_hand(flight.flight, phase, given));
-    if (std::none_of(weights.begin(), weights.end(), [](double weight) { return weight > 0.0; })) {
+    if (std::ranges::none_of(weights, [](double weight) { return weight > 0.0; })) {
         throw UsageError(fmt::format(
             "every flight's weight by hand is 0 in {}; at least one must be positive", to_string(phase)));
     }
@@ -114,14 +109,13 @@ std::vector<double> by_hand(const PhaseFit& fit, flight::Phase phase, const std:
 }  // namespace
 
 std::string_view to_string(Weighting weighting) {
-    return weighting_names[static_cast<std::size_t>(weighting)].second;
+    return weighting_names[static_cast<std::size_t>(weighting)];
 }
 
 std::optional<Weighting> weighting_from(std::string_view name) {
-    for (const auto& [weighting, text] : weighting_names) {
-        if (text == name) return weighting;
-    }
-    return std::nullopt;
+    const auto found = std::ranges::find(weighting_names, name);
+    if (found == weighting_names.end()) return std::nullopt;
+    return static_cast<Weighting>(found - weighting_names.begin());
 }
 
 void check_weights(const WeightOptions& options, std::span<const std::string> flights) {
@@ -130,7 +124,7 @@ void check_weights(const WeightOptions& options, std::span<const std::string> fl
                                      to_string(options.weighting)));
     }
     for (auto weight = options.by_hand.begin(); weight != options.by_hand.end(); ++weight) {
-        if (std::find(flights.begin(), flights.end(), weight->flight) == flights.end()) {
+        if (std::ranges::find(flights, weight->flight) == flights.end()) {
             const auto near = nearest_word(weight->flight, {flights.begin(), flights.end()});
             throw UsageError(fmt::format("a weight is given for '{}', which is none of the flights{}",
                                          weight->flight,
@@ -171,8 +165,8 @@ PhaseModel average_phase(const PhaseFit& fit, std::span<const double> weights) {
     model.range = fit.range;
     model.samples = fit.samples;
     model.flights = fit.flights.size();
-    model.fourier.cos_w.assign(fit.flights.front().fourier.cos_w.size(), 0.0);
-    model.fourier.sin_w.assign(model.fourier.cos_w.size(), 0.0);
+    model.fourier.cos_w.resize(fit.flights.front().fourier.cos_w.size());
+    model.fourier.sin_w.resize(model.fourier.cos_w.size());
     for (std::size_t i = 0; i < fit.flights.size(); ++i) {
         const auto& flight = fit.flights[i];
         model.duration_s += weights[i] * flight.duration_s;

@@ -46,7 +46,7 @@ void check_weights(const WeightOptions& options, std::span<const std::string> fl
 std::vector<double> flight_weights(const PhaseFit& fit, flight::Phase phase, const WeightOptions& options);
 
 /// The weighted average of the flights' curves and durations (docs/methods.md, Eq. 8). The flights share
-/// theta, so averaging curves at equal parts of the phase is averaging coefficients; omega is theta / average duration.
+/// theta, so averaging curves at equal parts of the phase is averaging coefficients.
 PhaseModel average_phase(const PhaseFit& fit, std::span<const double> weights);
 
 }  // namespace flightwatt::mechanical

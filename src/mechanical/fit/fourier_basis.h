@@ -1,27 +1,58 @@
 #pragma once
 
-#include <cstddef>
+#include "mechanical/fit/phase_samples.h"
+#include "mechanical/mechanical_model.h"
+
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
 
+/// The Fourier series of Eq. 1 as linear algebra. Its coefficients stand in the order a0, a1, b1, a2, b2, ...;
+/// theta = omega * duration [rad].
 namespace flightwatt::mechanical {
 
 /// The highest order that is supported; beyond it the lowest admissible frequencies leave no digits.
 inline constexpr int max_order = 8;
 
-/// How many coefficients a series of that order has: a0, a1, b1, ... a_order, b_order.
 constexpr int coefficient_count(int order) { return 2 * order + 1; }
 
-/// One row of the basis of Eq. 1, at angle = theta * tau:
-///     1, cos(angle), sin(angle), ... cos(order angle), sin(order angle)
-void fourier_row(double angle, int order, std::span<double> row);
+inline Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> values) {
+    return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
 
-/// The rows of all `tau`: samples x coefficient_count(order). theta = omega * duration [rad].
+Eigen::VectorXd coefficients_of(const FourierModel& model);
+FourierModel series_of(const Eigen::VectorXd& coefficients, double omega_rad_per_s);
+
+/// 1, cos(angle), sin(angle), ... sin(order angle) at angle = theta tau: samples x coefficient_count(order).
 Eigen::MatrixXd fourier_basis(std::span<const double> tau, int order, double theta_rad);
 
-/// Largest over smallest singular value of the basis's columns, each scaled to length 1, on evenly spread
-/// samples. It says by how much noise is amplified in the coefficients.
-double basis_condition(int order, double theta_rad, std::size_t samples = 1000);
+/// Largest over smallest singular value of the basis's columns, each scaled to length 1: by how much noise is
+/// amplified in the coefficients.
+double basis_condition(Eigen::MatrixXd basis);
+
+/// A flight's residuals f(tau) - value and their derivatives.
+struct FourierResidual {
+    Eigen::VectorXd residual;         ///< one a sample
+    Eigen::VectorXd by_theta;         ///< d residual / d theta
+    Eigen::MatrixXd by_coefficients;  ///< d residual / d coefficients: the basis
+};
+
+FourierResidual fourier_residual(const ScaledSamples& samples, double theta_rad,
+                                 const Eigen::VectorXd& coefficients);
+
+/// A linear least-squares solution with what follows from it.
+struct LinearFit {
+    Eigen::VectorXd coefficients;
+    double residual_square_sum = 0.0;
+    /// The same solution in a basis that is orthonormal on the rows of `matrix`:
+    /// coefficients = from_orthonormal * orthonormal.
+    Eigen::VectorXd orthonormal;
+    Eigen::MatrixXd from_orthonormal;
+};
+
+/// Minimises |matrix * c - values| by QR with column pivoting (columns scaled to length 1), which loses half
+/// the digits that the normal equations lose. std::nullopt if the columns are dependent to rounding.
+std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values);
 
 }  // namespace flightwatt::mechanical

@@ -2,11 +2,11 @@
 
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/projected_fit.h"
-#include "mechanical/fit/trigonometric_sums.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/tools/minima.hpp>
@@ -35,7 +35,7 @@ constexpr double promising_part = 0.5;
 /// Below this part of the values' own sum of squares a residual is rounding.
 constexpr double rounding_level = 1e-12;
 
-/// Bits of theta that the refinement finds; a minimum can not be placed better than half of a double's.
+/// Bits of theta that the refinement finds; a minimum cannot be placed better than half of a double's.
 constexpr int refined_bits = 24;
 
 struct Candidate {
@@ -45,8 +45,8 @@ struct Candidate {
 
 double own_square_sum(std::span<const ScaledSamples> flights) {
     double sum = 0.0;
-    for (const auto& flight : flights) {
-        for (const double value : flight.value) sum += value * value;
+    for (const auto& [tau, value, name] : flights) {
+        sum = std::inner_product(value.begin(), value.end(), value.begin(), sum);
     }
     return sum;
 }
@@ -69,8 +69,7 @@ std::vector<Candidate> minima(const FrequencyScan& scan) {
         const bool rises = i + 1 == sums.size() || sums[i] < sums[i + 1];
         if (falls && rises) found.push_back({scan.theta_rad[i], sums[i]});
     }
-    std::sort(found.begin(), found.end(),
-              [](const Candidate& a, const Candidate& b) { return a.square_sum < b.square_sum; });
+    std::ranges::sort(found, {}, &Candidate::square_sum);
     return found;
 }
 

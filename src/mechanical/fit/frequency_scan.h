@@ -25,12 +25,10 @@ FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order
 /// unless it is the subharmonic of a simpler answer (see simplest_frequency).
 double find_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range);
 
-/// A series of order p at theta holds the series of order p/m at m theta, so a signal whose harmonics are
-/// weak is fitted as well by theta/2 and theta/3. Returns m * theta_rad, refined, for the largest m
-/// in 2..order at which the harmonics that get lost are both insignificant (F test at 0.1 %) and, less what
-/// noise would give them, below 2 % of what the series explains; else theta_rad itself. The second condition
-/// keeps trends of less than a period, which few samples do not tell from others, where the sum of squares is
-/// least.
+/// A series of order p at theta holds the series of order p/m at m theta, so a signal whose harmonics are weak is
+/// fitted as well by theta/2 and theta/3. Returns m * theta_rad, refined, for the largest m in 2..order at which
+/// the harmonics that get lost are both insignificant (F test at 0.1 %) and, less what noise would give them,
+/// below 2 % of what the series explains (which keeps trends of less than a period); else theta_rad itself.
 double simplest_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                           double theta_rad);
 

@@ -3,26 +3,20 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/frequency_scan.h"
-#include "mechanical/fit/joint_refinement.h"
-#include "mechanical/fit/projected_fit.h"
-#include "mechanical/fit/robust_refinement.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
 namespace {
 
-/// Nearer to an end of the range than this part of it counts as standing at it.
-constexpr double bound_tolerance = 1e-6;
-
-/// Power that varies less than this part of its size is constant.
-constexpr double constant_level = 1e-12;
+constexpr double bound_tolerance = 1e-6;  ///< nearer to an end than this part of it is standing at it
+constexpr double constant_level = 1e-12;  ///< power that varies less than this part of its size is constant
 
 void check_options(const PhaseFitOptions& options) {
     if (options.order < 0 || options.order > max_order) {
@@ -62,15 +56,6 @@ void check_samples(flight::Phase phase, const PhaseSamples& samples) {
     }
 }
 
-void check_count(flight::Phase phase, const PhaseSamples& samples, int order) {
-    if (samples.tau.size() >= samples_needed(order)) return;
-    throw NoAnswerError(
-        fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: "
-                    "exclude its {}, or lower the order",
-                    samples.flight, samples.tau.size(), to_string(phase), order, samples_needed(order),
-                    to_string(phase)));
-}
-
 struct Scaling {
     std::vector<ScaledSamples> flights;
     std::vector<double> mean_w;  ///< a flight
@@ -103,18 +88,6 @@ Scaling scaled(std::span<const PhaseSamples> flights) {
     return scaling;
 }
 
-FourierModel in_watts(const Eigen::VectorXd& coefficients, double unit_w, double mean_w,
-                      double omega_rad_per_s) {
-    FourierModel model;
-    model.omega_rad_per_s = omega_rad_per_s;
-    model.a0_w = mean_w + unit_w * coefficients(0);
-    for (Eigen::Index n = 1; n < coefficients.size(); n += 2) {
-        model.cos_w.push_back(unit_w * coefficients(n));
-        model.sin_w.push_back(unit_w * coefficients(n + 1));
-    }
-    return model;
-}
-
 FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
     const double near = bound_tolerance * theta_rad;
     if (theta_rad - range.low_rad <= near) return FrequencyBound::low;
@@ -122,21 +95,18 @@ FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
     return FrequencyBound::none;
 }
 
-/// Order 0: the values less their means are 0 but for noise, whatever the frequency.
-JointFit means_of(const Scaling& scaling, const FrequencyRange& range) {
-    JointFit joint{std::clamp(units::rad_per_turn, range.low_rad, range.high_rad), {}, {}};
-    for (const auto& flight : scaling.flights) {
-        double square_sum = 0.0;
-        for (const double value : flight.value) square_sum += value * value;
+JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range) {
+    if (order > 0) {
+        return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range));
+    }
+    // The values less their means are 0 but for noise, whatever the frequency.
+    JointFit joint;
+    joint.theta_rad = std::clamp(units::rad_per_turn, range.low_rad, range.high_rad);
+    for (const auto& [tau, value, name] : scaling.flights) {
         joint.coefficients.emplace_back(Eigen::VectorXd::Zero(1));
-        joint.square_sum.push_back(square_sum);
+        joint.square_sum.push_back(std::inner_product(value.begin(), value.end(), value.begin(), 0.0));
     }
     return joint;
-}
-
-JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range) {
-    if (order == 0) return means_of(scaling, range);
-    return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range));
 }
 
 PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling, const JointFit& joint,
@@ -145,20 +115,21 @@ PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling
     fit.theta_rad = joint.theta_rad;
     fit.range = range;
     const bool has_frequency = joint.coefficients.front().size() > 1;
-    fit.range.at_bound = has_frequency ? bound_reached(range, joint.theta_rad) : FrequencyBound::none;
+    if (has_frequency) fit.range.at_bound = bound_reached(range, joint.theta_rad);
     double square_sum = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         FlightCurve curve;
         curve.flight = flights[i].flight;
         curve.duration_s = flights[i].duration_s;
         curve.samples = flights[i].tau.size();
-        curve.fourier = in_watts(joint.coefficients[i], scaling.unit_w, scaling.mean_w[i],
-                                 joint.theta_rad / curve.duration_s);
+        curve.fourier = series_of(scaling.unit_w * joint.coefficients[i], joint.theta_rad / curve.duration_s);
+        curve.fourier.a0_w += scaling.mean_w[i];
         curve.rms_w = scaling.unit_w * std::sqrt(joint.square_sum[i] / static_cast<double>(curve.samples));
         square_sum += joint.square_sum[i];
         fit.samples += curve.samples;
         fit.flights.push_back(std::move(curve));
     }
+    fit.loss_scale_w = joint.noise_scale * scaling.unit_w;
     fit.rms_w = scaling.unit_w * std::sqrt(square_sum / static_cast<double>(fit.samples));
     return fit;
 }
@@ -191,17 +162,20 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights,
     if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
     for (const auto& flight : flights) {
         check_samples(phase, flight);
-        check_count(phase, flight, options.order);
+        if (flight.tau.size() >= samples_needed(options.order)) continue;
+        throw NoAnswerError(
+            fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: "
+                        "exclude its {}, or lower the order",
+                        flight.flight, flight.tau.size(), to_string(phase), options.order,
+                        samples_needed(options.order), to_string(phase)));
     }
     const auto scaling = scaled(flights);
     try {
         const auto range = admissible_range(flights, options);
-        const auto joint = least_squares(scaling, options.order, range);
-        if (options.loss == Loss::none) return result_of(flights, scaling, joint, range);
-        const auto robust = refine_robustly(scaling.flights, range, joint);
-        auto fit = result_of(flights, scaling, robust.joint, range);
+        auto joint = least_squares(scaling, options.order, range);
+        if (options.loss != Loss::none) joint = refine_robustly(scaling.flights, range, std::move(joint));
+        auto fit = result_of(flights, scaling, joint, range);
         fit.loss = options.loss;
-        fit.loss_scale_w = robust.scale * scaling.unit_w;
         return fit;
     } catch (const NoAnswerError& error) {
         throw NoAnswerError(fmt::format("{}: {}", to_string(phase), error.what()));

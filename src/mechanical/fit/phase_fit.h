@@ -1,12 +1,8 @@
 #pragma once
 
-#include "flight/flight_phases.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/fit/phase_samples.h"
-#include "mechanical/fit/robust_loss.h"
-#include "mechanical/mechanical_model.h"
+#include "mechanical/fit/refinement.h"
 
-#include <cstddef>
 #include <numbers>
 #include <span>
 #include <string>
@@ -16,10 +12,9 @@ namespace flightwatt::mechanical {
 
 struct PhaseFitOptions {
     int order = 3;  ///< of the Fourier series, 0 (a constant) to max_order
-    /// Lowest omega * duration. The fewer periods a phase has, the more alike its harmonics are: at order 3
-    /// the condition number of the basis is 1 at 2 pi, 38 at the paper's landing (3.63), 108 at pi, where a
-    /// phase is half a period, but 2500 at 2 rad and 230000 at 1 rad (basis_condition). Noise in the
-    /// coefficients grows with it, while the curve hardly changes.
+    /// Lowest omega * duration. The fewer periods a phase has, the more alike its harmonics are, and noise in
+    /// the coefficients grows: at order 3 the basis's condition is 1 at 2 pi, 38 at the paper's landing (3.63),
+    /// 108 at pi, but 2500 at 2 rad and 230000 at 1 rad.
     double low_rad = std::numbers::pi;
     /// Most periods in a phase; the sampling may allow fewer. 120 in ten minutes are 5 s each: nothing that
     /// an aircraft does over and over in cruise is faster.
@@ -58,9 +53,9 @@ FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const Pha
 /// Fits Fourier series of the order to all flights: scans the whole range of theta, refines theta and all
 /// coefficients together. A loss other than none starts from that answer, so outliers still take part in the
 /// search for the frequency. Order 0 is each flight's own mean (its theta, one period, has no effect).
-/// Throws InputError for samples that are no samples (unequal lengths, tau outside
-/// [0, 1], not finite, duration not positive), NoAnswerError naming flight and phase for a flight with fewer
-/// than samples_needed(order) samples, for no flights, and for a fit that does not converge.
+/// Throws InputError for samples that are no samples (unequal lengths, tau outside [0, 1], not finite, duration
+/// not positive), NoAnswerError naming flight and phase for a flight with fewer than samples_needed(order)
+/// samples, for no flights, and for a fit that does not converge.
 PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights,
                    const PhaseFitOptions& options = {});
 

@@ -1,9 +1,8 @@
 #pragma once
 
 #include "flight/flight_phases.h"
-#include "mechanical/covariate.h"
+#include "mechanical/covariates.h"
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>

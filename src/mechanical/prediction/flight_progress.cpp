@@ -1,9 +1,8 @@
 #include "mechanical/prediction/flight_progress.h"
 
 #include "base/error.h"
-#include "flight/airspeed.h"
 #include "flight/chosen_track.h"
-#include "flight/cut_series.h"
+#include "flight/flight_series.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation.h"
 #include "mechanical/covariates.h"
@@ -17,7 +16,7 @@
 namespace flightwatt::mechanical {
 namespace {
 
-constexpr double longest_silence_s = 60.0;
+constexpr double longest_log_gap_s = 60.0;
 
 /// What the segmentation looks at.
 flight::FlightSeries tracks_for_segmentation(const flight::FlightSeries& series) {
@@ -57,11 +56,6 @@ double first_sample_s(const flight::FlightSeries& series) {
     return first_s;
 }
 
-[[noreturn]] void refuse(const flight::FlightSeries& series, double until_s, std::string_view what) {
-    throw NoAnswerError(
-        fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, what));
-}
-
 }  // namespace
 
 double time_since_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie,
@@ -70,7 +64,7 @@ double time_since_lift_off(const flight::FlightSeries& series, double since_s, s
     constexpr double same_s = 1e-3;
     const auto slim = tracks_for_segmentation(series);
     double time_s = first_sample_s(slim) + since_s;
-    const double last_s = log_end_s(slim) + longest_silence_s;
+    const double last_s = log_end_s(slim) + longest_log_gap_s;
     while (time_s <= last_s) {
         const auto found = sortie_of(cut_series(slim, time_s), sortie, options);
         const double due_s = found && !found->phases.empty() ? found->phases.front().start.time_s + since_s
@@ -87,24 +81,27 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
     const auto known = cut_series(series, until_s);
     FlightProgress flown;
     flown.until_s = until_s;
-    if (const double end_s = log_end_s(known); std::isfinite(end_s) && until_s > end_s + longest_silence_s) {
+    if (const double end_s = log_end_s(known); std::isfinite(end_s) && until_s > end_s + longest_log_gap_s) {
         throw NoAnswerError(
             fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", series.flight, end_s, until_s));
     }
+    const auto refuse = [&](std::string_view what) {
+        throw NoAnswerError(
+            fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, what));
+    };
     const auto sortie = sortie_of(known, sortie_index, options);
-    if (!sortie || sortie->phases.empty()) refuse(series, until_s, "has not taken off");
+    if (!sortie || sortie->phases.empty()) refuse("has not taken off");
     const auto& first = sortie->phases.front();
     if (first.phase != flight::Phase::takeoff || !first.complete) {
-        refuse(series, until_s, "is in the air, but its take-off is not in the log");
+        refuse("is in the air, but its take-off is not in the log");
     }
     const auto& last = sortie->phases.back();
-    if (last.phase == flight::Phase::landing && last.complete) refuse(series, until_s, "has landed");
+    if (last.phase == flight::Phase::landing && last.complete) refuse("has landed");
     flown.lift_off_s = first.start.time_s;
     flown.cruise_start_s = first.end.time_s;
     // Whoever still climbs has just reached 90 % of the height so far: that is no cruise yet.
     if (last.phase == flight::Phase::takeoff || flown.cruise_s() < options.hold_s) {
         refuse(
-            series, until_s,
             fmt::format("has not held its height for {:.0f} s: expected a moment in cruise", options.hold_s));
     }
     flown.cruise_energy_wh = integrated_energy_wh(known, flown.cruise_start_s, until_s);

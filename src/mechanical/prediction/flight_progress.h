@@ -2,7 +2,7 @@
 
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
-#include "mechanical/covariate.h"
+#include "mechanical/covariates.h"
 
 #include <cstddef>
 #include <optional>

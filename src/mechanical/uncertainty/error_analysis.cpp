@@ -2,15 +2,12 @@
 
 #include "base/error.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/fit/fourier_residual.h"
-#include "mechanical/fit/least_squares.h"
 #include "mechanical/uncertainty/residual_correlation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
 namespace flightwatt::mechanical {
@@ -33,30 +30,13 @@ struct FlightPart {
 PhaseSamples in_order_of_time(const PhaseSamples& samples) {
     std::vector<std::size_t> places(samples.tau.size());
     std::iota(places.begin(), places.end(), std::size_t{0});
-    std::stable_sort(places.begin(), places.end(),
-                     [&](std::size_t a, std::size_t b) { return samples.tau[a] < samples.tau[b]; });
+    std::ranges::stable_sort(places, {}, [&](std::size_t place) { return samples.tau[place]; });
     PhaseSamples sorted{samples.flight, samples.duration_s, {}, {}};
     for (const auto place : places) {
         sorted.tau.push_back(samples.tau[place]);
         sorted.power_w.push_back(samples.power_w[place]);
     }
     return sorted;
-}
-
-Eigen::VectorXd coefficients_of(const FourierModel& model) {
-    Eigen::VectorXd coefficients(coefficient_count(static_cast<int>(model.cos_w.size())));
-    coefficients(0) = model.a0_w;
-    for (std::size_t n = 0; n < model.cos_w.size(); ++n) {
-        coefficients(static_cast<Eigen::Index>(2 * n + 1)) = model.cos_w[n];
-        coefficients(static_cast<Eigen::Index>(2 * n + 2)) = model.sin_w[n];
-    }
-    return coefficients;
-}
-
-double condition_of(Eigen::MatrixXd basis) {
-    basis.colwise().normalize();
-    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(basis).singularValues();
-    return singular(0) / singular(singular.size() - 1);
 }
 
 /// Residuals for least squares; Huber's pseudo-residuals psi(r) / mean(psi') for robust fits.
@@ -91,9 +71,9 @@ FlightPart part_of(const PhaseSamples& unsorted, const FlightCurve& curve, const
     part.theta_direction = at.by_theta - at.by_coefficients * qr->coefficients;
     if (part.theta_direction.norm() <= direction_tolerance * at.by_theta.norm())
         part.theta_direction.setZero();
-    const Eigen::Map<const Eigen::VectorXd> power_w(samples.power_w.data(), at.residual.size());
+    const auto power_w = as_vector(samples.power_w);
     part.square_sum_about_mean = (power_w.array() - power_w.mean()).square().sum();
-    part.condition = condition_of(at.by_coefficients);
+    part.condition = basis_condition(at.by_coefficients);
     return part;
 }
 
@@ -146,18 +126,15 @@ std::vector<FlightResiduals> residuals_of(const MeanCurveParts& mean, bool frequ
     return all;
 }
 
-/// How theta, were it free, follows the noise of flight i.
+/// How theta, were it free, follows the noise of flight i; its direction is 0 if the data do not show it.
 Eigen::VectorXd theta_response(const MeanCurveParts& mean, std::size_t i) {
-    const auto& direction = mean.parts[i].theta_direction;
-    if (mean.information <= 0.0) return Eigen::VectorXd::Zero(direction.size());
-    return direction / mean.information;
+    return mean.parts[i].theta_direction / (mean.information > 0.0 ? mean.information : 1.0);
 }
 
 /// How theta and the mean's coefficients follow the noise of flight i: samples x (1 + coefficients).
 Eigen::MatrixXd response(const MeanCurveParts& mean, std::size_t i, double weight, bool frequency_is_given) {
     const auto& part = mean.parts[i];
-    Eigen::MatrixXd rows(part.orthonormal.rows(), 1 + part.orthonormal.cols());
-    rows.col(0).setZero();
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.orthonormal.rows(), 1 + part.orthonormal.cols());
     if (!frequency_is_given) rows.col(0) = theta_response(mean, i);
     rows.rightCols(part.orthonormal.cols()) = weight * part.orthonormal * part.from_orthonormal.transpose() -
                                               rows.col(0) * mean.sensitivity.transpose();
@@ -165,14 +142,14 @@ Eigen::MatrixXd response(const MeanCurveParts& mean, std::size_t i, double weigh
 }
 
 /// What one flight's noise adds to the variances.
-struct Spread {
+struct NoiseShare {
     Eigen::MatrixXd covariance;
     double theta_variance = 0.0;
     double degrees_of_freedom = 0.0;
 };
 
-Spread spread_of(const FlightResiduals& residuals, const Eigen::MatrixXd& rows,
-                 const Eigen::VectorXd& theta_rows, double autocorrelation) {
+NoiseShare share_of(const FlightResiduals& residuals, const Eigen::MatrixXd& rows,
+                    const Eigen::VectorXd& theta_rows, double autocorrelation) {
     const auto noise = noise_level(residuals, autocorrelation);
     const auto correlation = sample_correlation(residuals.tau, residuals.step, autocorrelation);
     return {noise.variance_w2 * rows.transpose() * correlated(correlation, rows),
@@ -237,11 +214,11 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
     double variance_of_variance = 0.0;
     for (std::size_t i = 0; i < residuals.size(); ++i) {
         const Eigen::MatrixXd rows = response(mean, i, weights[i], errors.frequency_is_given);
-        const auto spread = spread_of(residuals[i], rows, theta_response(mean, i), errors.autocorrelation);
-        analysis.covariance += spread.covariance;
-        theta_variance += spread.theta_variance;
-        const double share = curve.cwiseProduct(spread.covariance).sum();
-        variance_of_variance += share * share / spread.degrees_of_freedom;
+        const auto share = share_of(residuals[i], rows, theta_response(mean, i), errors.autocorrelation);
+        analysis.covariance += share.covariance;
+        theta_variance += share.theta_variance;
+        const double variance = curve.cwiseProduct(share.covariance).sum();
+        variance_of_variance += variance * variance / share.degrees_of_freedom;
     }
     const double curve_variance = std::max(0.0, curve.cwiseProduct(analysis.covariance).sum());
     errors.curve_w = std::sqrt(curve_variance);

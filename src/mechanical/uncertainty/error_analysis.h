@@ -1,8 +1,6 @@
 #pragma once
 
 #include "mechanical/fit/phase_fit.h"
-#include "mechanical/fit/phase_samples.h"
-#include "mechanical/mechanical_model.h"
 
 #include <span>
 
@@ -16,20 +14,15 @@ struct ErrorAnalysis {
     double theta_rad = 0.0;
     Eigen::VectorXd coefficients_w;  ///< of the mean curve: a0, a1, b1, ...
     Eigen::MatrixXd covariance;      ///< of theta and the coefficients, theta first
-    /// The standard error of theta were it free, also where it stands at a bound; 0 if the data do not show
-    /// it.
+    /// The standard error of theta were it free, also where it stands at a bound; 0 if the data do not show it.
     double free_theta_rad = 0.0;
     double theta_information = 0.0;  ///< half the curvature of the sum of squares over theta [W^2/rad^2]
 };
 
 /// Linearised error propagation through the joint least squares of all flights, with noise that is correlated
-/// (r^(gap / median gap), see residual_correlation.h) and has a variance of its own in each flight: every
-/// estimate is a linear function of the noise, whose covariance is carried through it (docs/methods.md,
-/// Eq. 13; a sandwich, not
-/// sigma^2 (J^T J)^-1 with n replaced). J's arrow is eliminated flight by flight with pivoted QR, columns
-/// scaled to length 1: near collinearity that keeps twice the digits of the normal equations that
-/// ceres::Covariance would invert, and Ceres knows no correlated noise. Where theta stands at a bound it is
-/// taken as given. After a robust fit the residuals are Huber's pseudo-residuals, psi / mean psi'. `flights`,
+/// (residual_correlation.h) and has a variance of its own in each flight: every estimate is a linear function of
+/// the noise, whose covariance is carried through it (docs/methods.md, Eq. 13). Where theta stands at a bound it
+/// is taken as given. After a robust fit the residuals are Huber's pseudo-residuals, psi / mean psi'. `flights`,
 /// `fit` and `weights` are in the same order; their samples are those that were fitted.
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights);

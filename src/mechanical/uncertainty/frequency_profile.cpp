@@ -2,7 +2,6 @@
 
 #include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/fit/least_squares.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +16,8 @@ constexpr int points_a_side = 20;
 double square_sum_w2(std::span<const PhaseSamples> flights, int order, double theta_rad) {
     double sum = 0.0;
     for (const auto& flight : flights) {
-        const Eigen::Map<const Eigen::VectorXd> power_w(flight.power_w.data(),
-                                                        static_cast<Eigen::Index>(flight.power_w.size()));
-        const auto fit = solve_least_squares(fourier_basis(flight.tau, order, theta_rad), power_w);
+        const auto fit =
+            solve_least_squares(fourier_basis(flight.tau, order, theta_rad), as_vector(flight.power_w));
         if (!fit) return std::numeric_limits<double>::infinity();
         sum += fit->residual_square_sum;
     }
@@ -60,11 +58,7 @@ End end_of_interval(const SquareSum& square_sum, double best_rad, double step_ra
 FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                                    const ErrorAnalysis& analysis) {
     const auto order = static_cast<int>(fit.flights.front().fourier.cos_w.size());
-    FrequencyProfile profile;
-    profile.low_rad = fit.range.low_rad;
-    profile.high_rad = fit.range.high_rad;
-    profile.low_is_open = true;
-    profile.high_is_open = true;
+    FrequencyProfile profile{{}, {}, fit.range.low_rad, fit.range.high_rad, true, true};
     if (order == 0 || analysis.free_theta_rad <= 0.0) return profile;
 
     const auto square_sum = [&](double theta_rad) { return square_sum_w2(flights, order, theta_rad); };
@@ -75,10 +69,7 @@ FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const 
     const double step_rad = half_width * analysis.free_theta_rad / 4.0;
     const auto low = end_of_interval(square_sum, fit.theta_rad, step_rad, fit.range.low_rad, limit);
     const auto high = end_of_interval(square_sum, fit.theta_rad, step_rad, fit.range.high_rad, limit);
-    profile.low_rad = low.theta_rad;
-    profile.high_rad = high.theta_rad;
-    profile.low_is_open = low.open;
-    profile.high_is_open = high.open;
+    profile = {{}, {}, low.theta_rad, high.theta_rad, low.open, high.open};
 
     const double first = std::max(fit.range.low_rad, 2.0 * low.theta_rad - fit.theta_rad);
     const double last = std::min(fit.range.high_rad, 2.0 * high.theta_rad - fit.theta_rad);

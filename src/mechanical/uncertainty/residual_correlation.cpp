@@ -6,9 +6,7 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// Samples further apart than so many steps are no neighbours.
-constexpr double widest_neighbours = 1.5;
-
+constexpr double widest_neighbours = 1.5;  ///< samples further apart than so many steps are none
 constexpr double highest_autocorrelation = 0.99;
 
 bool are_neighbours(const FlightResiduals& flight, std::size_t j) {
@@ -32,11 +30,7 @@ double pairs_of(const FlightResiduals& flight) {
     return pairs;
 }
 
-double products_of_neighbours(const FlightResiduals& flight) {
-    return flight.residual_w.dot(neighbour_sums(flight, flight.residual_w).col(0));
-}
-
-/// What products_of_neighbours over the sum of squares is expected to be for noise of that autocorrelation.
+/// What the sum of products of neighbours over the sum of squares is expected to be for noise of that autocorrelation.
 double expected_ratio(const FlightResiduals& flight, double autocorrelation) {
     const auto correlation = sample_correlation(flight.tau, flight.step, autocorrelation);
     const auto& used = flight.used_up;
@@ -44,7 +38,7 @@ double expected_ratio(const FlightResiduals& flight, double autocorrelation) {
     const Eigen::MatrixXd neighbours = neighbour_sums(flight, used);
     double trace = 0.0;  // of L R
     for (std::size_t j = 1; j < flight.tau.size(); ++j) {
-        if (are_neighbours(flight, j)) trace += correlation.decay[j];
+        if (are_neighbours(flight, j)) trace += correlation[j];
     }
     const Eigen::MatrixXd within = used.transpose() * spread;
     const double products = trace - 2.0 * neighbours.cwiseProduct(spread).sum() +
@@ -54,31 +48,31 @@ double expected_ratio(const FlightResiduals& flight, double autocorrelation) {
 
 }  // namespace
 
-SampleCorrelation sample_correlation(std::span<const double> tau, double step, double autocorrelation) {
-    SampleCorrelation correlation{std::vector<double>(tau.size(), 0.0)};
+std::vector<double> sample_correlation(std::span<const double> tau, double step, double autocorrelation) {
+    std::vector<double> correlation(tau.size(), 0.0);
     for (std::size_t j = 1; j < tau.size(); ++j) {
-        correlation.decay[j] = std::pow(autocorrelation, (tau[j] - tau[j - 1]) / step);
+        correlation[j] = std::pow(autocorrelation, (tau[j] - tau[j - 1]) / step);
     }
     return correlation;
 }
 
-Eigen::MatrixXd correlated(const SampleCorrelation& correlation, const Eigen::MatrixXd& rows) {
+Eigen::MatrixXd correlated(std::span<const double> correlation, const Eigen::MatrixXd& rows) {
     Eigen::MatrixXd before = rows;
     for (Eigen::Index j = 1; j < rows.rows(); ++j) {
-        before.row(j) += correlation.decay[static_cast<std::size_t>(j)] * before.row(j - 1);
+        before.row(j) += correlation[static_cast<std::size_t>(j)] * before.row(j - 1);
     }
     Eigen::MatrixXd after = rows;
     for (Eigen::Index j = rows.rows() - 1; j > 0; --j) {
-        after.row(j - 1) += correlation.decay[static_cast<std::size_t>(j)] * after.row(j);
+        after.row(j - 1) += correlation[static_cast<std::size_t>(j)] * after.row(j);
     }
     return before + after - rows;
 }
 
-double effective_samples(const SampleCorrelation& correlation) {
-    const auto count = static_cast<double>(correlation.decay.size());
+double effective_samples(std::span<const double> correlation) {
+    const auto count = static_cast<double>(correlation.size());
     double earlier = 0.0;  // the correlations of sample j with all before it
     double sum = count;
-    for (const double decay : correlation.decay) {
+    for (const double decay : correlation) {
         earlier = decay * (1.0 + earlier);
         sum += 2.0 * earlier;
     }
@@ -93,7 +87,8 @@ double estimate_autocorrelation(std::span<const FlightResiduals> flights) {
         pairs.push_back(pairs_of(flight));
         const double square_sum = flight.residual_w.squaredNorm();
         if (square_sum <= 0.0) continue;
-        found += pairs.back() * products_of_neighbours(flight) / square_sum;
+        const double products = flight.residual_w.dot(neighbour_sums(flight, flight.residual_w).col(0));
+        found += pairs.back() * products / square_sum;
         telling_pairs += pairs.back();
     }
     if (telling_pairs <= 0.0) return 0.0;
@@ -117,12 +112,12 @@ double estimate_autocorrelation(std::span<const FlightResiduals> flights) {
 }
 
 NoiseLevel noise_level(const FlightResiduals& flight, double autocorrelation) {
+    const auto count = static_cast<double>(flight.tau.size());
     const auto correlation = sample_correlation(flight.tau, flight.step, autocorrelation);
     const Eigen::MatrixXd spread = correlated(correlation, flight.used_up);
     const Eigen::MatrixXd within = flight.used_up.transpose() * spread;
-    const double trace = static_cast<double>(flight.tau.size()) - within.trace();
+    const double trace = count - within.trace();
     const auto squares = sample_correlation(flight.tau, flight.step, autocorrelation * autocorrelation);
-    const auto count = static_cast<double>(flight.tau.size());
     const double square_trace =
         count * count / effective_samples(squares) - 2.0 * spread.squaredNorm() + within.squaredNorm();
     const double degrees_of_freedom = std::max(1.0, trace * trace / std::max(square_trace, 1e-300));

@@ -36,6 +36,13 @@ ConstantPower power_of_flight(std::span<const PhaseSamples> flights, std::size_t
     return with_spread(powers_w[index], powers_w, std::sqrt(2.0));
 }
 
+std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> flights, Covariate covariate,
+                                                const std::optional<double>& value) {
+    const auto law = fit_level_law(flights, covariate);
+    if (!value || !law) return std::nullopt;
+    return constant_power(level_at(*law, *value));
+}
+
 EnergyEstimate energy_of(const ConstantPower& power, double duration_s) {
     EnergyEstimate estimate{units::wh_from_joule(power.mean_w * duration_s), power.sd_w.has_value(), 0.0,
                             0.0};
@@ -46,24 +53,26 @@ EnergyEstimate energy_of(const ConstantPower& power, double duration_s) {
     return estimate;
 }
 
-std::optional<std::size_t> nearest_flight(std::span<const FlightSamples> flights,
-                                          const flight::PerPhase<std::optional<double>>& duration_s) {
+std::optional<std::size_t> nearest_flight(std::span<const FlightSamples> flights, flight::Phase phase,
+                                          const FlightSamples& other) {
     std::optional<std::size_t> nearest;
     double least = 0.0;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
+    std::size_t index = 0;
+    for (const auto& flight : flights) {
+        if (!flight.phases[phase]) continue;
         double square_sum = 0.0;
         int common = 0;
-        for (const auto phase : flight::all_phases) {
-            if (!flights[i].phases[phase] || !duration_s[phase]) continue;
-            const double ratio = std::log(*duration_s[phase] / flights[i].phases[phase]->duration_s);
-            square_sum += ratio * ratio;
+        for (const auto p : flight::all_phases) {
+            if (!flight.phases[p] || !other.phases[p]) continue;
+            square_sum += std::pow(std::log(other.phases[p]->duration_s / flight.phases[p]->duration_s), 2);
             ++common;
         }
-        if (common == 0) continue;
         const double distance = square_sum / common;
-        if (nearest && distance >= least) continue;
-        nearest = i;
-        least = distance;
+        if (common > 0 && (!nearest || distance < least)) {
+            nearest = index;
+            least = distance;
+        }
+        ++index;
     }
     return nearest;
 }

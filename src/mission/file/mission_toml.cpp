@@ -2,12 +2,8 @@
 #include "base/format_version.h"
 #include "base/toml_numbers.h"
 #include "compute/profile_reader.h"
-#include "mission/file/adaptive_policy_toml.h"
-#include "mission/file/conditions_toml.h"
-#include "mission/file/plan_settings_toml.h"
+#include "mission/file/planning_toml.h"
 #include "mission/file/schedule_toml.h"
-#include "mission/file/uncertainty_toml.h"
-#include "mission/file/utility_toml.h"
 #include "mission/mission_file.h"
 
 #include <fmt/format.h>
@@ -46,24 +42,67 @@ mechanical::PhaseClock read_clock(const TomlTable& root, bool has_mechanical) {
                      "it is \"stretch\" or \"absolute\"");
 }
 
+const mechanical::LevelLaw& law_of(const TomlTable& conditions,
+                                   const std::optional<mechanical::MechanicalModel>& mechanical) {
+    if (!mechanical) {
+        throw InputError(conditions.where(), "conditions have no meaning with mechanical = \"none\"",
+                         "leave them out");
+    }
+    const auto& law = mechanical->phases[Phase::cruise].level_law;
+    if (law) return *law;
+    throw InputError(
+        conditions.where(),
+        fmt::format("the cruise level of the mechanical model '{}' follows no condition", mechanical->name),
+        "fit it with one: flightwatt fit --level-covariate NAME FLIGHT...; or leave the conditions out");
+}
+
+/// Shifts the model's cruise so that its mean over the model's own duration is the power of its level law under the
+/// [conditions], and returns that power with its spread. What the flights of the law did not show is refused: a plan
+/// can be changed, and a power that nothing supports should not look like a result.
+mechanical::ConstantPower apply_conditions(const TomlTable& conditions,
+                                           std::optional<mechanical::MechanicalModel>& mechanical) {
+    const auto& law = law_of(conditions, mechanical);
+    const auto name = to_string(law.covariate);
+    for (const auto& key : conditions.keys()) {
+        if (key == name) continue;
+        throw InputError(conditions.where(key),
+                         fmt::format("the cruise level of this mechanical model does not follow '{}'", key),
+                         fmt::format("it follows {}, from {:.4g} to {:.4g}", name, law.least, law.most));
+    }
+    const double value = conditions.number(name);
+    const auto level = level_at(law, value);
+    if (!level.within_flights) {
+        throw InputError(
+            conditions.where(name),
+            fmt::format("{} = {} is beyond what the model's flights showed", name, value),
+            fmt::format("the {} flights of its level law were from {:.4g} to {:.4g}; give one of these, or "
+                        "fit a model to flights that were flown so",
+                        law.flights, law.least, law.most));
+    }
+    auto& cruise = mechanical->phases[Phase::cruise];
+    const double model_mean_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+    cruise.fourier.a0_w += level.power_w - model_mean_w;
+    return constant_power(level);
+}
+
 double read_duration(const TomlTable& durations, std::string_view phase) {
     const double value = durations.number(phase);
     if (value == 0.0) return value;
     return number_in(between(shortest_phase_s, longest_phase_s), durations, phase, "or 0: not flown");
 }
 
-flight::PerPhase<double> read_durations(const TomlTable& root,
-                                        const std::optional<mechanical::MechanicalModel>& mechanical) {
-    flight::PerPhase<double> durations;
+PerPhase<double> read_durations(const TomlTable& root,
+                                const std::optional<mechanical::MechanicalModel>& mechanical) {
+    PerPhase<double> durations;
     if (mechanical) {
-        for (const auto phase : flight::all_phases) durations[phase] = mechanical->phases[phase].duration_s;
+        for (const auto phase : all_phases) durations[phase] = mechanical->phases[phase].duration_s;
     } else if (!root.has("duration_s")) {
         throw InputError(root.where("mechanical"), "without a mechanical model the phases have no durations",
                          "add duration_s = { takeoff = ..., cruise = ..., landing = ... }");
     }
     double total_s = 0.0;
     const auto given = root.optional_table("duration_s");
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         const auto name = to_string(phase);
         if (given && (!mechanical || given->has(name))) durations[phase] = read_duration(*given, name);
         total_s += durations[phase];
@@ -91,9 +130,8 @@ compute::Component read_component(const TomlTable& table, const std::string& nam
         if (!table.has(key)) continue;
         (key == "columns" ? naming.columns : naming.parameters) = table.strings(key);
         naming.where = table.where(key);
-        if (naming.parameters.empty() && naming.columns.empty()) {
+        if (naming.parameters.empty() && naming.columns.empty())
             throw InputError(naming.where, fmt::format("{} = [] names nothing", key), "leave it out");
-        }
     }
     return {name, read_power_profile(file_of(table, "profile"), naming)};
 }
@@ -105,11 +143,46 @@ void read_components(const TomlTable& root, MissionSetup& mission) {
         const auto table = components->table(name);
         mission.compute.components.push_back(read_component(table, name));
         std::optional<Utility> utility;
-        if (const auto stated = table.optional_table("utility")) {
+        if (const auto stated = table.optional_table("utility"))
             utility = read_utility(*stated, mission.compute.components.back().profile);
-        }
         mission.utilities.push_back(std::move(utility));
     }
+}
+
+std::optional<double> optional_sd(const TomlTable& table, std::string_view key) {
+    return optional_number_in(at_least(0.0), table, key);
+}
+
+PerPhase<std::optional<double>> read_phases(const TomlTable& uncertainty, std::string_view key) {
+    PerPhase<std::optional<double>> phases;
+    const auto table = uncertainty.optional_table(key);
+    if (!table) return phases;
+    for (const auto phase : all_phases) phases[phase] = optional_sd(*table, to_string(phase));
+    table->refuse_unknown_keys();
+    return phases;
+}
+
+Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeModel& compute,
+                             bool has_mechanical) {
+    Uncertainty read;
+    read.compute_sd_percent.resize(compute.components.size());
+    const auto table = mission.optional_table("uncertainty");
+    if (!table) return read;
+    table->refuse_keys_except(
+        {"level_sd_percent", "duration_sd_s", "compute_sd_percent", "capacity_sd_percent"});
+    if (table->has("level_sd_percent") && !has_mechanical) {
+        throw InputError(table->where("level_sd_percent"),
+                         "level_sd_percent has no meaning with mechanical = \"none\"", "leave it out");
+    }
+    read.level_sd_percent = read_phases(*table, "level_sd_percent");
+    read.duration_sd_s = read_phases(*table, "duration_sd_s");
+    read.capacity_sd_percent = optional_sd(*table, "capacity_sd_percent");
+    if (const auto components = table->optional_table("compute_sd_percent")) {
+        for (std::size_t i = 0; i < compute.components.size(); ++i)
+            read.compute_sd_percent[i] = optional_sd(*components, compute.components[i].name);
+        components->refuse_unknown_keys();
+    }
+    return read;
 }
 
 /// Throws where a mission that is yet to be planned is not accepted.
@@ -131,7 +204,7 @@ AnyMission with_read_schedule(const TomlTable& root, const MissionReading& readi
     const bool lacks_schedule = entries.empty() && !setup.compute.components.empty();
     if (!reading.may_lack_schedule && !adaptive) require_schedule(root, lacks_schedule);
     if (lacks_schedule || root.has("plan") || adaptive) {
-        PlanningProblem problem{std::move(setup), {}, {}, std::move(adaptive)};
+        PlanningProblem problem{std::move(setup), {}, {}, adaptive};
         problem.plan = read_plan_settings(root, problem.compute);
         problem.fixed = resolve_fixed_segments(entries, problem.duration_s);
         if (problem.adaptive && problem.adaptive->decide_every_s == 0.0)
@@ -163,11 +236,10 @@ AnyMission parse_mission(std::string_view text, const std::filesystem::path& pat
     mission.name = root.optional_string("name").value_or(path.stem().string());
     mission.mechanical = read_mechanical(root);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
-    if (const auto conditions = root.optional_table("conditions")) {
+    if (const auto conditions = root.optional_table("conditions"))
         mission.cruise_level = apply_conditions(*conditions, mission.mechanical);
-    }
     mission.duration_s = read_durations(root, mission.mechanical);
-    if (reading.cruise_s) mission.duration_s[flight::Phase::cruise] = *reading.cruise_s;
+    if (reading.cruise_s) mission.duration_s[Phase::cruise] = *reading.cruise_s;
     mission.battery = read_mission_battery(root);
     read_components(root, mission);
     mission.initial_soc_percent =

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <sstream>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 namespace flightwatt::mission {
@@ -23,34 +25,34 @@ void move_path(toml::table& table, std::string_view key, const std::filesystem::
 
 /// A key as people write it: quoted only if it has to be.
 std::string key_text(const std::string& name) {
-    const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    const bool bare = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
         return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-');
     });
     return bare ? name : toml_string(name);
 }
 
-std::string run_text(const compute::ComputeModel& compute, const compute::Configuration& run) {
-    std::string text;
-    for (const auto& running : run) {
-        const auto& component = compute.components.at(running.component);
-        std::string qos;
-        for (std::size_t i = 0; i < running.qos.size(); ++i) {
-            qos += (i == 0 ? " " : ", ") + key_text(component.profile.parameters[i]) + " = " +
-                   toml_real(running.qos[i]);
-        }
-        if (!qos.empty()) qos += " ";
-        text += (text.empty() ? " " : ", ") + key_text(component.name) + " = {" + qos + "}";
-    }
-    return text.empty() ? "{}" : "{" + text + " }";
+std::string inline_table(const std::vector<std::string>& pairs) {
+    return pairs.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(pairs, ", "));
 }
 
-std::string schedule_text(const compute::ComputeModel& compute,
-                          const std::vector<ScheduleSegment>& schedule) {
+std::string run_text(const compute::ComputeModel& compute, const compute::Configuration& run) {
+    std::vector<std::string> components;
+    for (const auto& running : run) {
+        const auto& component = compute.components.at(running.component);
+        std::vector<std::string> qos;
+        for (std::size_t i = 0; i < running.qos.size(); ++i)
+            qos.push_back(key_text(component.profile.parameters[i]) + " = " + toml_real(running.qos[i]));
+        components.push_back(key_text(component.name) + " = " + inline_table(qos));
+    }
+    return inline_table(components);
+}
+
+std::string schedule_text(const compute::ComputeModel& compute, const Schedule& schedule) {
     std::string text;
     for (const auto& segment : schedule) {
-        text += "\n[[schedule]]\nphase = " + toml_string(to_string(segment.phase)) +
-                "\nfrom = " + toml_real(segment.start_s) + "\nto = " + toml_real(segment.end_s) +
-                "\nrun = " + run_text(compute, segment.run) + "\n";
+        text += fmt::format("\n[[schedule]]\nphase = {}\nfrom = {}\nto = {}\nrun = {}\n",
+                            toml_string(to_string(segment.phase)), toml_real(segment.start_s),
+                            toml_real(segment.end_s), run_text(compute, segment.run));
     }
     return text;
 }
@@ -58,8 +60,7 @@ std::string schedule_text(const compute::ComputeModel& compute,
 }  // namespace
 
 std::string planned_mission_toml(std::string_view text, const std::filesystem::path& path,
-                                 const compute::ComputeModel& compute,
-                                 const std::vector<ScheduleSegment>& schedule,
+                                 const compute::ComputeModel& compute, const Schedule& schedule,
                                  const std::filesystem::path& folder) {
     auto root = toml::parse(text, path.string());
     root.insert_or_assign("format", format_version);
@@ -70,9 +71,8 @@ std::string planned_mission_toml(std::string_view text, const std::filesystem::p
     const auto to = std::filesystem::absolute(folder);
     for (const std::string_view key : {"mechanical", "battery"}) move_path(root, key, from, to);
     if (auto* components = root.get_as<toml::table>("components")) {
-        for (auto&& [name, component] : *components) {
+        for (auto&& [name, component] : *components)
             if (auto* table = component.as_table()) move_path(*table, "profile", from, to);
-        }
     }
     std::ostringstream out;
     out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};

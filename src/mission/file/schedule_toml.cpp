@@ -4,6 +4,8 @@
 #include "base/units.h"
 
 #include <algorithm>
+#include <set>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
@@ -11,6 +13,10 @@
 
 namespace flightwatt::mission {
 namespace {
+
+std::string spell(Phase phase, double start_s, double end_s) {
+    return fmt::format("{} from {} s to {} s", to_string(phase), start_s, end_s);
+}
 
 /// The number before the '%' of "40 %".
 double percent_in(const TomlTable& entry, std::string_view key) {
@@ -46,8 +52,7 @@ void read_segment(const TomlTable& table, double duration_s, ScheduleEntry& entr
     }
     const std::string_view key = has_middle ? "middle" : has_from ? "from" : has_to ? "to" : "phase";
     const double tolerance_s = same_time_tolerance_s(duration_s);
-    const auto segment =
-        fmt::format("{} from {} s to {} s", to_string(*entry.phase), entry.start_s, entry.end_s);
+    const auto segment = spell(*entry.phase, entry.start_s, entry.end_s);
     if (entry.end_s - entry.start_s <= tolerance_s) {
         throw InputError(table.where(key), fmt::format("the segment {} is empty", segment),
                          "it must start before it ends");
@@ -58,24 +63,25 @@ void read_segment(const TomlTable& table, double duration_s, ScheduleEntry& entr
     }
 }
 
-/// Before a parameter is missed: the key that is there, and wrong, is what the user has to find.
-void refuse_unknown_parameters(const TomlTable& given, const std::string& component,
-                               const compute::PowerProfile& profile) {
-    const auto& known = profile.parameters;
-    for (const auto& key : given.keys()) {
-        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+/// Before a key is missed: one that is there, and wrong, is what the user has to find. `what` begins the message,
+/// `of_none` and `of_known` the hint.
+void refuse_unknown_names(const TomlTable& table, const std::vector<std::string>& known,
+                          const std::string& what, std::string_view of_none, std::string_view of_known) {
+    for (const auto& key : table.keys()) {
+        if (std::ranges::find(known, key) != known.end()) continue;
         const auto near = nearest_word(key, known);
-        throw InputError(given.where(key), fmt::format("{} has no parameter '{}'", component, key),
+        throw InputError(table.where(key), fmt::format("{} '{}'", what, key),
                          !near.empty()   ? fmt::format("did you mean '{}'?", near)
-                         : known.empty() ? "it has none"
-                                         : fmt::format("its parameters are {}", fmt::join(known, ", ")));
+                         : known.empty() ? std::string(of_none)
+                                         : fmt::format("{} {}", of_known, fmt::join(known, ", ")));
     }
 }
 
 compute::RunningComponent read_running(const TomlTable& run, const std::string& name, std::size_t index,
                                        const compute::PowerProfile& profile) {
     const auto given = run.table(name);
-    refuse_unknown_parameters(given, name, profile);
+    refuse_unknown_names(given, profile.parameters, name + " has no parameter", "it has none",
+                         "its parameters are");
     compute::RunningComponent running{index, {}};
     for (std::size_t i = 0; i < profile.parameters.size(); ++i) {
         const auto& parameter = profile.parameters[i];
@@ -89,48 +95,28 @@ compute::RunningComponent read_running(const TomlTable& run, const std::string& 
 compute::Configuration read_run(const TomlTable& run, const compute::ComputeModel& compute) {
     std::vector<std::string> known;
     for (const auto& component : compute.components) known.push_back(component.name);
-    for (const auto& name : run.keys()) {
-        if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-        const auto near = nearest_word(name, known);
-        throw InputError(run.where(name), fmt::format("there is no component '{}'", name),
-                         !near.empty()   ? fmt::format("did you mean '{}'?", near)
-                         : known.empty() ? "the mission has no [components.NAME]"
-                                         : fmt::format("the components are {}", fmt::join(known, ", ")));
-    }
+    refuse_unknown_names(run, known, "there is no component", "the mission has no [components.NAME]",
+                         "the components are");
     // In the model's order, not the file's: sums of power are then the same however a mission is written.
     compute::Configuration configuration;
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        if (run.has(known[i])) {
+    for (std::size_t i = 0; i < known.size(); ++i)
+        if (run.has(known[i]))
             configuration.push_back(read_running(run, known[i], i, compute.components[i].profile));
-        }
-    }
     return configuration;
 }
 
-flight::Phase read_phase(const TomlTable& table) {
-    const auto name = table.string("phase");
-    if (const auto phase = flight::phase_from(name)) return *phase;
-    throw InputError(table.where("phase"), fmt::format("there is no phase '{}'", name),
-                     "the phases are takeoff, cruise and landing");
-}
-
 ScheduleEntry read_entry(const TomlTable& table, const compute::ComputeModel& compute,
-                         const flight::PerPhase<double>& duration_s) {
+                         const PerPhase<double>& duration_s) {
     table.refuse_keys_except({"phase", "from", "to", "middle", "otherwise", "run"});
     ScheduleEntry entry;
     entry.where = table.where();
     entry.otherwise = table.optional_boolean("otherwise").value_or(false);
-    if (table.has("otherwise") && !entry.otherwise) {
+    if (table.has("otherwise") && !entry.otherwise)
         throw InputError(table.where("otherwise"), "`otherwise = false` says nothing", "leave it out");
-    }
-    if (table.has("phase")) entry.phase = read_phase(table);
+    if (table.has("phase")) entry.phase = read_flown_phase(table, duration_s);
     if (!entry.phase && !entry.otherwise) {
         throw InputError(entry.where, "this entry does not say when",
                          "give it a phase, or `otherwise = true` for whatever the others leave");
-    }
-    if (entry.phase && duration_s[*entry.phase] == 0.0) {
-        throw InputError(table.where("phase"),
-                         fmt::format("{} takes no time in this mission", to_string(*entry.phase)));
     }
     if (entry.phase && !entry.otherwise) read_segment(table, duration_s[*entry.phase], entry);
     for (const std::string_view key : {"from", "to", "middle"}) {
@@ -143,19 +129,142 @@ ScheduleEntry read_entry(const TomlTable& table, const compute::ComputeModel& co
     return entry;
 }
 
+/// The `otherwise` of a phase, or of the mission.
+const ScheduleEntry* otherwise_of(const std::vector<ScheduleEntry>& entries, std::optional<Phase> phase) {
+    const auto found = std::ranges::find_if(
+        entries, [&](const ScheduleEntry& entry) { return entry.otherwise && entry.phase == phase; });
+    return found == entries.end() ? nullptr : &*found;
+}
+
+void refuse_second_otherwise(const std::vector<ScheduleEntry>& entries) {
+    for (const auto& entry : entries) {
+        const auto* first = otherwise_of(entries, entry.phase);
+        if (!entry.otherwise || first == &entry) continue;
+        throw InputError(
+            entry.where,
+            fmt::format("a second `otherwise` for {}, the first is in line {}",
+                        entry.phase ? to_string(*entry.phase) : "the whole mission", first->where.line),
+            "keep one of them");
+    }
+}
+
+[[noreturn]] void refuse_overlap(const ScheduleEntry& first, const ScheduleEntry& second) {
+    const auto [earlier, later] =
+        std::minmax(first, second, [](const auto& a, const auto& b) { return a.where.line < b.where.line; });
+    throw InputError(
+        later.where,
+        fmt::format(
+            "{} is scheduled twice, here and in line {}",
+            spell(*first.phase, std::max(first.start_s, second.start_s), std::min(first.end_s, second.end_s)),
+            earlier.where.line),
+        first.whole_phase || second.whole_phase
+            ? "give the entry of the whole phase `otherwise = true`, and it takes what the others leave"
+            : "let one end where the other begins");
+}
+
+/// Where an entry lies once it meets its neighbours, or an end of the phase, up to rounding.
+struct PlacedEntry {
+    PhaseSegment segment;
+    const ScheduleEntry* entry;
+};
+
+/// The explicit entries of a phase in order. Throws InputError where two overlap.
+std::vector<PlacedEntry> placed_entries(const std::vector<ScheduleEntry>& entries, Phase phase,
+                                        double duration_s) {
+    const double tolerance_s = same_time_tolerance_s(duration_s);
+    std::vector<PlacedEntry> placed;
+    for (const auto& entry : entries)
+        if (!entry.otherwise && entry.phase == phase)
+            placed.push_back({{phase, entry.start_s, entry.end_s}, &entry});
+    std::ranges::stable_sort(placed, [](const PlacedEntry& a, const PlacedEntry& b) {
+        return a.segment.start_s < b.segment.start_s;
+    });
+    double covered_s = 0.0;
+    const ScheduleEntry* previous = nullptr;
+    for (auto& [segment, entry] : placed) {
+        if (previous != nullptr && segment.start_s < previous->end_s - tolerance_s)
+            refuse_overlap(*previous, *entry);
+        if (segment.start_s <= covered_s + tolerance_s) segment.start_s = covered_s;
+        if (segment.end_s >= duration_s - tolerance_s) segment.end_s = duration_s;
+        covered_s = segment.end_s;
+        previous = entry;
+    }
+    return placed;
+}
+
 }  // namespace
+
+Phase read_flown_phase(const TomlTable& entry, const PerPhase<double>& duration_s) {
+    const auto name = entry.string("phase");
+    const auto phase = flight::phase_from(name);
+    if (!phase) {
+        throw InputError(entry.where("phase"), fmt::format("there is no phase '{}'", name),
+                         "the phases are takeoff, cruise and landing");
+    }
+    if (duration_s[*phase] > 0.0) return *phase;
+    throw InputError(entry.where("phase"), fmt::format("{} takes no time in this mission", name));
+}
 
 double read_time_s(const TomlTable& entry, std::string_view key, double duration_s) {
     return entry.is_number(key) ? entry.number(key) : units::part_of(duration_s, percent_in(entry, key));
 }
 
 std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const compute::ComputeModel& compute,
-                                         const flight::PerPhase<double>& duration_s) {
+                                         const PerPhase<double>& duration_s) {
     std::vector<ScheduleEntry> entries;
-    for (const auto& table : mission.tables("schedule")) {
+    for (const auto& table : mission.tables("schedule"))
         entries.push_back(read_entry(table, compute, duration_s));
-    }
     return entries;
+}
+
+Schedule resolve_schedule(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s) {
+    if (entries.empty()) throw std::invalid_argument("a schedule has at least one entry");
+    refuse_second_otherwise(entries);
+    PerPhase<std::vector<PlacedEntry>> placed;
+    for (const auto phase : all_phases) placed[phase] = placed_entries(entries, phase, duration_s[phase]);
+    Schedule segments;
+    std::set<const ScheduleEntry*> used;
+    for (const auto phase : all_phases) {
+        double covered_s = 0.0;
+        const auto fill_until = [&](double until_s, const ScheduleEntry& near) {
+            const auto* filler = otherwise_of(entries, phase);
+            if (filler == nullptr) filler = otherwise_of(entries, std::nullopt);
+            if (filler == nullptr)
+                throw InputError(near.where,
+                                 fmt::format("nothing is scheduled for {}", spell(phase, covered_s, until_s)),
+                                 "add an entry with `otherwise = true`; `run = {}` runs nothing");
+            used.insert(filler);
+            segments.push_back({phase, covered_s, until_s, filler->run});
+        };
+        for (const auto& [segment, entry] : placed[phase]) {
+            if (segment.start_s > covered_s) fill_until(segment.start_s, *entry);
+            segments.push_back({segment, entry->run});
+            covered_s = segment.end_s;
+        }
+        if (covered_s < duration_s[phase] - same_time_tolerance_s(duration_s[phase]))
+            fill_until(duration_s[phase],
+                       placed[phase].empty() ? entries.back() : *placed[phase].back().entry);
+    }
+    for (const auto& entry : entries) {
+        if (!entry.otherwise || used.contains(&entry)) continue;
+        throw InputError(entry.where, "this `otherwise` covers nothing: the other entries leave no time",
+                         "take it out");
+    }
+    return segments;
+}
+
+Schedule resolve_fixed_segments(const std::vector<ScheduleEntry>& entries,
+                                const PerPhase<double>& duration_s) {
+    for (const auto& entry : entries) {
+        if (!entry.otherwise) continue;
+        throw InputError(entry.where, "`otherwise` leaves nothing to plan",
+                         "take it out: what no other entry fixes is planned");
+    }
+    Schedule segments;
+    for (const auto phase : all_phases)
+        for (const auto& [segment, entry] : placed_entries(entries, phase, duration_s[phase]))
+            segments.push_back({segment, entry->run});
+    return segments;
 }
 
 }  // namespace flightwatt::mission

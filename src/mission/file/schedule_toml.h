@@ -1,26 +1,45 @@
 #pragma once
 
 #include "base/toml_reader.h"
-#include "mission/file/schedule_entries.h"
+#include "mission/schedule.h"
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
 namespace flightwatt::mission {
 
-/// Reads the [[schedule]] of a mission file. Each entry says when, and what runs then:
-///
-///     phase = "cruise"                           # the whole phase, or a segment of it:
-///     from = 240                                 #   seconds since it began, or "40 %" of it; default: 0
-///     to = "60 %"                                #   default: its end
-///     middle = 120                               #   or so many seconds (or percent) in its middle
-///     otherwise = true                           # with a phase: what is left of it; without: of the mission
-///     run = { detection = { fps = 32 } }         # components with a value for each parameter; others are off
-///
-/// Throws InputError for an unknown phase, component, parameter or key, a parameter missing or out of its
-/// profile's range, and a segment that is empty or not within its phase.
+/// One entry of a schedule as it was written.
+struct ScheduleEntry {
+    std::optional<Phase> phase;  ///< none: any phase (only with otherwise)
+    bool otherwise = false;      ///< what no explicit entry covers
+    bool whole_phase = false;    ///< explicit, and without from, to or middle
+    double start_s = 0.0;        ///< since the phase began; not read if otherwise
+    double end_s = 0.0;
+    compute::Configuration run;
+    Location where;
+};
+
+/// Reads the [[schedule]] of a mission file (docs/missions.md). Throws InputError for an unknown phase, component,
+/// parameter or key, a parameter missing or out of its profile's range, and a segment that is empty or not within
+/// its phase.
 std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const compute::ComputeModel& compute,
-                                         const flight::PerPhase<double>& duration_s);
+                                         const PerPhase<double>& duration_s);
+
+/// Segments in order that cover each instant of each phase exactly once: the explicit entries, then for what
+/// they leave of a phase its `otherwise`, then the mission's. `entries` is not empty. Throws InputError for
+/// two explicit entries at the same time, a gap that no `otherwise` fills, or an `otherwise` that is there
+/// twice or has nothing left to cover.
+Schedule resolve_schedule(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s);
+
+/// The segments of the explicit entries alone, in order: what is fixed of a schedule yet to be planned.
+/// Throws InputError for two entries at the same time, and for `otherwise`, which would leave nothing to
+/// plan.
+Schedule resolve_fixed_segments(const std::vector<ScheduleEntry>& entries,
+                                const PerPhase<double>& duration_s);
+
+/// The phase at `phase`. Throws InputError for one that there is not, or that the mission does not fly.
+Phase read_flown_phase(const TomlTable& entry, const PerPhase<double>& duration_s);
 
 /// The time at `key`: seconds, or percent ("40 %") of `duration_s`. Throws InputError for what is neither.
 double read_time_s(const TomlTable& entry, std::string_view key, double duration_s);

@@ -1,6 +1,9 @@
 #include "mission/planning/depletion_table.h"
 
+#include "base/piecewise_linear.h"
 #include "base/units.h"
+#include "mission/simulation.h"
+#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +21,9 @@ constexpr std::size_t fewest_cells = 16;
 constexpr std::size_t first_cells_at_most = 4096;
 constexpr std::size_t most_cells = 65536;
 
+constexpr double point_every_s = 0.1;
+constexpr double repeated_time_s = 1e-9;
+
 /// The load of one configuration in one phase.
 struct PhaseLoad {
     battery::Battery battery;     ///< the paper's
@@ -30,7 +36,8 @@ struct PhaseLoad {
     /// Its RC voltage takes the battery's constant source to where the course is.
     battery::BatteryState state(double time_s) const {
         if (!course) return {};
-        return {100.0, battery.voltage_v - voltage_v(*course, phase_start_s + time_s)};
+        return {100.0, battery.voltage_v -
+                           interpolate_clamped(course->time_s, course->voltage_v, phase_start_s + time_s)};
     }
     bool is_deliverable(double time_s) const {
         const auto now = state(time_s);
@@ -83,8 +90,8 @@ double depleted_percent(const PhaseDepletion& depletion, double time_s) {
     return part == 0.0 ? depletion.nodes[cell].depleted_percent : at_cell(depletion, cell, part);
 }
 
-/// The table of one load with so many cells. `error_percent` becomes what the values halfway tell.
-PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, std::size_t cells, double& error_percent) {
+/// The table of one load with so many cells.
+PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, std::size_t cells) {
     PhaseDepletion depletion;
     depletion.duration_s = duration_s;
     depletion.cells_per_s = static_cast<double>(cells) / duration_s;
@@ -92,7 +99,6 @@ PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, std::size_t ce
     depletion.undeliverable_cells.assign(cells + 1, 0);
     const auto time_s = [&](double k) { return k / depletion.cells_per_s; };
     depletion.nodes[0].percent_per_s = load.percent_per_s(0.0);
-    error_percent = 0.0;
     double quadrature_error_percent = 0.0;
     for (std::size_t k = 0; k < cells; ++k) {
         const double start_s = time_s(static_cast<double>(k));
@@ -103,24 +109,25 @@ PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, std::size_t ce
         depletion.nodes[k + 1] = {depletion.nodes[k].depleted_percent + both, load.percent_per_s(end_s)};
         quadrature_error_percent += std::abs(both - load.percent(start_s, end_s));
         const double interpolated = at_cell(depletion, k, 0.5) - depletion.nodes[k].depleted_percent;
-        error_percent = std::max(error_percent, std::abs(interpolated - first));
+        depletion.error_percent = std::max(depletion.error_percent, std::abs(interpolated - first));
         const bool beyond =
             !load.is_deliverable(start_s) || !load.is_deliverable(middle_s) || !load.is_deliverable(end_s);
         depletion.undeliverable_cells[k + 1] = depletion.undeliverable_cells[k] + (beyond ? 1 : 0);
     }
-    error_percent += quadrature_error_percent;
+    depletion.error_percent += quadrature_error_percent;
     depletion.deliverable = depletion.undeliverable_cells.back() == 0;
     return depletion;
 }
 
-PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, double& error_percent) {
+/// The table with as many cells as the wanted error takes.
+PhaseDepletion tabulate(const PhaseLoad& load, double duration_s) {
     auto cells =
         std::clamp(static_cast<std::size_t>(std::ceil(duration_s)), fewest_cells, first_cells_at_most);
-    auto depletion = tabulate(load, duration_s, cells, error_percent);
+    auto depletion = tabulate(load, duration_s, cells);
     const double wanted_percent = load.course ? wanted_error_along_source_percent : wanted_error_percent;
-    while (error_percent > wanted_percent && cells < most_cells && depletion.deliverable) {
+    while (depletion.error_percent > wanted_percent && cells < most_cells && depletion.deliverable) {
         cells *= 2;
-        depletion = tabulate(load, duration_s, cells, error_percent);
+        depletion = tabulate(load, duration_s, cells);
     }
     return depletion;
 }
@@ -144,63 +151,80 @@ battery::Battery with_constant_source(const MissionSetup& mission) {
     return battery;
 }
 
-DepletionTable tabulate_all(const MissionSetup& mission, std::vector<compute::Configuration> configurations,
-                            const VoltageCourse* course) {
+/// How much the lines bend, in voltage over the longer of two neighbours: an interpolated smooth curve is off
+/// by an eighth of that, one with a corner by less than all of it.
+double greatest_bend_v(const VoltageCourse& course) {
+    double bend_v = 0.0;
+    for (std::size_t i = 2; i < course.time_s.size(); ++i) {
+        const double before_s = course.time_s[i - 1] - course.time_s[i - 2];
+        const double after_s = course.time_s[i] - course.time_s[i - 1];
+        const double before_v_per_s = (course.voltage_v[i - 1] - course.voltage_v[i - 2]) / before_s;
+        const double after_v_per_s = (course.voltage_v[i] - course.voltage_v[i - 1]) / after_s;
+        bend_v = std::max(bend_v, std::abs(after_v_per_s - before_v_per_s) * std::max(before_s, after_s));
+    }
+    return bend_v;
+}
+
+}  // namespace
+
+std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission, const Schedule& schedule) {
+    const auto simulation = simulate(mission, schedule, {point_every_s, point_every_s, false});
+    if (!simulation.summary.feasible) return std::nullopt;
+    VoltageCourse course;
+    for (const auto& row : simulation.curve.rows) {
+        // At a jump the current changes, the source does not.
+        if (!course.time_s.empty() && row.time_s - course.time_s.back() < repeated_time_s) continue;
+        course.time_s.push_back(row.time_s);
+        course.voltage_v.push_back(row.terminal_voltage_v + mission.battery.resistance_ohm * row.current_a);
+    }
+    course.error_v = greatest_bend_v(course);
+    return course;
+}
+
+DepletionTable make_depletion_table(const MissionSetup& mission,
+                                    std::vector<compute::Configuration> configurations,
+                                    const VoltageCourse* course) {
     DepletionTable table;
     table.initial_soc_percent = mission.initial_soc_percent;
     table.depends_on_state = mission.battery.thevenin.has_value();
     table.configurations = std::move(configurations);
     table.depletions.resize(table.configurations.size());
     const auto battery = with_constant_source(mission);
-    const auto timeline = timeline_of(mission.duration_s);
-    for (const auto phase : flight::all_phases) {
-        const double duration_s = mission.duration_s[phase];
-        if (duration_s == 0.0) continue;
-        std::optional<mechanical::FourierModel> mechanical;
-        if (mission.mechanical) {
-            mechanical = flown_model(mission.mechanical->phases[phase], duration_s, mission.phase_clock);
-        }
+    const auto flown = load_of(mission);
+    for (const auto phase : all_phases) {
+        if (mission.duration_s[phase] == 0.0) continue;
         for (std::size_t c = 0; c < table.configurations.size(); ++c) {
             const PhaseLoad load{battery,
                                  course,
                                  mission.cutoff_voltage_v,
-                                 timeline.start_s[phase],
-                                 mechanical,
+                                 flown.timeline.start_s[phase],
+                                 flown.mechanical[phase],
                                  power_w(mission.compute, table.configurations[c])};
-            double error_percent = 0.0;
             auto& depletion = table.depletions[c][phase];
-            depletion = tabulate(load, duration_s, error_percent);
-            table.error_percent = std::max(table.error_percent, error_percent);
-            table.charges =
-                table.charges || std::any_of(depletion.nodes.begin(), depletion.nodes.end(),
-                                             [](const auto& node) { return node.percent_per_s < 0.0; });
+            depletion = tabulate(load, mission.duration_s[phase]);
+            table.error_percent = std::max(table.error_percent, depletion.error_percent);
+            table.charges = table.charges || std::ranges::any_of(depletion.nodes, [](const auto& node) {
+                                return node.percent_per_s < 0.0;
+                            });
         }
     }
     return table;
 }
 
-}  // namespace
-
-DepletionTable make_depletion_table(const MissionSetup& mission,
-                                    std::vector<compute::Configuration> configurations) {
-    return tabulate_all(mission, std::move(configurations), nullptr);
+std::optional<std::size_t> index_of(const DepletionTable& table, const compute::Configuration& run) {
+    const auto& known = table.configurations;
+    const auto found = std::ranges::find(known, run);
+    if (found == known.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - known.begin());
 }
 
-DepletionTable make_depletion_table(const MissionSetup& mission,
-                                    std::vector<compute::Configuration> configurations,
-                                    const VoltageCourse& course) {
-    return tabulate_all(mission, std::move(configurations), &course);
-}
-
-std::vector<TabledSegment> tabled(const std::vector<ScheduleSegment>& schedule, const DepletionTable& table) {
+std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable& table) {
     std::vector<TabledSegment> result;
     result.reserve(schedule.size());
     for (const auto& segment : schedule) {
-        const auto& known = table.configurations;
-        const auto found = std::find(known.begin(), known.end(), segment.run);
-        if (found == known.end())
-            throw std::invalid_argument("tabled: a configuration that is not in the table");
-        result.push_back({segment, static_cast<std::size_t>(found - known.begin())});
+        const auto configuration = index_of(table, segment.run);
+        if (!configuration) throw std::invalid_argument("tabled: a configuration that is not in the table");
+        result.push_back({segment, *configuration});
     }
     return result;
 }
@@ -226,11 +250,9 @@ SlotDepletions make_slot_depletions(const DepletionTable& table, std::span<const
     depletions.choices = table.configurations.size();
     depletions.initial_soc_percent = table.initial_soc_percent;
     depletions.percent.reserve(depletions.slots * depletions.choices);
-    for (auto slot : slots) {
-        for (slot.configuration = 0; slot.configuration < depletions.choices; ++slot.configuration) {
+    for (auto slot : slots)
+        for (slot.configuration = 0; slot.configuration < depletions.choices; ++slot.configuration)
             depletions.percent.push_back(soc_depletion_percent(table, slot));
-        }
-    }
     return depletions;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "mission/mission.h"
-#include "mission/planning/voltage_course.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +9,18 @@
 #include <vector>
 
 namespace flightwatt::mission {
+
+/// The voltage before the series resistor over a mission: straight lines between points, the ends' values
+/// beyond them.
+struct VoltageCourse {
+    std::vector<double> time_s;  ///< of the mission, rising strictly
+    std::vector<double> voltage_v;
+    double error_v = 0.0;  ///< what the straight lines may be off, by how they bend from one to the next
+};
+
+/// The course of a mission with a schedule, simulated as if there was no cut-off; none if the battery does
+/// not last.
+std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission, const Schedule& schedule);
 
 /// State of charge [points] that the battery has lost since a phase began, at evenly spread times, while one
 /// configuration runs; with its rate, so that cubics between the nodes are smooth.
@@ -20,26 +31,22 @@ struct PhaseDepletion {
     };
     double duration_s = 0.0;
     double cells_per_s = 0.0;
-    bool deliverable = true;  ///< all of it
-    std::vector<Node> nodes;  ///< cells + 1; empty for a phase that is not flown
-    std::vector<std::size_t>
-        undeliverable_cells;  ///< how many cells up to each node are beyond the power limit
+    bool deliverable = true;                       ///< all of it
+    std::vector<Node> nodes;                       ///< cells + 1; empty for a phase that is not flown
+    std::vector<std::size_t> undeliverable_cells;  ///< how many up to each node are beyond the power limit
+    double error_percent = 0.0;  ///< the greatest seen halfway between nodes, and that of the quadrature
 };
 
-/// Cumulative depletion by every configuration over every phase of a mission. Where the internal current
-/// depends on the power alone (Eq. 10), the depletion by any schedule is a sum of differences of its entries; with a
-/// battery whose source follows its charge, that holds along one course of the source's voltage only.
+/// Cumulative depletion by every configuration over every phase of a mission. Where the current depends on the power
+/// alone, a schedule depletes a sum of differences of its entries; with a battery whose source follows its charge, that
+/// holds along one course of the source's voltage only.
 struct DepletionTable {
     std::vector<compute::Configuration> configurations;
-    std::vector<flight::PerPhase<PhaseDepletion>> depletions;  ///< one a configuration
+    std::vector<PerPhase<PhaseDepletion>> depletions;  ///< one a configuration
     double initial_soc_percent = 100.0;
-    /// Some configuration charges the battery at some time: what a full battery then refuses depends on the
-    /// state of charge, and differences do not add up.
-    bool charges = false;
-    /// The battery's source follows its charge: entries hold along one course, sums do not tell the end.
-    bool depends_on_state = false;
-    /// The greatest error of a looked-up value that was seen halfway between nodes, and of the quadrature.
-    double error_percent = 0.0;
+    bool charges = false;  ///< somewhere: what a full battery then refuses depends on the state of charge
+    bool depends_on_state = false;  ///< the source follows the charge: sums do not tell the end
+    double error_percent = 0.0;     ///< the greatest of the phases'
 };
 
 /// A part of a phase in which one of the table's configurations runs.
@@ -47,33 +54,29 @@ struct TabledSegment : PhaseSegment {
     std::size_t configuration = 0;
 };
 
-/// Tabulates the mission's phases for the configurations. Without resistance
-/// entries are the closed integral of Eq. 1; with it, Gauss quadrature. Cells are halved until the error is
-/// under 1e-8 points (or there are 2^16 of them). What the cut-off voltage forbids counts as undeliverable.
-/// For a battery whose source follows its charge, along its voltage at the start, which depletes it no more
-/// than the truth if nothing charges.
-DepletionTable make_depletion_table(const MissionSetup& mission,
-                                    std::vector<compute::Configuration> configurations);
-
-/// The same along a given course of the source's voltage, with an error under 1e-6 points.
+/// Tabulates the mission's phases for the configurations. Without resistance entries are the closed integral of
+/// Eq. 1; with it, Gauss quadrature. Cells are halved until the error is under 1e-8 points (or there are 2^16 of
+/// them). What the cut-off voltage forbids counts as undeliverable. A battery whose source follows its charge is
+/// tabled along `course`, with an error under 1e-6 points; or without one along its voltage at the start, which
+/// depletes it no more than the truth if nothing charges.
 DepletionTable make_depletion_table(const MissionSetup& mission,
                                     std::vector<compute::Configuration> configurations,
-                                    const VoltageCourse& course);
+                                    const VoltageCourse* course = nullptr);
 
-/// A schedule in terms of a table that holds its configurations. Throws std::invalid_argument for
-/// one that the table does not hold.
-std::vector<TabledSegment> tabled(const std::vector<ScheduleSegment>& schedule, const DepletionTable& table);
+/// None if the table does not hold the configuration.
+std::optional<std::size_t> index_of(const DepletionTable& table, const compute::Configuration& run);
+
+/// A schedule in terms of a table. Throws std::invalid_argument for a configuration that it does not hold.
+std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable& table);
 
 /// The depletion by a segment [points]; infinite if the battery cannot deliver its power.
 double soc_depletion_percent(const DepletionTable& table, const TabledSegment& segment);
 
-/// State of charge after a whole schedule from the table's initial one, as if the battery went on below
-/// empty: negative where it is short. None where the table does not hold: it charges, depends on the state,
-/// or cannot be delivered.
+/// State of charge after a whole schedule, as if the battery went on below empty. None where the table does not hold:
+/// it charges, depends on the state, or cannot be delivered.
 std::optional<double> soc_after(const DepletionTable& table, std::span<const TabledSegment> schedule);
 
-/// The differences themselves, where many schedules share their slots: the depletion by every
-/// configuration in each.
+/// Where many schedules share their slots: the depletion by every configuration in each.
 struct SlotDepletions {
     std::size_t slots = 0;
     std::size_t choices = 0;      ///< the configurations of the table
@@ -84,9 +87,8 @@ struct SlotDepletions {
 /// Ignores slots[i].configuration.
 SlotDepletions make_slot_depletions(const DepletionTable& table, std::span<const TabledSegment> slots);
 
-/// Final state of charge of the schedule that runs choices[i] in slot i; minus infinity where that cannot be
-/// delivered. Not for a table that charges or depends on the state. Throws std::invalid_argument for another
-/// number of choices than slots.
+/// Final state of charge of the schedule that runs choices[i] in slot i; minus infinity where that cannot be delivered.
+/// Not for a table that charges or depends on the state. Throws std::invalid_argument for too few or many choices.
 double soc_after(const SlotDepletions& depletions, std::span<const std::uint16_t> choices);
 
 }  // namespace flightwatt::mission

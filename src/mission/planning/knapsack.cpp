@@ -4,24 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace flightwatt::mission {
 namespace {
 
-/// A path through the first slots, by its sums and its last run; `before` is where the run before stands in
-/// the trail.
-struct Label {
-    CostAndUtility sum;
+/// A run of a path; `before` is where the run before stands in the trail.
+struct TrailStep {
     std::size_t before = 0;
     std::size_t choice = 0;
     std::size_t to = 0;
 };
 
-struct TrailStep {
-    std::size_t before = 0;
-    std::size_t choice = 0;
-    std::size_t to = 0;
+/// A path through the first slots, by its last run and its sums.
+struct Label : TrailStep {
+    CostAndUtility sum;
 };
 
 /// The best found and what is known of the rest.
@@ -55,15 +51,14 @@ class LabelPass {
         for (auto& labels : at) labels.resize(graph.choices + 1);
         trail_.push_back({0, graph.begin_choice, graph.begin});
         at[graph.begin][std::min(graph.begin_choice, graph.choices)].push_back(
-            {graph.before_begin, 0, graph.begin_choice, graph.begin});
+            {trail_.front(), graph.before_begin});
         for (std::size_t i = graph.begin; i < graph.slots; ++i) {
             expand(i, at);
             at[i].clear();
         }
         const auto finished = merged(graph.slots, at[graph.slots]);
-        const auto best =
-            std::max_element(finished.begin(), finished.end(),
-                             [](const auto& a, const auto& b) { return a.sum.utility < b.sum.utility; });
+        const auto best = std::ranges::max_element(
+            finished, [](const auto& a, const auto& b) { return a.sum.utility < b.sum.utility; });
         if (best != finished.end() && best->sum.utility > result.best.sum.utility)
             result.best = path_of(*best);
         const double lost = as_good_ * static_cast<double>(2 * graph.slots + 2);
@@ -84,7 +79,7 @@ class LabelPass {
     /// Puts the labels' last runs into the trail: only those that survived, for it grows with every slot.
     void leave_trail(std::vector<Label>& labels) {
         for (auto& label : labels) {
-            trail_.push_back({label.before, label.choice, label.to});
+            trail_.push_back(label);
             label.before = trail_.size() - 1;
         }
     }
@@ -104,10 +99,8 @@ class LabelPass {
 
     void carry(const std::vector<Label>& labels, const ChoiceRun& run, std::vector<Label>& to) {
         for (const auto& label : labels) {
-            to.push_back({{label.sum.cost + run.sum.cost, label.sum.utility + run.sum.utility},
-                          label.before,
-                          run.choice,
-                          run.to});
+            to.push_back({{label.before, run.choice, run.to},
+                          {label.sum.cost + run.sum.cost, label.sum.utility + run.sum.utility}});
         }
     }
 
@@ -124,7 +117,7 @@ class LabelPass {
             if (!(label.sum.cost <= most_cost)) return true;
             return drop_if(label, utility_to_go, search_.best.sum.utility + utility_gap_ / 2.0);
         });
-        std::sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) {
+        std::ranges::sort(labels, [](const Label& a, const Label& b) {
             return a.sum.cost != b.sum.cost ? a.sum.cost < b.sum.cost : a.sum.utility > b.sum.utility;
         });
         double most_utility = -std::numeric_limits<double>::infinity();
@@ -151,7 +144,7 @@ class LabelPass {
 
     KnapsackPath path_of(const Label& label) const {
         KnapsackPath path{std::vector<std::size_t>(search_.graph.slots), label.sum};
-        TrailStep step{label.before, label.choice, label.to};
+        TrailStep step = label;
         for (;;) {
             const auto& before = trail_[step.before];
             std::fill(path.choices.begin() + static_cast<std::ptrdiff_t>(before.to),

@@ -127,9 +127,8 @@ KnapsackPath best_path(const KnapsackGraph& graph, const CostToGo& to_go, double
             }
         };
         for (const auto& run : graph.runs[i]) consider(run);
-        for (const auto& run : graph.one_more[i]) {
+        for (const auto& run : graph.one_more[i])
             if (run.choice == choice) consider(run);
-        }
         if (next == nullptr) throw std::logic_error("best_path: there is no way");
         path.choices.resize(next->to, next->choice);
         path.sum.cost += next->sum.cost;

@@ -1,7 +1,5 @@
 #include "mission/planning/planner.h"
 
-#include "mission/planning/voltage_course.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -85,64 +83,15 @@ std::vector<Choice> every_choice(const PlanningProblem& problem) {
 /// on with what is fixed can be better than something better.
 std::vector<Choice> undominated(std::vector<Choice> choices,
                                 const std::vector<compute::Configuration>& kept) {
-    std::stable_sort(choices.begin(), choices.end(), draws_less);
+    std::ranges::stable_sort(choices, draws_less);
     std::optional<double> most;
     std::erase_if(choices, [&](const Choice& choice) {
         const bool better = !most || choice.utility_per_s > *most;
         if (better) most = choice.utility_per_s;
-        return !better && std::find(kept.begin(), kept.end(), choice.run) == kept.end();
+        return !better && std::ranges::find(kept, choice.run) == kept.end();
     });
     return choices;
 }
-
-}  // namespace
-
-compute::Configuration least_power_configuration(const PlanningProblem& problem) {
-    require_few(problem);
-    const auto choices = every_choice(problem);
-    return std::min_element(choices.begin(), choices.end(), draws_less)->run;
-}
-
-Planner make_planner(const PlanningProblem& problem) {
-    if (std::none_of(problem.utilities.begin(), problem.utilities.end(), [](const auto& u) { return !!u; })) {
-        throw InputError({problem.file}, "the mission does not say what quality of service is worth",
-                         "give a component utility = { parameter = ..., weight = ... }");
-    }
-    require_few(problem);
-    const auto fixed = configurations_of(problem.fixed);
-    const auto kept = problem.plan.dwell_s > 0.0 ? fixed : std::vector<compute::Configuration>();
-    Planner planner;
-    std::vector<compute::Configuration> configurations;
-    for (auto& choice : undominated(every_choice(problem), kept)) {
-        configurations.push_back(std::move(choice.run));
-        planner.utility_per_s.push_back(choice.utility_per_s);
-    }
-    planner.free_choices = configurations.size();
-    for (const auto& run : fixed) {
-        if (std::find(configurations.begin(), configurations.end(), run) != configurations.end()) continue;
-        configurations.push_back(run);
-        planner.utility_per_s.push_back(utility_per_s(problem.utilities, run));
-    }
-    std::optional<VoltageCourse> highest;
-    if (problem.battery.thevenin) highest = voltage_course_of(problem, minimum_energy_schedule(problem));
-    if (highest) {
-        for (auto& voltage_v : highest->voltage_v) voltage_v += highest->error_v;
-        planner.depletions = make_depletion_table(problem, std::move(configurations), *highest);
-        planner.mechanical_depletion = make_depletion_table(problem, {{}}, *highest);
-        return planner;
-    }
-    planner.depletions = make_depletion_table(problem, std::move(configurations));
-    planner.mechanical_depletion = make_depletion_table(problem, {{}});
-    return planner;
-}
-
-Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse& course) {
-    planner.depletions = make_depletion_table(problem, std::move(planner.depletions.configurations), course);
-    planner.mechanical_depletion = make_depletion_table(problem, {{}}, course);
-    return planner;
-}
-
-namespace {
 
 /// Appends the slots of a time that nothing is fixed for.
 void add_free_slots(PhaseSegment free, double slot_s, double tolerance_s, std::vector<MissionSlot>& slots) {
@@ -162,13 +111,85 @@ void require_few_slots(const PlanningProblem& problem, double duration_s) {
                      "make slot_s in [plan] longer");
 }
 
+MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner& planner,
+                                   const PlanStart& start, const std::vector<MissionSlot>& slots) {
+    MultipleChoiceKnapsack knapsack;
+    knapsack.utility_per_s = planner.utility_per_s;
+    knapsack.free_choices = planner.free_choices;
+    knapsack.dwell_s = problem.plan.dwell_s;
+    if (start.running) {
+        if (const auto choice = index_of(planner.depletions, *start.running))
+            knapsack.running = {*choice, start.running_for_s};
+    }
+    for (const auto& slot : slots) {
+        KnapsackSlot choices{slot.duration_s(), std::nullopt, {}};
+        if (slot.fixed) choices.fixed = index_of(planner.depletions, *slot.fixed).value();
+        double more_percent = 0.0;
+        if (start.mechanical_factor != 1.0) {
+            more_percent = (start.mechanical_factor - 1.0) *
+                           soc_depletion_percent(planner.mechanical_depletion, {slot, 0});
+        }
+        for (std::size_t c = 0; c < planner.utility_per_s.size(); ++c)
+            choices.cost.push_back(soc_depletion_percent(planner.depletions, {slot, c}) + more_percent);
+        knapsack.slots.push_back(std::move(choices));
+    }
+    return knapsack;
+}
+
+Schedule schedule_of(const Planner& planner, const std::vector<MissionSlot>& slots,
+                     const std::vector<std::size_t>& choices) {
+    Schedule schedule;
+    for (std::size_t i = 0; i < slots.size(); ++i)
+        append_merged(schedule, {slots[i], planner.depletions.configurations[choices[i]]});
+    return schedule;
+}
+
 }  // namespace
+
+compute::Configuration least_power_configuration(const PlanningProblem& problem) {
+    require_few(problem);
+    const auto choices = every_choice(problem);
+    return std::ranges::min_element(choices, draws_less)->run;
+}
+
+Planner make_planner(const PlanningProblem& problem) {
+    if (std::ranges::none_of(problem.utilities, [](const auto& u) { return !!u; })) {
+        throw InputError({problem.file}, "the mission states no utility",
+                         "give a component utility = { parameter = ..., weight = ... }");
+    }
+    require_few(problem);
+    const auto fixed = configurations_of(problem.fixed);
+    const auto kept = problem.plan.dwell_s > 0.0 ? fixed : std::vector<compute::Configuration>();
+    Planner planner;
+    auto& configurations = planner.depletions.configurations;
+    for (auto& choice : undominated(every_choice(problem), kept)) {
+        configurations.push_back(std::move(choice.run));
+        planner.utility_per_s.push_back(choice.utility_per_s);
+    }
+    planner.free_choices = configurations.size();
+    for (const auto& run : fixed) {
+        if (index_of(planner.depletions, run)) continue;
+        configurations.push_back(run);
+        planner.utility_per_s.push_back(utility_per_s(problem.utilities, run));
+    }
+    std::optional<VoltageCourse> highest;
+    if (problem.battery.thevenin) highest = voltage_course_of(problem, minimum_energy_schedule(problem));
+    if (highest)
+        for (auto& voltage_v : highest->voltage_v) voltage_v += highest->error_v;
+    return with_voltage_course(problem, std::move(planner), highest ? &*highest : nullptr);
+}
+
+Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse* course) {
+    planner.depletions = make_depletion_table(problem, std::move(planner.depletions.configurations), course);
+    planner.mechanical_depletion = make_depletion_table(problem, {{}}, course);
+    return planner;
+}
 
 std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s) {
     const auto timeline = timeline_of(problem.duration_s);
     require_few_slots(problem, timeline.duration_s);
     std::vector<MissionSlot> slots;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         const double duration_s = problem.duration_s[phase];
         const double tolerance_s = same_time_tolerance_s(duration_s);
         double covered_s = std::max(0.0, time_s - timeline.start_s[phase]);
@@ -186,9 +207,9 @@ std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s)
     return slots;
 }
 
-std::vector<ScheduleSegment> minimum_energy_schedule(const PlanningProblem& problem) {
+Schedule minimum_energy_schedule(const PlanningProblem& problem) {
     const auto least_power = least_power_configuration(problem);
-    std::vector<ScheduleSegment> schedule;
+    Schedule schedule;
     for (const auto& slot : slots_of(problem)) schedule.push_back({slot, slot.fixed.value_or(least_power)});
     return schedule;
 }
@@ -197,6 +218,27 @@ Mission with_minimum_energy_schedule(const AnyMission& mission) {
     if (const auto* problem = std::get_if<PlanningProblem>(&mission))
         return {*problem, minimum_energy_schedule(*problem)};
     return std::get<Mission>(mission);
+}
+
+Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
+               double reserve_soc_percent, const KnapsackEffort& effort) {
+    const auto slots = slots_of(problem, start.time_s);
+    auto knapsack = knapsack_of(problem, planner, start, slots);
+    knapsack.budget = start.soc_percent - reserve_soc_percent;
+    const auto chosen = solve_knapsack(knapsack, effort);
+    Plan plan;
+    plan.feasible = chosen.feasible;
+    plan.deliverable = chosen.possible;
+    if (!chosen.possible) return plan;
+    plan.schedule = schedule_of(planner, slots, chosen.choices);
+    double duration_s = 0.0;
+    for (const auto& slot : slots) duration_s += slot.duration_s();
+    if (duration_s > 0.0) {
+        plan.utility = chosen.utility / duration_s;
+        plan.bound = chosen.bound / duration_s;
+    }
+    plan.final_soc_percent = start.soc_percent - chosen.cost;
+    return plan;
 }
 
 }  // namespace flightwatt::mission

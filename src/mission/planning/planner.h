@@ -1,7 +1,8 @@
 #pragma once
 
-#include "mission/mission.h"
+#include "mission/plan.h"
 #include "mission/planning/depletion_table.h"
+#include "mission/planning/knapsack.h"
 
 #include <cstddef>
 #include <optional>
@@ -9,8 +10,7 @@
 
 namespace flightwatt::mission {
 
-/// What all plans of a problem have in common, whenever they are made: configurations with their utility, and
-/// how they deplete the battery.
+/// What all plans of a problem have in common: configurations with their utility, and how they deplete the battery.
 struct Planner {
     DepletionTable depletions;            ///< its configurations are the choices
     std::vector<double> utility_per_s;    ///< of each of them
@@ -18,22 +18,20 @@ struct Planner {
     DepletionTable mechanical_depletion;  ///< of one configuration, in which nothing runs
 };
 
-/// The configurations that [plan] allows, without those that draw more than another one of as much utility,
-/// and those that the fixed segments run. Throws InputError if the mission states no utility, or has more than
-/// a million combinations.
-///
-/// Of a battery whose source follows its charge, the tables are along the voltage that the schedule of least
-/// energy demand keeps, raised by the course's error. Where nothing charges, every other schedule is below it
-/// at any time, as less power leaves more charge and a smaller RC voltage: so none depletes the battery less
-/// than this table says.
+/// The configurations that [plan] allows, without those that draw more than another one of as much utility, and those
+/// that the fixed segments run. Throws InputError if the mission states no utility, or has more than a million
+/// combinations.
+/// Of a battery whose source follows its charge, the tables are along the voltage that the schedule of least energy
+/// demand keeps, raised by the course's error. Where nothing charges, no schedule keeps more, and none depletes the
+/// battery less than this table says.
 Planner make_planner(const PlanningProblem& problem);
 
-/// The same choices, with their depletion along a course of the source's voltage.
-Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse& course);
+/// The same choices, with their depletion along a course of the source's voltage, as make_depletion_table.
+Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse* course);
 
 /// The schedule that demands least energy: the configuration that draws least wherever nothing is fixed (which
 /// any dwell time allows). Throws InputError as make_planner does for too many combinations.
-std::vector<ScheduleSegment> minimum_energy_schedule(const PlanningProblem& problem);
+Schedule minimum_energy_schedule(const PlanningProblem& problem);
 
 /// The mission with that schedule; one that has a schedule stays as it is.
 Mission with_minimum_energy_schedule(const AnyMission& mission);
@@ -46,9 +44,22 @@ struct MissionSlot : PhaseSegment {
     std::optional<compute::Configuration> fixed;
 };
 
-/// The mission from `time_s` on: fixed segments, and between them slots that end at multiples of slot_s
-/// since their phase began, or where a fixed segment or the phase does. Throws InputError for more than 20000
-/// slots.
+/// The mission from `time_s` on: fixed segments, and between them slots that end at multiples of slot_s since their
+/// phase began, or where a fixed segment or the phase does. Throws InputError for more than 20000 slots.
 std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s = 0.0);
+
+/// Where a plan starts: before the flight, or in it.
+struct PlanStart {
+    double time_s = 0.0;  ///< of the mission
+    double soc_percent = 100.0;
+    /// For the dwell time; ignored if it is none of the planner's.
+    std::optional<compute::Configuration> running = std::nullopt;
+    double running_for_s = 0.0;
+    double mechanical_factor = 1.0;  ///< of mechanical depletion to what the model predicts
+};
+
+/// The schedule of most utility of those that end with the reserve; takes milliseconds, for calls in flight.
+Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
+               double reserve_soc_percent, const KnapsackEffort& effort = {});
 
 }  // namespace flightwatt::mission

@@ -2,8 +2,8 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mission/planning/plan_rest.h"
-#include "mission/simulation/segment_discharge.h"
+#include "mission/planning/planner.h"
+#include "mission/simulation/load_segments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,21 +25,13 @@ constexpr double jump_factor = 2.0;  ///< of the depletion predicted: beyond, ch
 /// open-circuit voltage over it. The state of charge itself where that is constant.
 double energy_equivalent_soc_percent(const AdaptivePlanner& planner, double soc_percent) {
     if (!planner.open_circuit) return soc_percent;
-    const auto& [knots, voltage_v] = *planner.open_circuit;
-    double sum = 0.0;
-    for (std::size_t k = 1; k < knots.size() && knots[k - 1] < soc_percent; ++k) {
-        const double to_percent = std::min(knots[k], soc_percent);
-        const double part = (to_percent - knots[k - 1]) / (knots[k] - knots[k - 1]);
-        const double to_v = std::lerp(voltage_v[k - 1], voltage_v[k], part);
-        sum += (to_percent - knots[k - 1]) * (voltage_v[k - 1] + to_v) / 2.0;
-    }
-    return sum / planner.known.battery.voltage_v;
+    return voltage_integral(*planner.open_circuit, soc_percent) / planner.known.battery.voltage_v;
 }
 
 /// The times from one decision to the next, as planned.
 std::vector<PhaseSegment> intervals_of(const PlanningProblem& known) {
     std::vector<PhaseSegment> intervals;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         const double duration_s = known.duration_s[phase];
         const double every_s = known.adaptive->decide_every_s;
         const auto count =
@@ -69,29 +61,22 @@ struct Learned {
 /// One flight in the air.
 class Flight {
   public:
-    Flight(const AdaptivePlanner& planner, const MissionSetup& actual,
-           const std::vector<Disturbance>& disturbances)
+    Flight(const AdaptivePlanner& planner, const MissionSetup& actual, const Disturbances& disturbances)
         : adaptive_(planner),
           known_(planner.known),
-          planner_(planner.planner),
           actual_(actual),
           disturbances_(disturbances),
           battery_(disturbed(actual.battery, disturbances)),
           planned_(timeline_of(known_.duration_s)),
-          flown_(timeline_of(actual.duration_s)) {
+          load_(load_of(actual)) {
         charge_.soc_percent = actual.initial_soc_percent;
         reserve_percent_ = energy_equivalent_soc_percent(planner, known_.reserve_soc_percent);
         const auto& policy = *known_.adaptive;
         reach_ =
             policy.mechanical_sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
-        for (const auto phase : flight::all_phases) {
-            if (actual.mechanical && actual.duration_s[phase] != 0.0) {
-                curves_[phase] = flown_model(actual.mechanical->phases[phase], actual.duration_s[phase],
-                                             actual.phase_clock);
-            }
+        for (const auto phase : all_phases)
             if (known_.duration_s[phase] > 0.0)
                 rest_mechanical_percent_ += mechanical_percent({phase, 0.0, known_.duration_s[phase]});
-        }
     }
 
     void fly(const PhaseSegment& interval) {
@@ -101,8 +86,8 @@ class Flight {
             if (planned.phase != interval.phase || planned.start_s >= interval.end_s) break;
             auto segment = planned;
             segment.end_s = std::min(planned.end_s, interval.end_s);
-            predicted_percent +=
-                soc_depletion_percent(planner_.depletions, tabled({segment}, planner_.depletions).front());
+            const auto& table = adaptive_.planner.depletions;
+            predicted_percent += soc_depletion_percent(table, tabled({segment}, table).front());
             run(segment);
         }
         learn(interval, before_percent - soc_left_percent(), predicted_percent);
@@ -117,10 +102,10 @@ class Flight {
 
   private:
     double mechanical_percent(const PhaseSegment& time) const {
-        return soc_depletion_percent(planner_.mechanical_depletion, {time, 0});
+        return soc_depletion_percent(adaptive_.planner.mechanical_depletion, {time, 0});
     }
 
-    std::vector<ScheduleSegment> decide(const PhaseSegment& interval) {
+    Schedule decide(const PhaseSegment& interval) {
         const auto& policy = *known_.adaptive;
         PlanStart start{planned_.start_s[interval.phase] + interval.start_s, soc_left_percent(), running_,
                         running_for_s_};
@@ -130,20 +115,18 @@ class Flight {
                                 : 0.0;
         const double to_come = policy.learning_time_s / (planned_.duration_s - start.time_s);
         const double margin_percent = reach_ * rest_mechanical_percent_ * std::sqrt(seen + to_come);
-        const auto plan = plan_rest(known_, planner_, start, reserve_percent_ + margin_percent,
+        const auto plan = plan_rest(known_, adaptive_.planner, start, reserve_percent_ + margin_percent,
                                     effort_for((planned_.duration_s - start.time_s) / known_.plan.slot_s));
         ++flight_.decisions.made;
         if (!plan.feasible) ++flight_.decisions.without_plan;
-        if (plan.schedule.empty()) {
-            // Nothing that the battery can deliver is known: fly on with what demands least energy.
-            auto rest = minimum_energy_schedule(known_);
-            std::erase_if(rest, [&](const ScheduleSegment& s) {
-                return s.phase < interval.phase || (s.phase == interval.phase && s.end_s <= interval.start_s);
-            });
-            if (!rest.empty()) rest.front().start_s = std::max(rest.front().start_s, interval.start_s);
-            return rest;
-        }
-        return plan.schedule;
+        if (!plan.schedule.empty()) return plan.schedule;
+        // Nothing that the battery can deliver is known: fly on with what demands least energy.
+        auto rest = minimum_energy_schedule(known_);
+        std::erase_if(rest, [&](const ScheduleSegment& s) {
+            return s.phase < interval.phase || (s.phase == interval.phase && s.end_s <= interval.start_s);
+        });
+        if (!rest.empty()) rest.front().start_s = std::max(rest.front().start_s, interval.start_s);
+        return rest;
     }
 
     /// Runs a segment of the plan in the flight as it is.
@@ -152,21 +135,9 @@ class Flight {
         running_for_s_ += planned.duration_s();
         running_ = planned.run;
         append_merged(flight_.schedule, planned);
-        for (const auto& segment : disturbed({load_of(planned)}, disturbances_))
+        const auto flown = rescale_to_flown_durations({planned}, known_.duration_s, actual_.duration_s);
+        for (const auto& segment : disturbed({load_segment(load_, flown.front())}, disturbances_))
             charge_ = after_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
-    }
-
-    LoadSegment load_of(const ScheduleSegment& planned) const {
-        const auto flown =
-            rescale_to_flown_durations({planned}, known_.duration_s, actual_.duration_s).front();
-        LoadSegment segment;
-        segment.phase = flown.phase;
-        segment.phase_start_s = flown_.start_s[flown.phase];
-        segment.start_s = segment.phase_start_s + flown.start_s;
-        segment.end_s = segment.phase_start_s + flown.end_s;
-        segment.mechanical = curves_[flown.phase];
-        segment.compute_w = power_w(actual_.compute, flown.run);
-        return segment;
     }
 
     void learn(const PhaseSegment& interval, double observed_percent, double predicted_percent) {
@@ -183,14 +154,12 @@ class Flight {
 
     const AdaptivePlanner& adaptive_;
     const PlanningProblem& known_;
-    const Planner& planner_;
     const MissionSetup& actual_;
-    const std::vector<Disturbance>& disturbances_;
+    const Disturbances& disturbances_;
     battery::Battery battery_;  ///< as it really is
     MissionTimeline planned_;
-    MissionTimeline flown_;
+    MissionLoad load_;  ///< of the mission as it really is
     AdaptiveFlight flight_;
-    flight::PerPhase<std::optional<mechanical::FourierModel>> curves_;
     battery::Discharge charge_;
     Learned learned_;
     std::optional<compute::Configuration> running_;
@@ -219,7 +188,7 @@ AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
 }
 
 AdaptiveFlight fly_adaptively(const AdaptivePlanner& planner, const MissionSetup& actual,
-                              const std::vector<Disturbance>& disturbances) {
+                              const Disturbances& disturbances) {
     Flight flight(planner, actual, disturbances);
     for (const auto& interval : intervals_of(planner.known)) flight.fly(interval);
     return flight.landed();

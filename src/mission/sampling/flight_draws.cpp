@@ -42,21 +42,13 @@ std::string basis_of(const LevelDeviation& deviation) {
     throw std::logic_error("basis_of: no such source of a deviation");
 }
 
-void find_level(const MissionSetup& mission, flight::Phase phase, FlightSpreads& spreads) {
-    const auto deviation = level_deviation(mission, phase);
-    spreads.level_sd_w[phase] = deviation.sd_w;
-    note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)),
-                basis_of(deviation));
-}
-
-void find_duration(const MissionSetup& mission, flight::Phase phase, FlightSpreads& spreads) {
+void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spreads) {
     const auto source = fmt::format("{} duration", to_string(phase));
     auto& sd_s = spreads.duration_sd_s[phase];
     std::vector<double> flown_s;
     if (mission.mechanical) {
-        for (const auto& flight : mission.mechanical->flights) {
+        for (const auto& flight : mission.mechanical->flights)
             if (const auto& part = flight.phases[phase]) flown_s.push_back(part->duration_s);
-        }
     }
     std::string basis = "no flights that differ: state duration_sd_s";
     if (const auto stated_s = mission.uncertainty.duration_sd_s[phase]) {
@@ -74,15 +66,14 @@ void find_duration(const MissionSetup& mission, flight::Phase phase, FlightSprea
 void find_compute(const MissionSetup& mission, FlightSpreads& spreads) {
     const auto& components = mission.compute.components;
     for (std::size_t i = 0; i < components.size(); ++i) {
-        const auto source = fmt::format("power of {}", components[i].name);
-        if (const auto percent = mission.uncertainty.compute_sd_percent.at(i)) {
-            note_source(spreads, *percent > 0.0, source, fmt::format("sd {:.4g} %, stated", *percent));
-        } else if (!components[i].profile.standard_error_w.empty()) {
-            note_source(spreads, true, source, "standard errors of its profile");
-        } else {
-            note_source(spreads, false, source,
-                        "its profile has no standard errors: profile it, or state compute_sd_percent");
-        }
+        const auto stated_percent = mission.uncertainty.compute_sd_percent.at(i);
+        const bool has_errors = !components[i].profile.standard_error_w.empty();
+        note_source(spreads, stated_percent ? *stated_percent > 0.0 : has_errors,
+                    fmt::format("power of {}", components[i].name),
+                    stated_percent ? fmt::format("sd {:.4g} %, stated", *stated_percent)
+                    : has_errors
+                        ? "standard errors of its profile"
+                        : "its profile has no standard errors: profile it, or state compute_sd_percent");
     }
 }
 
@@ -190,9 +181,14 @@ void draw_compute(const Uncertainty& stated, Normals& normal, compute::ComputeMo
 
 FlightSpreads find_spreads(const MissionSetup& mission) {
     FlightSpreads spreads;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
-        if (mission.mechanical) find_level(mission, phase, spreads);
+        if (mission.mechanical) {
+            const auto deviation = level_deviation(mission, phase);
+            spreads.level_sd_w[phase] = deviation.sd_w;
+            note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)),
+                        basis_of(deviation));
+        }
         find_duration(mission, phase, spreads);
     }
     find_compute(mission, spreads);
@@ -200,22 +196,11 @@ FlightSpreads find_spreads(const MissionSetup& mission) {
     return spreads;
 }
 
-FlightSpreads spreads_of(const MissionSetup& mission) {
-    auto spreads = find_spreads(mission);
-    if (!spreads.drawn.empty()) return spreads;
-    throw InputError({mission.file},
-                     "there is nothing to draw flights from: neither the mechanical model, nor the profiles, "
-                     "nor the battery say how they differ",
-                     "fit the model to two flights or more (flightwatt fit), or state it: [uncertainty] with "
-                     "level_sd_percent = { cruise = 5 }, duration_sd_s = { cruise = 20 }, "
-                     "compute_sd_percent or capacity_sd_percent");
-}
-
 MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,
                          std::uint64_t index) {
     Normals normal(seed, index);
     auto flight = mission;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         const double level_z = normal();
         const double duration_z = normal();
         if (flight.mechanical)

@@ -12,8 +12,22 @@
 #include <fmt/format.h>
 
 namespace flightwatt::mission {
+namespace {
 
-LevelDeviation level_deviation(const MissionSetup& mission, flight::Phase phase) {
+double phase_depletion_percent(const MissionSetup& mission, const compute::Configuration& configuration,
+                               Phase phase) {
+    const auto table = make_depletion_table(mission, {configuration});
+    return soc_depletion_percent(table, {{phase, 0.0, mission.duration_s[phase]}, 0});
+}
+
+void require_probability(double probability) {
+    if (probability >= 0.5 && probability < 1.0) return;
+    throw std::invalid_argument("the probability of a margin is not from 0.5 to below 1");
+}
+
+}  // namespace
+
+LevelDeviation level_deviation(const MissionSetup& mission, Phase phase) {
     const auto& model = mission.mechanical->phases[phase];
     if (const auto percent = mission.uncertainty.level_sd_percent[phase]) {
         const double duration_s = mission.duration_s[phase];
@@ -21,7 +35,7 @@ LevelDeviation level_deviation(const MissionSetup& mission, flight::Phase phase)
         const double mean_w = std::abs(energy_j(flown, duration_s) / duration_s);
         return {units::part_of(mean_w, *percent), DeviationSource::stated};
     }
-    if (phase == flight::Phase::cruise && mission.cruise_level)
+    if (phase == Phase::cruise && mission.cruise_level)
         return {mission.cruise_level->sd_w.value(), DeviationSource::conditions};
     if (const auto& spread = model.level_spread) {
         const double weight_square_sum = forecast_of(*mission.mechanical, phase).weight_square_sum;
@@ -32,7 +46,7 @@ LevelDeviation level_deviation(const MissionSetup& mission, flight::Phase phase)
     return {};
 }
 
-double level_sd_w(const MissionSetup& mission, flight::Phase phase) {
+double level_sd_w(const MissionSetup& mission, Phase phase) {
     if (!mission.mechanical) {
         throw InputError({mission.file}, "mechanical = \"none\": there are no flights that differ",
                          "a chance needs a mechanical model of two flights or more");
@@ -47,26 +61,15 @@ double level_sd_w(const MissionSetup& mission, flight::Phase phase) {
                      "[uncertainty] with level_sd_percent");
 }
 
-namespace {
-
-double phase_depletion_percent(const MissionSetup& mission, const compute::Configuration& configuration,
-                               flight::Phase phase) {
-    const auto table = make_depletion_table(mission, {configuration});
-    return soc_depletion_percent(table, {{phase, 0.0, mission.duration_s[phase]}, 0});
-}
-
-}  // namespace
-
 double soc_depletion_sd_percent(const MissionSetup& mission,
                                 const std::vector<compute::Configuration>& configurations) {
-    const auto most_power =
-        std::max_element(configurations.begin(), configurations.end(), [&](const auto& a, const auto& b) {
-            return power_w(mission.compute, a) < power_w(mission.compute, b);
-        });
+    const auto most_power = std::ranges::max_element(configurations, [&](const auto& a, const auto& b) {
+        return power_w(mission.compute, a) < power_w(mission.compute, b);
+    });
     if (most_power == configurations.end())
         throw std::invalid_argument("soc_depletion_sd_percent: no configuration");
     double variance = 0.0;
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
         auto stronger = mission;
         stronger.mechanical->phases[phase].fourier.a0_w += level_sd_w(mission, phase);
@@ -85,11 +88,29 @@ double soc_depletion_sd_percent(const MissionSetup& mission,
 
 double margin_percent(const MissionSetup& mission, const std::vector<compute::Configuration>& configurations,
                       double probability) {
-    if (!(probability >= 0.5 && probability < 1.0)) {
-        throw std::invalid_argument("margin_percent: the probability is not from 0.5 to below 1");
+    require_probability(probability);
+    return normal_quantile(probability) * soc_depletion_sd_percent(mission, configurations);
+}
+
+PlanningProblem mission_at_quantile(const PlanningProblem& problem, double probability) {
+    require_probability(probability);
+    PerPhase<double> sd_w;
+    double energy_variance_j2 = 0.0;
+    for (const auto phase : all_phases) {
+        if (problem.duration_s[phase] == 0.0) continue;
+        sd_w[phase] = level_sd_w(problem, phase);
+        energy_variance_j2 += std::pow(sd_w[phase] * problem.duration_s[phase], 2);
     }
-    const double sd_percent = soc_depletion_sd_percent(mission, configurations);
-    return normal_quantile(probability) * sd_percent;
+    auto stronger = problem;
+    if (energy_variance_j2 == 0.0) return stronger;
+    for (const auto phase : all_phases) {
+        const double part = sd_w[phase] * problem.duration_s[phase] / std::sqrt(energy_variance_j2);
+        if (part > 0.0) {
+            stronger.mechanical->phases[phase].fourier.a0_w +=
+                normal_quantile(probability) * part * sd_w[phase];
+        }
+    }
+    return stronger;
 }
 
 }  // namespace flightwatt::mission

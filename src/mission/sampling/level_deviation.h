@@ -26,24 +26,26 @@ struct LevelDeviation {
 /// The first of the sources, in their order, that the mission has. Of the model's flights: their standard
 /// deviation times sqrt(1 + sum of their squared weights), which is that of a new flight about an average of
 /// few, taken as known. Needs a mechanical model.
-LevelDeviation level_deviation(const MissionSetup& mission, flight::Phase phase);
+LevelDeviation level_deviation(const MissionSetup& mission, Phase phase);
 
 /// The deviation [W] where it is how flights differ. Throws InputError where there is no mechanical model, or
 /// one that does not say so.
-double level_sd_w(const MissionSetup& mission, flight::Phase phase);
+double level_sd_w(const MissionSetup& mission, Phase phase);
 
-/// Standard deviation [points] of a mission's depletion, from how the flights' mean powers differ: of each
-/// phase, the depletion by one standard deviation more mechanical power for as long as it is flown, beside the
-/// configuration that draws most; the phases' variances add. Without resistance the depletion is linear in
-/// power, so that Gaussian levels make a Gaussian depletion; with it, this errs on the safe side. Throws
-/// InputError as level_sd_w; NoAnswerError where the battery could not deliver that power.
+/// Standard deviation [points] of a mission's depletion (docs/methods.md, Eq. 34), each phase flown beside the
+/// configuration that draws most. Throws InputError as level_sd_w; NoAnswerError where the battery could not deliver
+/// one standard deviation more of mechanical power.
 double soc_depletion_sd_percent(const MissionSetup& mission,
                                 const std::vector<compute::Configuration>& configurations);
 
-/// What to plan for above a reserve, so that it is kept with `probability` (from 0.5, below 1): that quantile
-/// of a Gaussian with the deviation above, taken as known. Throws std::invalid_argument for other
-/// probabilities.
+/// What to plan for above a reserve, so that it is kept with `probability`: that quantile of a Gaussian with the
+/// deviation above. Throws std::invalid_argument for a probability not from 0.5 to below 1.
 double margin_percent(const MissionSetup& mission, const std::vector<compute::Configuration>& configurations,
                       double probability);
+
+/// The mission with mechanical power raised by what flights exceed with 1 - probability: every phase by its deviation
+/// times its part in that of the energy, times the Gaussian quantile. Its final state of charge is, to first order,
+/// the (1 - probability) quantile of the flights'. Throws as margin_percent does.
+PlanningProblem mission_at_quantile(const PlanningProblem& problem, double probability);
 
 }  // namespace flightwatt::mission

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "battery/discharge.h"
 #include "mission/disturbance.h"
 #include "mission/mission.h"
 
@@ -8,10 +9,13 @@
 
 namespace flightwatt::mission {
 
+/// A battery that ends this near to the end of its mission has lasted.
+inline constexpr double lasting_tolerance_s = 1e-6;
+
 /// What a mission demands from one jump of power to the next: smooth mechanical power and constant computing.
 /// Times are those of the mission.
 struct LoadSegment {
-    flight::Phase phase = flight::Phase::takeoff;
+    Phase phase = Phase::takeoff;
     double phase_start_s = 0.0;
     double start_s = 0.0;
     double end_s = 0.0;
@@ -20,14 +24,23 @@ struct LoadSegment {
     double soc_drop_percent = 0.0;  ///< [points] that the battery loses at once as this starts
 };
 
-/// The load of a schedule, in order and without gaps: each segment starts exactly where the one before ends.
-std::vector<LoadSegment> load_segments(const MissionSetup& mission,
-                                       const std::vector<ScheduleSegment>& schedule);
+/// What the schedules of a mission demand, as far as it does not depend on the schedule. Refers to the mission.
+struct MissionLoad {
+    const MissionSetup& mission;
+    MissionTimeline timeline;
+    /// Of the phases that are flown, in their own time; none without a mechanical model.
+    PerPhase<std::optional<mechanical::FourierModel>> mechanical;
+};
 
-/// The segments, cut where a disturbance starts or ends and changed in between. Without mechanical power
-/// there is none to disturb.
+MissionLoad load_of(const MissionSetup& mission);
+LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& scheduled);
+
+/// The load of a schedule, in order and without gaps: each segment starts exactly where the one before ends.
+std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule);
+
+/// The segments, cut where a disturbance starts or ends and changed in between.
 std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments,
-                                   const std::vector<Disturbance>& disturbances);
+                                   const Disturbances& disturbances);
 
 double mechanical_w(const LoadSegment& segment, double time_s);
 double power_w(const LoadSegment& segment, double time_s);
@@ -35,5 +48,14 @@ double power_w(const LoadSegment& segment, double time_s);
 /// Energies [J] demanded from the segment's start to `time_s`, a time within it.
 double mechanical_energy_j(const LoadSegment& segment, double time_s);
 double compute_energy_j(const LoadSegment& segment, double time_s);
+
+/// The battery after the charge that it loses at once as a segment starts.
+battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segment);
+
+/// The battery after a segment, for flights that are flown by the thousand: the closed integral where the source is
+/// constant, without resistance, and nothing charges; elsewhere Runge-Kutta with steps of a second. A battery that has
+/// ended, or cannot deliver, stays as it is.
+battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v,
+                                 const LoadSegment& segment, battery::Discharge state);
 
 }  // namespace flightwatt::mission

@@ -1,4 +1,4 @@
-#include "mechanical/validation_score.h"
+#include "mechanical/validation.h"
 #include "report/figures/flight_figures.h"
 
 #include <algorithm>

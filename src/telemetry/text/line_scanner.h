@@ -103,10 +103,9 @@ std::size_t scan_padded_lines(const char* begin, const char* end, std::size_t nu
 }
 
 /// Calls on_line(ScannedLine) for every line of `text`. The end of the text is copied once, so that reading
-/// ahead never leaves it; `before_end` is called while the last lines are still in memory. Returns the number
-/// of lines.
-template <typename OnLine, typename BeforeEnd>
-std::size_t scan_lines(std::string_view text, OnLine&& on_line, BeforeEnd&& before_end) {
+/// ahead never leaves it. Returns the number of lines.
+template <typename OnLine>
+std::size_t scan_lines(std::string_view text, OnLine&& on_line) {
     std::size_t whole = 0;  // bytes of lines that can be scanned in place
     if (text.size() > read_ahead) {
         const auto last_break = text.rfind('\n', text.size() - read_ahead);
@@ -116,14 +115,7 @@ std::size_t scan_lines(std::string_view text, OnLine&& on_line, BeforeEnd&& befo
     std::string tail(text.substr(whole));
     const auto tail_size = tail.size();
     tail.append(read_ahead, '\0');
-    const auto lines = scan_padded_lines(tail.data(), tail.data() + tail_size, number, on_line) - 1;
-    before_end();
-    return lines;
-}
-
-template <typename OnLine>
-std::size_t scan_lines(std::string_view text, OnLine&& on_line) {
-    return scan_lines(text, on_line, [] {});
+    return scan_padded_lines(tail.data(), tail.data() + tail_size, number, on_line) - 1;
 }
 
 /// The words of a line, one after the other; blanks separate, and several count as one word break each.
@@ -155,7 +147,7 @@ class WordCursor {
         const auto rest = static_cast<unsigned>(block + block_size - end_);
         return count + static_cast<std::size_t>(std::popcount(blanks << rest));
     }
-    /// Leaves out a carriage return at the end of the line.
+    /// Excludes a carriage return at the end of the line.
     void trim_return() {
         if (word_ < end_ && end_[-1] == '\r') --end_;
     }

@@ -11,13 +11,10 @@ namespace {
 
 /// The time of a line "TIME SENDER NAME ..."; NaN for any other.
 double time_of(std::string_view line) {
-    const auto first = line.find(' ');
-    if (first == std::string_view::npos) return std::numeric_limits<double>::quiet_NaN();
+    const auto first = std::min(line.find(' '), line.size());
     const auto second = line.find(' ', first + 1);
-    if (second == std::string_view::npos || second + 1 >= line.size()) {
-        return std::numeric_limits<double>::quiet_NaN();
-    }
-    return number_or_nan(line.substr(0, first));
+    const bool is_message = second != std::string_view::npos && second + 1 < line.size();
+    return is_message ? number_or_nan(line.substr(0, first)) : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -29,7 +26,6 @@ void SkipCounter::add(const SkipKind& kind, double time_s, std::size_t line_numb
     auto& lines = known->second.lines;
     if (!lines.empty() && lines.back().time_s == time_s) {
         ++lines.back().count;
-        lines.back().first_line = std::min(lines.back().first_line, line_number);
     } else {
         lines.push_back({time_s, 1, line_number});
     }
@@ -53,10 +49,7 @@ double SkipCounter::time_behind_s(const char* line_end) {
         const auto line = rest.substr(0, rest.find('\n'));
         const double time_s = time_of(line);
         searched_to_ = line.data();
-        if (!std::isnan(time_s)) {
-            found_s_ = time_s;
-            return found_s_;
-        }
+        if (!std::isnan(time_s)) return found_s_ = time_s;
         rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     }
     searched_to_ = rest.data();
@@ -72,7 +65,6 @@ std::vector<std::pair<SkipKind, SkippedLines>> SkipCounter::take() {
         for (const auto& at : lines) {
             if (!merged.empty() && merged.back().time_s == at.time_s) {
                 merged.back().count += at.count;
-                merged.back().first_line = std::min(merged.back().first_line, at.first_line);
             } else {
                 merged.push_back(at);
             }

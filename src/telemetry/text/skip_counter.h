@@ -1,6 +1,6 @@
 #pragma once
 
-#include "telemetry/telemetry_log.h"
+#include "telemetry/log_notes.h"
 #include "telemetry/text/line_scanner.h"
 
 #include <cstddef>
@@ -25,8 +25,7 @@ class SkipCounter {
     explicit SkipCounter(std::string_view text) : text_(text) {}
 
     void add(const SkipKind& kind, double time_s, std::size_t line_number);
-    /// A line without a time counts to the next one in the text that has one. Lines must come in the order of
-    /// the text, or nearly so, for this to be fast.
+    /// A line without a time counts to the next one in the text that has one. Fast in the order of the text.
     void add_without_time(const SkipKind& kind, const ScannedLine& line);
 
     /// What was counted, by first line. `reason` is left empty.

@@ -14,18 +14,17 @@ namespace flightwatt::telemetry {
 /// for eight bytes from a word's begin.
 class WantedMessages {
   public:
-    explicit WantedMessages(const std::vector<std::string>& names) : names_(names) {
-        for (std::size_t i = 0; i < names_.size(); ++i) {
-            std::string padded = names_[i];
-            padded.append(sizeof(std::uint64_t), '\0');
-            const auto key = key_of({padded.data(), names_[i].size()});
-            auto slot = slot_of(key);
-            while (slots_[slot].index != none) slot = (slot + 1) % slots_.size();
-            slots_[slot] = {key, static_cast<std::uint8_t>(i)};
-        }
-    }
-
     static constexpr std::uint8_t none = 0xFF;
+
+    /// `name` gets the next index, from 0 on.
+    void add(const std::string& name) {
+        const auto padded = name + std::string(sizeof(std::uint64_t), '\0');
+        const auto key = key_of({padded.data(), name.size()});
+        auto slot = slot_of(key);
+        while (slots_[slot].index != none) slot = (slot + 1) % slots_.size();
+        slots_[slot] = {key, static_cast<std::uint8_t>(names_.size())};
+        names_.push_back(name);
+    }
 
     /// The index of `name` among the wanted ones; none if it is not wanted.
     std::uint8_t find(std::string_view name) const {

@@ -3,7 +3,6 @@
 #include "battery/identification/open_circuit.h"
 
 #include "base/error.h"
-#include "battery/lipo_chart.h"
 
 #include <algorithm>
 
@@ -20,23 +19,36 @@ CircuitFit fit_down_to(double last_cell_v) {
     return fit;
 }
 
-TEST(LipoChart, IsItsOwnInverse) {
-    EXPECT_EQ(lipo_chart_voltage_v(100.0), 4.20);
-    EXPECT_EQ(lipo_chart_voltage_v(50.0), 3.84);
-    EXPECT_EQ(lipo_chart_voltage_v(0.0), 3.27);
-    for (double soc = 0.0; soc <= 100.0; soc += 2.5) {
-        EXPECT_NEAR(lipo_chart_soc_percent(lipo_chart_voltage_v(soc)), soc, 1e-9);
-    }
-    EXPECT_EQ(lipo_chart_soc_percent(3.0), 0.0);
-    EXPECT_EQ(lipo_chart_soc_percent(4.3), 100.0);
+TEST(LipoChart, HasThePublishedVoltages) {
+    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(100.0), 4.20);
+    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(50.0), 3.84);
+    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(0.0), 3.27);
+    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(97.5), 0.5 * (4.15 + 4.20));
 }
 
-TEST(LipoChart, CountsCellsOfAChargedPack) {
-    EXPECT_EQ(lipo_cells(4.2), 1);
-    EXPECT_EQ(lipo_cells(12.4), 3);
+TEST(LipoChart, EndsWhereItIsFullAndEmpty) {
+    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(120.0), 4.20);
+    EXPECT_DOUBLE_EQ(lipo_chart_voltage_v(-5.0), 3.27);
+    EXPECT_EQ(lipo_chart_soc_percent(4.3), 100.0);
+    EXPECT_EQ(lipo_chart_soc_percent(4.20), 100.0);
+    EXPECT_EQ(lipo_chart_soc_percent(3.0), 0.0);
+}
+
+TEST(LipoChart, RisesAndIsInverted) {
+    for (double soc_percent = 0.5; soc_percent < 100.0; soc_percent += 0.5) {
+        EXPECT_GT(lipo_chart_voltage_v(soc_percent), lipo_chart_voltage_v(soc_percent - 0.5)) << soc_percent;
+        EXPECT_NEAR(lipo_chart_soc_percent(lipo_chart_voltage_v(soc_percent)), soc_percent, 1e-9);
+    }
+}
+
+TEST(LipoCells, AreAsManyAsTheRestingVoltageNeeds) {
     EXPECT_EQ(lipo_cells(12.6), 3);
+    EXPECT_EQ(lipo_cells(12.75), 3) << "4.25 V a cell is still charged";
+    EXPECT_EQ(lipo_cells(12.76), 4);
+    EXPECT_EQ(lipo_cells(4.2), 1);
     EXPECT_EQ(lipo_cells(16.8), 4);
     EXPECT_EQ(lipo_cells(25.2), 6);
+    EXPECT_EQ(lipo_cells(0.0), 1);
 }
 
 TEST(OpenCircuit, TakesTheCapacityThatIsGivenOrFlown) {

@@ -19,6 +19,7 @@ TEST(PowprofilerConfig, ReadsCombinations) {
                    "\t[combinations]\r\n# none\n1,5=a.csv=4,0.5 # yes\nb.csv = 1 , 10\n"
                    "name=out.csv"));
     EXPECT_EQ(config.sampling_hz, 20.0);
+    EXPECT_EQ(PowprofilerConfig{}.sampling_hz, 10.0) << "unless told";
     ASSERT_EQ(config.combinations.size(), 2U);
     EXPECT_EQ(config.combinations[0].recording, folder / "1,5=a.csv");
     EXPECT_EQ(config.combinations[0].qos, (std::vector<double>{4.0, 0.5}));

@@ -1,5 +1,7 @@
 #include "mechanical/fit/fourier_basis.h"
 
+#include "helpers/made_up_flights.h"
+
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -24,14 +26,137 @@ TEST(FourierBasis, HoldsCosinesAndSinesOfMultiples) {
     }
 }
 
+/// Of order 3 on evenly spread samples.
+double condition(double theta_rad) {
+    constexpr std::size_t samples = 1000;
+    std::vector<double> tau(samples);
+    for (std::size_t i = 0; i < samples; ++i) tau[i] = (static_cast<double>(i) + 0.5) / samples;
+    return basis_condition(fourier_basis(tau, 3, theta_rad));
+}
+
 TEST(FourierBasis, IsOrthogonalOverWholePeriodsAndCollinearBelowOne) {
-    EXPECT_NEAR(basis_condition(3, 2.0 * std::numbers::pi), 1.0, 1e-9);
-    EXPECT_NEAR(basis_condition(3, 6.0 * std::numbers::pi), 1.0, 1e-9);
+    EXPECT_NEAR(condition(2.0 * std::numbers::pi), 1.0, 1e-9);
+    EXPECT_NEAR(condition(6.0 * std::numbers::pi), 1.0, 1e-9);
     // The figures that the default of the lowest frequency rests on.
-    EXPECT_NEAR(basis_condition(3, 3.63), 38.0, 1.0);
-    EXPECT_NEAR(basis_condition(3, std::numbers::pi), 108.0, 1.0);
-    EXPECT_GT(basis_condition(3, 2.0), 2000.0);
-    EXPECT_GT(basis_condition(3, 1.0), 200000.0);
+    EXPECT_NEAR(condition(3.63), 38.0, 1.0);
+    EXPECT_NEAR(condition(std::numbers::pi), 108.0, 1.0);
+    EXPECT_GT(condition(2.0), 2000.0);
+    EXPECT_GT(condition(1.0), 200000.0);
+}
+
+Eigen::VectorXd some_coefficients(int order) {
+    Eigen::VectorXd coefficients(coefficient_count(order));
+    for (Eigen::Index j = 0; j < coefficients.size(); ++j)
+        coefficients(j) = (j % 2 == 0 ? 1.0 : -0.7) * (1.0 + 0.3 * static_cast<double>(j));
+    return coefficients;
+}
+
+TEST(FourierResidual, IsCurveMinusSamples) {
+    const auto phase = test::published_model().phases[flight::Phase::takeoff];
+    std::mt19937 random(1);
+    const auto samples = test::record(phase, {28.0, 1.1, 0.0, 0.0}, random);
+    const auto& f = phase.fourier;
+    Eigen::VectorXd coefficients(7);
+    coefficients << f.a0_w, f.cos_w[0], f.sin_w[0], f.cos_w[1], f.sin_w[1], f.cos_w[2], f.sin_w[2];
+    EXPECT_EQ(coefficients_of(f), coefficients);
+    EXPECT_EQ(series_of(coefficients, f.omega_rad_per_s).sin_w, f.sin_w);
+    const auto result =
+        fourier_residual({samples.tau, samples.power_w}, test::theta_rad(phase), coefficients);
+    EXPECT_LT(result.residual.cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(FourierResidual, DerivativesAreThoseOfDifferences) {
+    const auto samples = test::centred(test::record_flights(flight::Phase::cruise, 1, 1.0, 3).front());
+    constexpr double step = 1e-6;
+    for (const int order : {1, 3, 5}) {
+        for (const double theta_rad : {3.2, 8.0, 60.0}) {
+            const auto coefficients = some_coefficients(order);
+            const auto at = fourier_residual(samples, theta_rad, coefficients);
+            const Eigen::VectorXd difference_by_theta =
+                (fourier_residual(samples, theta_rad + step, coefficients).residual -
+                 fourier_residual(samples, theta_rad - step, coefficients).residual) /
+                (2.0 * step);
+            EXPECT_LT((at.by_theta - difference_by_theta).cwiseAbs().maxCoeff(), 1e-6);
+            for (Eigen::Index j = 0; j < coefficients.size(); ++j) {
+                auto shifted = coefficients;
+                shifted(j) += step;
+                const Eigen::VectorXd up = fourier_residual(samples, theta_rad, shifted).residual;
+                const Eigen::VectorXd difference = (up - at.residual) / step;
+                EXPECT_LT((at.by_coefficients.col(j) - difference).cwiseAbs().maxCoeff(), 1e-6)
+                    << "column " << j;
+            }
+        }
+    }
+}
+
+// NIST Statistical Reference Datasets, linear regression, "Longley" (condition number 5e9; higher
+// difficulty): y, x1 .. x6 and the certified values.
+constexpr double longley[16][7] = {
+    {60323, 83.0, 234289, 2356, 1590, 107608, 1947},  {61122, 88.5, 259426, 2325, 1456, 108632, 1948},
+    {60171, 88.2, 258054, 3682, 1616, 109773, 1949},  {61187, 89.5, 284599, 3351, 1650, 110929, 1950},
+    {63221, 96.2, 328975, 2099, 3099, 112075, 1951},  {63639, 98.1, 346999, 1932, 3594, 113270, 1952},
+    {64989, 99.0, 365385, 1870, 3547, 115094, 1953},  {63761, 100.0, 363112, 3578, 3350, 116219, 1954},
+    {66019, 101.2, 397469, 2904, 3048, 117388, 1955}, {67857, 104.6, 419180, 2822, 2857, 118734, 1956},
+    {68169, 108.4, 442769, 2936, 2798, 120445, 1957}, {66513, 110.8, 444546, 4681, 2637, 121950, 1958},
+    {68655, 112.6, 482704, 3813, 2552, 123366, 1959}, {69564, 114.2, 502601, 3931, 2514, 125368, 1960},
+    {69331, 115.7, 518173, 4806, 2572, 127852, 1961}, {70551, 116.9, 554894, 4007, 2827, 130081, 1962}};
+constexpr double longley_coefficients[7] = {-3482258.63459582, 15.0618722713733,  -0.358191792925910E-01,
+                                            -2.02022980381683, -1.03322686717359, -0.511041056535807E-01,
+                                            1829.15146461355};
+constexpr double longley_residual_deviation = 304.854073561965;
+
+TEST(LeastSquares, MeetsTheCertifiedValuesOfLongley) {
+    Eigen::MatrixXd matrix(16, 7);
+    Eigen::VectorXd values(16);
+    for (Eigen::Index i = 0; i < 16; ++i) {
+        values(i) = longley[i][0];
+        matrix(i, 0) = 1.0;
+        for (Eigen::Index j = 1; j < 7; ++j) matrix(i, j) = longley[i][j];
+    }
+    const auto fit = solve_least_squares(matrix, values);
+    ASSERT_TRUE(fit);
+    for (Eigen::Index j = 0; j < 7; ++j) {
+        const double certified = longley_coefficients[j];
+        EXPECT_NEAR(fit->coefficients(j), certified, 1e-8 * std::abs(certified)) << "coefficient " << j;
+    }
+    EXPECT_NEAR(std::sqrt(fit->residual_square_sum / 9.0), longley_residual_deviation, 1e-8);
+}
+
+TEST(LeastSquares, IsTheFourierTransformOnAWholePeriod) {
+    std::vector<double> tau(50);
+    Eigen::VectorXd values(50);
+    for (std::size_t i = 0; i < 50; ++i) {
+        tau[i] = static_cast<double>(i) / 50.0;
+        values(static_cast<Eigen::Index>(i)) = std::exp(std::sin(20.0 * tau[i]));
+    }
+    const auto basis = fourier_basis(tau, 3, 2.0 * std::numbers::pi);
+    const auto fit = solve_least_squares(basis, values);
+    ASSERT_TRUE(fit);
+    EXPECT_NEAR(fit->coefficients(0), values.mean(), 1e-13);
+    for (Eigen::Index j = 1; j < 7; ++j)
+        EXPECT_NEAR(fit->coefficients(j), basis.col(j).dot(values) / 25.0, 1e-13);
+}
+
+TEST(LeastSquares, TheOrthonormalBasisIsOrthonormalAndSpansTheSame) {
+    std::vector<double> tau(80);
+    for (std::size_t i = 0; i < tau.size(); ++i) tau[i] = static_cast<double>(i * i) / 6400.0;
+    const auto basis = fourier_basis(tau, 3, 3.2);  // collinear enough to tell
+    const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(80, -1.0, 2.0).array().cube();
+    const auto fit = solve_least_squares(basis, values);
+    ASSERT_TRUE(fit);
+    const Eigen::MatrixXd orthonormal = basis * fit->from_orthonormal;
+    EXPECT_LT((orthonormal.transpose() * orthonormal - Eigen::MatrixXd::Identity(7, 7)).cwiseAbs().maxCoeff(),
+              1e-11);
+    EXPECT_LT((fit->from_orthonormal * fit->orthonormal - fit->coefficients).cwiseAbs().maxCoeff(),
+              1e-11 * fit->coefficients.cwiseAbs().maxCoeff());
+}
+
+TEST(LeastSquares, RefusesWhatTheValuesDoNotDetermine) {
+    Eigen::MatrixXd matrix(4, 2);
+    matrix << 1, 2, 2, 4, 3, 6, 4, 8;
+    EXPECT_FALSE(solve_least_squares(matrix, Eigen::VectorXd::Ones(4)));
+    EXPECT_FALSE(solve_least_squares(Eigen::MatrixXd::Ones(1, 2), Eigen::VectorXd::Ones(1)));
+    EXPECT_FALSE(solve_least_squares(Eigen::MatrixXd::Zero(3, 1), Eigen::VectorXd::Ones(3)));
 }
 
 }  // namespace

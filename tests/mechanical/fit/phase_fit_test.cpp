@@ -2,8 +2,7 @@
 
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
-#include "mechanical/fit/fourier_residual.h"
-#include "mechanical/fit/least_squares.h"
+#include "mechanical/fit/fourier_basis.h"
 
 #include <algorithm>
 #include <cmath>

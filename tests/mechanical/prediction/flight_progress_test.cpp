@@ -1,7 +1,7 @@
 #include "mechanical/prediction/flight_progress.h"
 
 #include "base/error.h"
-#include "flight/cut_series.h"
+#include "flight/flight_series.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation.h"

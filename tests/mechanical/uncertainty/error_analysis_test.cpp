@@ -2,7 +2,7 @@
 
 #include "helpers/made_up_flights.h"
 #include "mechanical/fit/flight_weights.h"
-#include "mechanical/fit/fourier_residual.h"
+#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/uncertainty/frequency_profile.h"
 
 #include <cmath>
@@ -13,16 +13,6 @@
 
 namespace flightwatt::mechanical {
 namespace {
-
-Eigen::VectorXd coefficients_of(const FourierModel& model) {
-    Eigen::VectorXd coefficients(coefficient_count(static_cast<int>(model.cos_w.size())));
-    coefficients(0) = model.a0_w;
-    for (std::size_t n = 0; n < model.cos_w.size(); ++n) {
-        coefficients(static_cast<Eigen::Index>(2 * n + 1)) = model.cos_w[n];
-        coefficients(static_cast<Eigen::Index>(2 * n + 2)) = model.sin_w[n];
-    }
-    return coefficients;
-}
 
 struct Analysed {
     std::vector<PhaseSamples> flights;

@@ -38,15 +38,16 @@ TEST(Baselines, NearestFlightIsByTheDurationsOfCommonPhases) {
     flights[0].phases[flight::Phase::takeoff] = constant(1.0, 28.0);
     flights[0].phases[flight::Phase::cruise] = constant(1.0, 1200.0);
     flights[1].phases[flight::Phase::cruise] = constant(1.0, 630.0);
-    flight::PerPhase<std::optional<double>> durations;
-    durations[flight::Phase::takeoff] = 28.0;
-    durations[flight::Phase::cruise] = 600.0;
-    EXPECT_EQ(nearest_flight(flights, durations), 1u);
-    durations[flight::Phase::cruise] = 1100.0;
-    EXPECT_EQ(nearest_flight(flights, durations), 0u);
-    flight::PerPhase<std::optional<double>> landing_only;
-    landing_only[flight::Phase::landing] = 60.0;
-    EXPECT_FALSE(nearest_flight(flights, landing_only).has_value());
+    FlightSamples other;
+    other.phases[flight::Phase::takeoff] = constant(1.0, 28.0);
+    other.phases[flight::Phase::cruise] = constant(1.0, 600.0);
+    EXPECT_EQ(nearest_flight(flights, flight::Phase::cruise, other), 1u);
+    other.phases[flight::Phase::cruise] = constant(1.0, 1100.0);
+    EXPECT_EQ(nearest_flight(flights, flight::Phase::cruise, other), 0u);
+    EXPECT_EQ(nearest_flight(flights, flight::Phase::takeoff, other), 0u);
+    FlightSamples landing_only;
+    landing_only.phases[flight::Phase::landing] = constant(1.0, 60.0);
+    EXPECT_FALSE(nearest_flight(flights, flight::Phase::landing, landing_only).has_value());
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST(AdaptiveFlight, IsNearlyAsGoodAsThePlanIfNothingHappens) {
     const auto plan = plan_mission(planned_beforehand());
     EXPECT_TRUE(adaptive.keeps_reserve);
     EXPECT_GE(*adaptive.utility, 0.97 * *plan.summary.utility);
-    EXPECT_LE(*adaptive.utility, plan.plan.bound + 1e-9) << "nothing keeps the reserve and is worth more";
+    EXPECT_LE(*adaptive.utility, plan.plan.bound + 1e-9) << "nothing keeps the reserve and has more utility";
 }
 
 TEST(AdaptiveFlight, LearnsHowMuchMoreMechanicalPowerIs) {

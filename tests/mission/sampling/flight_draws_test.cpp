@@ -23,7 +23,7 @@ TEST(FlightDraws, TakeWhatTheModelsKnow) {
     auto& detection = mission.compute.components[0].profile;
     detection.standard_error_w.assign(detection.power_w.size(), 0.5);
     mission.battery.intervals.capacity_ah = battery::Interval{3.0, 3.3};
-    const auto spreads = spreads_of(mission);
+    const auto spreads = find_spreads(mission);
     const double new_flight = std::sqrt(1.0 + 1.0 / 3.0);
     EXPECT_NEAR(spreads.level_sd_w[flight::Phase::cruise], new_flight, 1e-12);
     EXPECT_NEAR(spreads.duration_sd_s[flight::Phase::cruise], 30.0 * new_flight, 1e-9);

@@ -1,6 +1,7 @@
 #include "mission/simulation/load_segments.h"
 
 #include "helpers/paper_missions.h"
+#include "mission/simulation.h"
 
 #include <gtest/gtest.h>
 
@@ -72,6 +73,19 @@ TEST(LoadSegment, ClocksAPhaseFlownLonger) {
         EXPECT_NEAR(mechanical_w(absolute, 28.0 + t), power_w(cruise, t), 1e-12);
     }
     EXPECT_NEAR(mechanical_energy_j(stretched, 928.0), 1.5 * mechanical_energy_j(as_fitted, 628.0), 1e-8);
+}
+
+TEST(SegmentDischarge, AgreesWithTheSimulation) {
+    for (const double resistance_ohm : {0.0, 0.01}) {
+        auto mission = test::paper_mission("phased");
+        mission.battery.resistance_ohm = resistance_ohm;
+        mission.battery.capacity_ah = 4.0;
+        battery::Discharge charge;
+        charge.soc_percent = 100.0;
+        for (const auto& segment : load_segments(mission, mission.schedule))
+            charge = after_segment(mission.battery, mission.cutoff_voltage_v, segment, charge);
+        EXPECT_NEAR(charge.soc_percent, *simulate(mission).summary.final_soc_percent, 1e-6);
+    }
 }
 
 }  // namespace

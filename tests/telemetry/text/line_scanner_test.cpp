@@ -65,14 +65,5 @@ TEST(LineScanner, AgreesWithASimpleSplitOnLinesOfAnyLength) {
     }
 }
 
-TEST(LineScanner, CallsBeforeTheLastLinesGo) {
-    std::string last;
-    ScannedLine kept{};
-    scan_lines(
-        "1 20 PONG \n2 20 GPS 1", [&](const ScannedLine& line) { kept = line; },
-        [&] { last.assign(kept.begin, kept.end); });
-    EXPECT_EQ(last, "2 20 GPS 1");
-}
-
 }  // namespace
 }  // namespace flightwatt::telemetry

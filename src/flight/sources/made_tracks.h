@@ -1,0 +1,22 @@
+#pragma once
+
+#include "flight/flight_series.h"
+#include "telemetry/telemetry_log.h"
+
+#include <string>
+#include <vector>
+
+namespace flightwatt::flight {
+
+/// A candidate of a track from raw values at the times of a table, which has rows.
+Track as_track(const std::string& name, const std::string& source, const telemetry::MessageTable& table,
+               const std::vector<double>& values, Merge merge);
+
+/// Adds the candidates that are made of several fields, or of a field's other reading: power as voltage times
+/// current, speed, wind and position of their components, a track each of every motor (ESC) and circuit
+/// (POWER_DEVICE), whose sum needs values between samples and is made when it is asked for. Without a .log
+/// (`definitions_assumed`), also a 4-field ENERGY with its last two fields read the other way round.
+void add_made_tracks(std::vector<Track>& tracks, const telemetry::SenderLog& sender,
+                     bool definitions_assumed);
+
+}  // namespace flightwatt::flight

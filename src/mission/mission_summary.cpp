@@ -1,0 +1,101 @@
+#include "mission/mission_summary.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+/// Greater is better: what lasts, by the charge left; then what ended early, by how long it lasted.
+std::pair<int, double> merit(const MissionSummary& summary) {
+    if (!summary.final_soc_percent) return {0, 0.0};  // undeliverable
+    if (summary.depleted_at_s || summary.cut_off_at_s) return {1, powered_until_s(summary)};
+    return {2, *summary.final_soc_percent};
+}
+
+std::string cell(const std::optional<double>& value, int decimals) {
+    return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+}  // namespace
+
+std::string to_string(ScheduleOrigin origin) {
+    constexpr std::array names{"", "optimal", "planned", "no plan keeps the reserve", "replanned in flight"};
+    return names.at(static_cast<std::size_t>(origin));
+}
+
+double powered_until_s(const MissionSummary& summary) {
+    if (summary.undeliverable) return summary.undeliverable->time_s;
+    return summary.depleted_at_s.value_or(summary.cut_off_at_s.value_or(summary.duration_s));
+}
+
+std::string describe(const MissionSummary& summary) {
+    if (const auto& failure = summary.undeliverable) {
+        return fmt::format(
+            "{}: the battery cannot deliver {:.6g} W at {:.6g} s: its limit U^2 / (4 R) is {:.6g} W",
+            summary.mission, failure->power_w, failure->time_s, failure->limit_w);
+    }
+    auto end = fmt::format("{:.2f} % left after {:.1f} s", *summary.final_soc_percent, summary.duration_s);
+    if (summary.depleted_at_s) {
+        end = fmt::format("empty at {:.1f} s of {:.1f} s", *summary.depleted_at_s, summary.duration_s);
+    } else if (summary.cut_off_at_s) {
+        end = fmt::format("cut off at {:.1f} s of {:.1f} s with {:.2f} % left", *summary.cut_off_at_s,
+                          summary.duration_s, *summary.final_soc_percent);
+    } else if (!summary.keeps_reserve) {
+        end += fmt::format(", less than the reserve of {:.6g} %", summary.reserve_soc_percent);
+    }
+    if (summary.decisions && summary.decisions->without_plan > 0) {
+        end += fmt::format(
+            " (at {} of {} decisions no plan kept the reserve with its margin, and what "
+            "demands least energy was run)",
+            summary.decisions->without_plan, summary.decisions->made);
+    }
+    return fmt::format("{}: {}; {:.3f} Wh, {:.3f} mechanical and {:.3f} computing", summary.mission, end,
+                       summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh);
+}
+
+std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries) {
+    std::ranges::stable_sort(summaries, [](const auto& a, const auto& b) { return merit(a) > merit(b); });
+    return summaries;
+}
+
+TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
+    const auto any = [&](const auto& has) { return std::ranges::any_of(ranked, has); };
+    // Most missions have no cut-off voltage, and tables are wide enough without it.
+    const bool cut_off = any([](const auto& summary) { return summary.cut_off_at_s.has_value(); });
+    const bool utility = any([](const auto& summary) { return summary.utility.has_value(); });
+    const bool sampled = any([](const auto& summary) { return summary.samples.has_value(); });
+    TextTable table;
+    table.header = {"rank",
+                    "mission",
+                    "final_soc_percent",
+                    "energy_wh",
+                    "mechanical_energy_wh",
+                    "compute_energy_wh",
+                    "duration_s",
+                    "depleted_at_s"};
+    if (cut_off) table.header.emplace_back("cut_off_at_s");
+    if (utility) table.header.emplace_back("utility");
+    if (sampled) table.header.emplace_back("probability_below_reserve");
+    for (const auto& summary : ranked) {
+        const auto name = summary.schedule == ScheduleOrigin::given
+                              ? summary.mission
+                              : fmt::format("{} ({})", summary.mission, to_string(summary.schedule));
+        std::vector<std::string> row{
+            std::to_string(table.rows.size() + 1), name,
+            cell(summary.final_soc_percent, 2),    cell(summary.energy_wh, 3),
+            cell(summary.mechanical_energy_wh, 3), cell(summary.compute_energy_wh, 3),
+            cell(summary.duration_s, 1),           cell(summary.depleted_at_s, 1)};
+        if (cut_off) row.push_back(cell(summary.cut_off_at_s, 1));
+        if (utility) row.push_back(cell(summary.utility, 3));
+        if (sampled)
+            row.push_back(summary.samples ? cell(summary.samples->probability_below_reserve, 4) : "-");
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+}  // namespace flightwatt::mission

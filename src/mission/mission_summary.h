@@ -1,0 +1,101 @@
+#pragma once
+
+#include "base/text_table.h"
+#include "battery/discharge.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt::mission {
+
+/// How a mission's schedule came about.
+enum class ScheduleOrigin {
+    given,    ///< by the mission
+    optimal,  ///< planned, and proven to be as good as the best
+    planned,
+    infeasible,  ///< no plan keeps the reserve: the one of least energy demand
+    replanned    ///< in flight, by an adaptive policy
+};
+
+/// "optimal", "no plan keeps the reserve" ...; empty for one that was given.
+std::string to_string(ScheduleOrigin origin);
+
+/// What an adaptive policy decided.
+struct AdaptiveDecisions {
+    std::size_t made = 0;
+    std::size_t without_plan = 0;    ///< where no plan kept the reserve: least energy demand was run
+    double mechanical_factor = 1.0;  ///< of mechanical power to the model's, as learned at the end
+};
+
+/// State of charge at one part of the mission, over the flights.
+struct SocBand {
+    double time_s = 0.0;  ///< of the mission as planned
+    double p05_percent = 0.0;
+    double p50_percent = 0.0;
+    double p95_percent = 0.0;
+};
+
+inline constexpr std::array<int, 5> shown_quantiles_percent{5, 25, 50, 75, 95};
+
+/// How flights that were drawn end. Those that run empty, are cut off or ask for more than the battery can deliver have
+/// the state of charge of that moment, and land below the reserve even if that is 0.
+struct SampledFlights {
+    std::string mission;
+    std::size_t samples = 0;
+    std::uint64_t seed = 0;
+    double reserve_soc_percent = 0.0;
+    double final_soc_mean_percent = 0.0;
+    double final_soc_sd_percent = 0.0;
+    std::array<double, shown_quantiles_percent.size()> final_soc_quantiles_percent{};
+    double probability_depleted = 0.0;                      ///< empty before the end
+    double probability_battery_failure = 0.0;               ///< that, or cut off, or beyond the power limit
+    double probability_below_reserve = 0.0;                 ///< the share of the flights
+    double probability_below_reserve_standard_error = 0.0;  ///< sqrt(p (1 - p) / samples)
+    battery::Interval probability_below_reserve_95;         ///< Wilson's score interval (1927)
+    std::vector<std::string> drawn;
+    std::vector<std::string> not_drawn;
+    std::vector<SocBand> bands;
+};
+
+/// What a mission comes to. Energies are what the whole mission demands, also beyond the battery's end.
+struct MissionSummary {
+    std::string mission;
+    ScheduleOrigin schedule = ScheduleOrigin::given;
+    std::optional<double> final_soc_percent;  ///< none if the battery cannot deliver the power
+    double mechanical_energy_wh = 0.0;
+    double compute_energy_wh = 0.0;
+    double energy_wh = 0.0;            ///< both together
+    double delivered_energy_wh = 0.0;  ///< demanded until the battery ended or failed
+    double duration_s = 0.0;
+    std::optional<double> depleted_at_s;  ///< when the battery was empty, if before the mission's end
+    std::optional<double> cut_off_at_s;   ///< when its voltage fell below the cut-off, if before the end
+    std::optional<battery::Undeliverable> undeliverable;
+    /// Mean utility a second over the whole mission (of a linear utility of FPS with weight 1: mean FPS), where
+    /// the mission states utilities. What would run after the battery's end has none.
+    std::optional<double> utility;
+    bool feasible = false;  ///< the battery lasts: empty at the very end counts, any earlier does not
+    double reserve_soc_percent = 0.0;                           ///< what the mission asks to be left
+    bool keeps_reserve = false;                                 ///< feasible, and the reserve is left
+    std::optional<AdaptiveDecisions> decisions = std::nullopt;  ///< of an adaptive policy
+    std::optional<SampledFlights> samples = std::nullopt;       ///< if flights were drawn
+};
+
+/// When the battery ended or failed, or the mission's end if it lasts.
+double powered_until_s(const MissionSummary& summary);
+
+/// One line for people: what is left, or when and why the battery failed.
+std::string describe(const MissionSummary& summary);
+
+/// The best first: by state of charge left, then (when empty) by how long the battery lasted; those whose
+/// power it cannot deliver last. Equals keep their order.
+std::vector<MissionSummary> ranked(std::vector<MissionSummary> summaries);
+
+/// A row for each mission; "-" where there is no number. Cut-off, utility and the probability to land below the reserve
+/// have a column if any mission has them.
+TextTable comparison_table(const std::vector<MissionSummary>& ranked);
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,39 @@
+#include "telemetry/log_notes.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace flightwatt::telemetry {
+
+std::string_view to_string(CurrentOrigin origin) {
+    switch (origin) {
+        case CurrentOrigin::sensor:
+            return "measured by a sensor";
+        case CurrentOrigin::throttle:
+            return "computed from throttle";
+        case CurrentOrigin::unknown:
+            break;
+    }
+    return "unknown";
+}
+
+std::size_t SkippedLines::count() const {
+    return std::accumulate(lines.begin(), lines.end(), std::size_t{0},
+                           [](std::size_t sum, const AtTime& at) { return sum + at.count; });
+}
+
+std::size_t SkippedLines::first_line() const {
+    const auto first = std::min_element(lines.begin(), lines.end(), [](const AtTime& a, const AtTime& b) {
+        return a.first_line < b.first_line;
+    });
+    return first == lines.end() ? 0 : first->first_line;
+}
+
+std::string describe(const SkippedLines& skipped) {
+    return fmt::format("{}: {} line{}, first at line {}", skipped.reason, skipped.count(),
+                       skipped.count() == 1 ? "" : "s", skipped.first_line());
+}
+
+}  // namespace flightwatt::telemetry

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What is known of a log beside its values.
+namespace flightwatt::telemetry {
+
+/// Where the autopilot's current came from.
+enum class CurrentOrigin {
+    unknown,
+    sensor,  ///< the airframe converts an ADC reading: MilliAmpereOfAdc
+    throttle,  ///< computed from it (MILLIAMP_AT_FULL_THROTTLE alone): a power model fitted to it is circular
+};
+
+/// "measured by a sensor", "computed from throttle" or "unknown".
+std::string_view to_string(CurrentOrigin origin);
+
+/// Lines or values that could not be used, by reason and time. A line that has no time counts to the next one
+/// that has: what stands behind the last message of a log has an infinite time.
+struct SkippedLines {
+    struct AtTime {
+        double time_s = 0.0;
+        std::size_t count = 0;
+        std::size_t first_line = 0;
+        bool operator==(const AtTime&) const = default;
+    };
+    std::string reason;
+    std::vector<AtTime> lines;  ///< by time, which rises strictly
+
+    std::size_t count() const;
+    std::size_t first_line() const;  ///< 0 without any
+    bool operator==(const SkippedLines&) const = default;
+};
+
+/// "ENERGY: another number of fields than the .log defines: 3 lines, first at line 17".
+std::string describe(const SkippedLines& skipped);
+
+/// A message layout that was assumed, for want of a .log, and since when it was needed.
+struct AssumedDefinition {
+    std::string text;  ///< "ENERGY: 2018 (6 fields)"
+    double since_s = 0.0;
+    bool operator==(const AssumedDefinition&) const = default;
+};
+
+}  // namespace flightwatt::telemetry

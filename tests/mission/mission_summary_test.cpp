@@ -1,0 +1,61 @@
+#include "mission/mission_summary.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+MissionSummary outcome(const std::string& name, std::optional<double> soc,
+                       std::optional<double> depleted = {}) {
+    MissionSummary summary;
+    summary.mission = name;
+    summary.final_soc_percent = soc;
+    summary.depleted_at_s = depleted;
+    summary.energy_wh = 10.0;
+    summary.mechanical_energy_wh = 4.0;
+    summary.compute_energy_wh = 6.0;
+    summary.duration_s = 688.0;
+    return summary;
+}
+
+TEST(Comparison, RanksByChargeThenByHowLongItLasts) {
+    const auto ranking = ranked({outcome("fails", {}), outcome("early", 0.0, 100.0), outcome("little", 2.0),
+                                 outcome("late", 0.0, 600.0), outcome("just", 0.0), outcome("much", 50.0),
+                                 outcome("fails too", {})});
+    std::vector<std::string> names;
+    names.reserve(ranking.size());
+    for (const auto& summary : ranking) names.push_back(summary.mission);
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"much", "little", "just", "late", "early", "fails", "fails too"}));
+}
+
+TEST(Comparison, CutOffRanksBelowWhateverLasts) {
+    auto cut_off = outcome("cut off", 40.0);
+    cut_off.cut_off_at_s = 500.0;
+    const auto ranking = ranked({outcome("early", 0.0, 100.0), cut_off, outcome("lasts", 2.0)});
+    EXPECT_EQ(ranking[0].mission, "lasts");
+    EXPECT_EQ(ranking[1].mission, "cut off");
+    const auto table = comparison_table(ranking);
+    EXPECT_EQ(table.header.back(), "cut_off_at_s");
+    EXPECT_EQ(table.rows[1].back(), "500.0");
+    EXPECT_EQ(table.rows[2].back(), "-");
+}
+
+TEST(Comparison, KeepsTheOrderOfEquals) {
+    const auto ranking = ranked({outcome("b", 5.0), outcome("a", 5.0), outcome("c", 5.0)});
+    EXPECT_EQ(ranking[0].mission, "b");
+    EXPECT_EQ(ranking[1].mission, "a");
+    EXPECT_EQ(ranking[2].mission, "c");
+}
+
+TEST(Comparison, MakesATable) {
+    const auto table = comparison_table({outcome("a", 5.126), outcome("b", 0.0, 580.345), outcome("c", {})});
+    EXPECT_EQ(to_csv(table),
+              "rank,mission,final_soc_percent,energy_wh,mechanical_energy_wh,compute_energy_wh,duration_s,"
+              "depleted_at_s\n"
+              "1,a,5.13,10.000,4.000,6.000,688.0,-\n2,b,0.00,10.000,4.000,6.000,688.0,580.3\n"
+              "3,c,-,10.000,4.000,6.000,688.0,-\n");
+}
+
+}  // namespace
+}  // namespace flightwatt::mission

@@ -1,0 +1,240 @@
+// Plans for batteries whose source follows their charge, and for those that may be cut off.
+
+#include "base/error.h"
+#include "helpers/paper_missions.h"
+#include "mission/feasibility_limits.h"
+#include "mission/plan.h"
+#include "mission/planning/planner.h"
+#include "mission/planning/depletion_table.h"
+#include "mission/sampling/level_deviation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+std::function<PlanningProblem(double)> thevenin_plan(double reserve_soc_percent = 20.0,
+                                                     double cutoff_voltage_v = 10.5) {
+    return [=](double cruise_s) {
+        auto mission = std::get<PlanningProblem>(read_mission(
+            test::source_dir() / "missions" / "synthetic" / "thevenin-plan.toml", {true, cruise_s}));
+        mission.reserve_soc_percent = reserve_soc_percent;
+        mission.cutoff_voltage_v = cutoff_voltage_v;
+        return mission;
+    };
+}
+
+/// A pack that sags and recovers, and a mission of few slots and two levels.
+PlanningProblem small_mission(std::mt19937& random) {
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    auto mission = thevenin_plan(0.0, 0.0)(1500.0);
+    mission.battery.resistance_ohm = 0.02 + 0.1 * uniform(random);
+    mission.battery.thevenin->rc_resistance_ohm = 0.1 * uniform(random);
+    mission.battery.thevenin->rc_time_constant_s = 10.0 + 100.0 * uniform(random);
+    mission.plan.slot_s = 150.0 + 100.0 * uniform(random);
+    mission.plan.choices[0].levels = {{5.8, 12.0 + 20.0 * uniform(random)}};
+    return mission;
+}
+
+/// The most utility of any schedule that lands, by simulating them. One that computes more in every slot than another
+/// draws more, so those above one that does not land are passed over.
+double best_of_all(const PlanningProblem& mission, const Planner& planner) {
+    const auto slots = slots_of(mission);
+    std::vector<bool> lands(std::size_t{1} << slots.size());
+    double best = -1.0;
+    for (std::size_t code = 0; code < lands.size(); ++code) {
+        std::vector<ScheduleSegment> schedule;
+        bool may_land = true;
+        for (std::size_t i = 0; i < slots.size(); ++i) {
+            const auto bit = std::size_t{1} << i;
+            may_land = may_land && ((code & bit) == 0 || lands[code & ~bit]);
+            schedule.push_back({slots[i], planner.depletions.configurations[(code >> i) & 1]});
+        }
+        if (!may_land) continue;
+        const auto summary = simulate(mission, schedule, {1e3, 4.0}).summary;
+        lands[code] = summary.keeps_reserve;
+        if (lands[code]) best = std::max(best, *summary.utility);
+    }
+    return best;
+}
+
+TEST(SimulatedPlan, KeepsTheReserve) {
+    for (const double reserve : {12.0, 20.0, 28.0}) {
+        const auto mission = thevenin_plan(reserve)(1800.0);
+        const auto plan = plan_mission(mission);
+        ASSERT_TRUE(plan.plan.feasible) << reserve;
+        EXPECT_TRUE(plan.summary.keeps_reserve) << reserve;
+        EXPECT_TRUE(simulate(plan.flown).summary.keeps_reserve);
+        EXPECT_LT(*plan.summary.final_soc_percent, reserve + 0.1) << "a part of a slot of 60 s";
+        EXPECT_TRUE(plan.plan.bound_is_proven);
+        EXPECT_GE(plan.plan.bound, *plan.summary.utility);
+        EXPECT_LE(plan.plan.bound, 1.06 * *plan.summary.utility) << "measured: 3 to 5 %";
+    }
+}
+
+TEST(SimulatedPlan, IsCloseToTheBestOfAllSchedules) {
+    std::mt19937 random(5);
+    int feasible = 0;
+    double worst_gap_percent = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        auto mission = small_mission(random);
+        const auto least = simulate(with_minimum_energy_schedule(mission)).summary;
+        if (!least.feasible) continue;
+        std::uniform_real_distribution<double> share(0.3, 1.0);
+        mission.reserve_soc_percent = share(random) * *least.final_soc_percent;
+        if (i % 2 == 1) mission.cutoff_voltage_v = 10.4;
+        const auto plan = plan_mission(mission);
+        const double best = best_of_all(mission, make_planner(mission));
+        ASSERT_EQ(plan.plan.feasible, best >= 0.0);
+        if (!plan.plan.feasible) continue;
+        ++feasible;
+        const double gap_percent = 100.0 * (best - *plan.summary.utility) / best;
+        fmt::print("planned {:.4f}, best {:.4f} (gap {:.3f} %), proven {:.4f}\n", *plan.summary.utility, best,
+                   gap_percent, plan.plan.bound);
+        worst_gap_percent = std::max(worst_gap_percent, gap_percent);
+        EXPECT_TRUE(plan.summary.keeps_reserve);
+        EXPECT_GE(plan.plan.bound, best - 1e-9);
+        EXPECT_LT(gap_percent, 5.0);
+    }
+    EXPECT_GE(feasible, 5);
+    fmt::print("at most {:.3f} % less than the best\n", worst_gap_percent);
+}
+
+TEST(SimulatedPlan, IsNotCutOff) {
+    const auto mission = thevenin_plan(20.0, 11.0)(1800.0);
+    const auto plan = plan_mission(mission);
+    ASSERT_TRUE(plan.plan.feasible);
+    for (const auto& row : simulate(plan.flown).curve.rows) ASSERT_GE(row.terminal_voltage_v, 11.0);
+    // What has most utility without a cut-off would be.
+    auto careless = plan_mission(thevenin_plan(20.0, 0.0)(1800.0)).flown;
+    careless.cutoff_voltage_v = 11.0;
+    EXPECT_TRUE(simulate(careless).summary.cut_off_at_s);
+}
+
+TEST(SimulatedPlan, KeepsThePapersBatteryFromItsCutOff) {
+    auto mission = test::paper_problem("plan");
+    mission.fixed.clear();
+    mission.reserve_soc_percent = 1.0;
+    mission.battery = {"", 3.6, 0.02, 3.4};
+    const double least_v = [&] {
+        const auto rows = simulate(with_minimum_energy_schedule(mission)).curve.rows;
+        return std::min_element(
+                   rows.begin(), rows.end(),
+                   [](const auto& a, const auto& b) { return a.terminal_voltage_v < b.terminal_voltage_v; })
+            ->terminal_voltage_v;
+    }();
+    mission.cutoff_voltage_v = least_v - 0.005;
+    const auto plan = plan_mission(mission);
+    ASSERT_TRUE(plan.plan.feasible);
+    EXPECT_TRUE(plan.summary.keeps_reserve);
+    EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.001) << "a constant source: tables are exact";
+    mission.cutoff_voltage_v = least_v + 0.005;
+    EXPECT_FALSE(plan_mission(mission).plan.feasible);
+}
+
+TEST(Planner, HasATableThatHoldsAlongACourse) {
+    const auto problem = thevenin_plan()(1800.0);
+    const auto plan = plan_mission(problem);
+    const auto course = voltage_course_of(problem, plan.flown.schedule);
+    ASSERT_TRUE(course);
+    const auto table = with_voltage_course(problem, make_planner(problem), &*course).depletions;
+    const auto segments = tabled(plan.flown.schedule, table);
+    EXPECT_FALSE(soc_after(table, segments)) << "along other schedules it does not hold";
+    double soc_percent = 100.0;
+    for (const auto& segment : segments) soc_percent -= soc_depletion_percent(table, segment);
+    EXPECT_NEAR(soc_percent, *plan.summary.final_soc_percent, 1e-3);
+}
+
+TEST(PlanRest, AnswersALearnedFactorOnAPackWhoseVoltageFalls) {
+    const auto problem = thevenin_plan()(1800.0);
+    const auto planner = make_planner(problem);
+    const auto soc_with = [&](double mechanical_factor) {
+        const auto plan =
+            plan_rest(problem, planner, {0.0, 100.0, std::nullopt, 0.0, mechanical_factor}, 95.0);
+        EXPECT_FALSE(plan.feasible) << "so that the schedule is the one that demands least energy";
+        return plan.final_soc_percent;
+    };
+    const double mechanical_percent = 10.0 * (soc_with(1.0) - soc_with(1.1));
+    EXPECT_GT(mechanical_percent, 0.0);
+    double tabled_percent = 0.0;
+    for (const auto& slot : slots_of(problem))
+        tabled_percent += soc_depletion_percent(planner.mechanical_depletion, {slot, 0});
+    EXPECT_NEAR(mechanical_percent, tabled_percent, 1e-6);
+}
+
+TEST(SimulatedPlan, KeepsTheReserveWithAProbability) {
+    auto mission = thevenin_plan()(1800.0);
+    EXPECT_THROW(plan_mission(mission, 0.95), InputError) << "a model that does not say how flights differ";
+    for (const auto phase : flight::all_phases) {
+        mission.mechanical->phases[phase].flights = 5;
+        mission.mechanical->phases[phase].level_spread = {5, 0.5, 0.1, 20.0};
+    }
+    const auto plan = plan_mission(mission, 0.95);
+    ASSERT_TRUE(plan.plan.feasible);
+    EXPECT_GT(plan.margin_percent, 0.5);
+    EXPECT_NEAR(*plan.summary.final_soc_percent, 20.0 + plan.margin_percent, 0.05);
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    constexpr int flights = 400;
+    int below = 0;
+    for (int i = 0; i < flights; ++i) {
+        auto flown = plan.flown;
+        for (const auto phase : flight::all_phases)
+            flown.mechanical->phases[phase].fourier.a0_w += level_sd_w(mission, phase) * normal(random);
+        if (!simulate(flown, {1e3, 2.0}).summary.keeps_reserve) ++below;
+    }
+    const double part = static_cast<double>(below) / flights;
+    EXPECT_NEAR(part, 0.05, 3.0 * std::sqrt(0.05 * 0.95 / flights));
+}
+
+TEST(SimulatedPlan, ProvesNothingWhereTheBatteryIsCharged) {
+    auto mission = thevenin_plan()(1800.0);
+    mission.mechanical->phases[flight::Phase::landing].fourier.a0_w = -60.0;
+    const auto plan = plan_mission(mission);
+    ASSERT_TRUE(plan.plan.feasible);
+    EXPECT_FALSE(plan.plan.bound_is_proven);
+    EXPECT_TRUE(plan.summary.keeps_reserve);
+}
+
+TEST(SimulatedPlan, SaysWhatIsMissing) {
+    const auto mission_of = thevenin_plan(20.0, 11.1);
+    const auto mission = mission_of(1800.0);
+    const auto plan = plan_mission(mission);
+    ASSERT_FALSE(plan.plan.feasible);
+    const auto report = infeasibility_report(mission, plan, mission_of);
+    EXPECT_GT(report.short_percent, 0.0);
+    EXPECT_GT(report.short_wh, 0.0);
+    ASSERT_TRUE(report.cut_off_at_s && report.cruise_s && report.capacity_ah);
+    EXPECT_FALSE(report.reserve_soc_percent) << "it is not the reserve";
+    EXPECT_TRUE(plan_mission(mission_of(*report.cruise_s)).plan.feasible);
+    EXPECT_FALSE(plan_mission(mission_of(*report.cruise_s + 0.1)).plan.feasible);
+    for (const double more_ah : {-1e-5, 1e-5}) {
+        auto other = mission;
+        other.battery.capacity_ah = *report.capacity_ah + more_ah;
+        EXPECT_EQ(plan_mission(other).plan.feasible, more_ah > 0.0);
+    }
+}
+
+TEST(SimulatedPlan, HasFeasibilityLimits) {
+    const auto cruise = longest_cruise(thevenin_plan());
+    EXPECT_NEAR(cruise.residual_percent, 0.0, 1e-6);
+    EXPECT_EQ(cruise.limited_by, FeasibilityBound::charge);
+    const auto cut_off = longest_cruise(thevenin_plan(20.0, 11.0));
+    EXPECT_LT(cut_off.value, cruise.value);
+    EXPECT_EQ(cut_off.limited_by, FeasibilityBound::cut_off);
+    EXPECT_GT(cut_off.residual_percent, 1.0);
+    const auto mission = thevenin_plan()(1800.0);
+    const auto payload = largest_payload(mission);
+    EXPECT_NEAR(payload.residual_percent, 0.0, 1e-6);
+    EXPECT_FALSE(simulate(with_payload(with_minimum_energy_schedule(mission), payload.value + 0.01))
+                     .summary.keeps_reserve);
+}
+
+}  // namespace
+}  // namespace flightwatt::mission
