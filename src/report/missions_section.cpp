@@ -114,15 +114,6 @@ Section map_section(Missions missions, const PublishedFigures& published) {
     return section;
 }
 
-/// Until when what runs counts.
-double powered_until_s(const mission::MissionSummary& summary) {
-    double until_s = summary.duration_s;
-    if (summary.depleted_at_s) until_s = std::min(until_s, *summary.depleted_at_s);
-    if (summary.cut_off_at_s) until_s = std::min(until_s, *summary.cut_off_at_s);
-    if (summary.undeliverable) until_s = std::min(until_s, summary.undeliverable->time_s);
-    return until_s;
-}
-
 /// The missions with the planned one's flight, software and battery, by its utilities.
 std::vector<UtilityPoint> utility_points(const SimulatedMission& planned, Missions missions) {
     std::vector<UtilityPoint> points;
