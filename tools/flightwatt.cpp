@@ -50,9 +50,7 @@ std::string stage_list() {
     return text;
 }
 
-bool is_stage(std::string_view name) {
-    return std::ranges::find(stages, name, &StageLine::name) != std::end(stages);
-}
+bool is_stage(std::string_view name) { return std::ranges::find(stages, name, &StageLine::name) != std::end(stages); }
 
 std::vector<std::string> stage_names() {
     std::vector<std::string> names;
@@ -61,8 +59,7 @@ std::vector<std::string> stage_names() {
 }
 
 /// "did you mean 'plan'?", or what to do instead where nothing is near.
-std::string suggestion(const std::string& word, const std::vector<std::string>& known,
-                       const char* otherwise) {
+std::string suggestion(const std::string& word, const std::vector<std::string>& known, const char* otherwise) {
     const auto near = nearest_word(word, known);
     return near.empty() ? otherwise : fmt::format("did you mean '{}'?", near);
 }
@@ -127,8 +124,7 @@ int run(int argc, char** argv) {
     } else if (stage != "help") {
         run_program(stage, argv + 1);
     } else if (argc > 3) {
-        throw UsageError(
-            fmt::format("unexpected argument '{}'; usage: flightwatt help [STAGE|PAGE]", argv[3]));
+        throw UsageError(fmt::format("unexpected argument '{}'; usage: flightwatt help [STAGE|PAGE]", argv[3]));
     } else if (argc == 3) {
         help(argv[2]);
     } else {

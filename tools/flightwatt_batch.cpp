@@ -43,9 +43,7 @@ batch::BatchProgress progress_of(const cli::StageCall& call, BatchProgressState&
             state.bar->show(done, all);
             return;
         }
-        const auto* what = !flight.record.accepted ? "rejected"
-                           : flight.was_up_to_date ? "up to date"
-                                                   : "done";
+        const auto* what = !flight.record.accepted ? "rejected" : flight.was_up_to_date ? "up to date" : "done";
         cli::note(call, fmt::format("[{}/{}] {}: {}", done, all, flight.record.flight, what));
     };
 }
@@ -107,8 +105,7 @@ nlohmann::ordered_json summary_json(const std::vector<batch::BatchFlight>& fligh
     return json;
 }
 
-batch::BatchOptions read_batch_options(const cli::StageCall& call,
-                                       const mechanical::ModelFitOptions& fit_options) {
+batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechanical::ModelFitOptions& fit_options) {
     if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
     batch::BatchOptions options;
     options.out = *call.output;
@@ -128,16 +125,15 @@ void write_model(const batch::BatchFit& fit, const TextTable& table, const batch
 }
 
 /// What follows the logs: the catalogue and the fit. Returns the exit code.
-int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights,
-           const batch::BatchOptions& options, const std::optional<mechanical::MechanicalModel>& published) {
+int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, const batch::BatchOptions& options,
+           const std::optional<mechanical::MechanicalModel>& published) {
     report_notes(call, flights);
     {
         const batch::WriteGate::Pass pass(*options.gate);
         write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights));
     }
     if (!call.json) cli::print(to_text(flights_table(flights)));
-    const auto rejected =
-        std::ranges::count_if(flights, [](const auto& flight) { return !flight.record.accepted; });
+    const auto rejected = std::ranges::count_if(flights, [](const auto& flight) { return !flight.record.accepted; });
     if (static_cast<std::size_t>(rejected) == flights.size()) {
         remove_model(options.out);
         throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", rejected));

@@ -55,10 +55,9 @@ void warn_if_never_full(const cli::StageCall& call, const battery::BatteryIdenti
     const double percent = battery::lipo_chart_soc_percent(highest_v / identified.cells);
     constexpr double as_good_as_full_percent = 85.0;
     if (percent >= as_good_as_full_percent) return;
-    cli::warn(call,
-              fmt::format("no flight begins full: the fullest rests at {:.3f} V, which for {} LiPo cells "
-                          "is usually {:.0f} %; it counts as 100 %",
-                          highest_v, identified.cells, percent));
+    cli::warn(call, fmt::format("no flight begins full: the fullest rests at {:.3f} V, which for {} LiPo cells "
+                                "is usually {:.0f} %; it counts as 100 %",
+                                highest_v, identified.cells, percent));
 }
 
 void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
@@ -72,11 +71,10 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
                                     cli::describe(identified.capacity)));
     }
     if (identified.known_down_to_percent > 0.0) {
-        cli::note(
-            call,
-            fmt::format("below {:.0f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: "
-                        "it goes on in parallel to the usual chart of {} LiPo cells",
-                        identified.known_down_to_percent, identified.fit.knots_ah.back(), identified.cells));
+        cli::note(call,
+                  fmt::format("below {:.0f} % ({:.3f} Ah drawn) no flight shows the open-circuit voltage: "
+                              "it goes on in parallel to the usual chart of {} LiPo cells",
+                              identified.known_down_to_percent, identified.fit.knots_ah.back(), identified.cells));
     }
     if (identified.fit.rc_resistance_ohm == 0.0) {
         cli::warn(call, "no RC pair explains anything: the battery has none");

@@ -32,8 +32,7 @@ mission::Simulation simulation_of(const cli::StageCall& call, const mission::Any
     const auto disturbances = cli::read_disturb_option(call, setup);
     const auto prepared = prepare(mission);
     auto simulation = fly(prepared, {}, disturbances).simulation;
-    if (sampling && has_spread(setup))
-        simulation.summary.samples = sample_flights(prepared, disturbances, *sampling);
+    if (sampling && has_spread(setup)) simulation.summary.samples = sample_flights(prepared, disturbances, *sampling);
     return simulation;
 }
 
@@ -81,16 +80,14 @@ int compare_missions(const cli::StageCall& call) {
     // All are read before the first is run: a bad file leaves no half answer.
     std::vector<mission::AnyMission> missions;
     missions.reserve(call.inputs.size());
-    for (const auto& file : call.inputs)
-        missions.push_back(mission::read_mission(file, {true, std::nullopt}));
+    for (const auto& file : call.inputs) missions.push_back(mission::read_mission(file, {true, std::nullopt}));
     std::vector<mission::Simulation> simulations;
     std::vector<mission::MissionSummary> summaries;
     for (const auto& mission : missions) {
         simulations.push_back(simulation_of(call, mission, sampling));
         summaries.push_back(simulations.back().summary);
     }
-    if (sampling &&
-        std::ranges::none_of(missions, [](const auto& mission) { return has_spread(setup_of(mission)); })) {
+    if (sampling && std::ranges::none_of(missions, [](const auto& mission) { return has_spread(setup_of(mission)); })) {
         require_spread(setup_of(missions.front()));  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));

@@ -33,8 +33,8 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     if (const auto covariate = call.maybe<std::string>("level-covariate")) {
         options.level_covariate = mechanical::covariate_from(*covariate);
         if (!options.level_covariate) {
-            throw UsageError(fmt::format("--level-covariate {}: expected one of {}", *covariate,
-                                         mechanical::covariate_names()));
+            throw UsageError(
+                fmt::format("--level-covariate {}: expected one of {}", *covariate, mechanical::covariate_names()));
         }
     }
     return options;
@@ -57,8 +57,7 @@ flight::PerPhase<mechanical::OrderChoice> choose_orders(const cli::StageCall& ca
                                                         const mechanical::ModelFitOptions& options) {
     flight::PerPhase<mechanical::OrderChoice> choices;
     for (const auto phase : flight::all_phases) {
-        choices[phase] =
-            choose_order(phase, samples_of_phase(flights, phase), options.phases, options.weights);
+        choices[phase] = choose_order(phase, samples_of_phase(flights, phase), options.phases, options.weights);
         note_order(call, phase, choices[phase]);
     }
     return choices;
@@ -71,8 +70,7 @@ int fit(const cli::StageCall& call) {
     if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
     const auto curves_file = call.maybe<std::string>("curves");
     const auto published = cli::read_published(call);
-    const auto flights =
-        read_flights(call, auto_order ? mechanical::highest_tried_order : options.phases.order);
+    const auto flights = read_flights(call, auto_order ? mechanical::highest_tried_order : options.phases.order);
     std::optional<flight::PerPhase<mechanical::OrderChoice>> choices;
     if (auto_order) {
         choices = choose_orders(call, flights, options);
@@ -85,9 +83,9 @@ int fit(const cli::StageCall& call) {
     const bool robust = options.phases.loss != mechanical::Loss::none;
     if (robust) note_down_weighted(call, fitted);
 
-    const auto table = cli::table_of(
-        fitted.model, published,
-        call.has("intervals") ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
+    const auto table =
+        cli::table_of(fitted.model, published,
+                      call.has("intervals") ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
     if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, *reports));
     cli::write_result(call, to_toml(fitted.model));
@@ -129,8 +127,7 @@ as TOML; with -o it goes to the file and Table I is shown.)"};
     add("level-covariate", cli::value("NAME"),
         "let the cruise level follow what 'flightwatt validate --covariate all' found to predict it: "
         "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]");
-    add("loss", cli::value("HOW")->default_value("none"),
-        "none or huber: how outliers count in the last refinement");
+    add("loss", cli::value("HOW")->default_value("none"), "none or huber: how outliers count in the last refinement");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, fit);
 }

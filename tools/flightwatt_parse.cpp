@@ -38,10 +38,9 @@ int parse(const cli::StageCall& call) {
         cli::print(cli::json_text(summary(series, power, loaded.warnings)));
         return cli::ok;
     }
-    cli::note(call,
-              fmt::format("{}: aircraft {} {}, {} samples from {:.1f} to {:.1f} s, usually {:.2f} s apart",
-                          series.flight, series.aircraft_id, series.aircraft_name, power.time_s.size(),
-                          power.time_s.front(), power.time_s.back(), flight::usual_interval_s(power.time_s)));
+    cli::note(call, fmt::format("{}: aircraft {} {}, {} samples from {:.1f} to {:.1f} s, usually {:.2f} s apart",
+                                series.flight, series.aircraft_id, series.aircraft_name, power.time_s.size(),
+                                power.time_s.front(), power.time_s.back(), flight::usual_interval_s(power.time_s)));
     for (const auto& [name, source] : sources_of(series)) {
         cli::note(call, fmt::format("  {:<20} from {}", name, source));
     }

@@ -38,24 +38,21 @@ std::optional<double> probability(const cli::StageCall& call) {
 
 std::string describe(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
     const double utility = *plan.summary.utility;
-    const double gap =
-        plan.plan.bound > 0.0 ? units::percent_of(plan.plan.bound - utility, plan.plan.bound) : 0.0;
+    const double gap = plan.plan.bound > 0.0 ? units::percent_of(plan.plan.bound - utility, plan.plan.bound) : 0.0;
     const auto bound =
         plan.plan.bound_is_proven
             ? fmt::format("at most {:.6g} is possible (gap {:.4f} %)", plan.plan.bound, std::max(gap, 0.0))
             : "how much is possible is not known, as the battery is charged in flight";
-    auto text = fmt::format("{}: utility {:.6g}, {}; {:.4f} % left, reserve {:.4f} %", mission.name, utility,
-                            bound, *plan.summary.final_soc_percent, mission.reserve_soc_percent);
+    auto text = fmt::format("{}: utility {:.6g}, {}; {:.4f} % left, reserve {:.4f} %", mission.name, utility, bound,
+                            *plan.summary.final_soc_percent, mission.reserve_soc_percent);
     if (plan.margin_percent > 0.0) text += fmt::format(" and {:.4f} points of margin", plan.margin_percent);
     return text;
 }
 
 [[noreturn]] void refuse_infeasible(const cli::StageCall& call, const MissionFile& file,
-                                    const mission::PlanningProblem& problem,
-                                    const mission::MissionPlan& plan) {
+                                    const mission::PlanningProblem& problem, const mission::MissionPlan& plan) {
     if (!plan.plan.deliverable) throw NoAnswerError(describe(plan.summary));
-    const auto report =
-        infeasibility_report(problem, plan, [&](double cruise_s) { return file.read(cruise_s); });
+    const auto report = infeasibility_report(problem, plan, [&](double cruise_s) { return file.read(cruise_s); });
     if (call.json) {
         auto json = cli::to_json(plan, problem);
         json["shortfall"] = cli::to_json(report);
@@ -68,8 +65,7 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
     const auto mission = file.read();
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
-        throw InputError({setup_of(mission).file},
-                         "the mission has a schedule already: there is nothing to plan",
+        throw InputError({setup_of(mission).file}, "the mission has a schedule already: there is nothing to plan",
                          "add [plan], and what [[schedule]] says is fixed and the rest planned");
     }
     const auto plan = plan_mission(*problem, probability(call));
@@ -77,9 +73,9 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
     const auto text = describe(plan, *problem);
     // The files that the result names are found from where it will stand.
     const auto folder = std::filesystem::absolute(call.output.value_or("result")).parent_path();
-    cli::write_result(
-        call, fmt::format("# {}\n", cli::one_line(text)) +
-                  planned_mission_toml(file.text, file.path, problem->compute, plan.flown.schedule, folder));
+    cli::write_result(call,
+                      fmt::format("# {}\n", cli::one_line(text)) +
+                          planned_mission_toml(file.text, file.path, problem->compute, plan.flown.schedule, folder));
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(plan, *problem)));
     } else {
@@ -114,9 +110,8 @@ int answer(const cli::StageCall& call, const mission::MissionSetup& mission, con
     if (call.json) {
         cli::print(cli::json_text(json));
     } else {
-        cli::note(call,
-                  fmt::format("{}: then {:.6f} % are left, {:+.1e} points from the reserve{}", mission.name,
-                              most.final_soc_percent, most.residual_percent, beyond(most.limited_by)));
+        cli::note(call, fmt::format("{}: then {:.6f} % are left, {:+.1e} points from the reserve{}", mission.name,
+                                    most.final_soc_percent, most.residual_percent, beyond(most.limited_by)));
     }
     return cli::ok;
 }
@@ -125,8 +120,7 @@ int plan_file(const cli::StageCall& call) {
     const MissionFile file{call.inputs.front(), read_file(call.inputs.front())};
     const bool cruise = call.has("longest-cruise");
     const bool payload = call.has("largest-payload");
-    if (cruise && payload)
-        throw UsageError("--longest-cruise and --largest-payload are two questions: ask one");
+    if (cruise && payload) throw UsageError("--longest-cruise and --largest-payload are two questions: ask one");
     if ((cruise || payload) && call.has("probability")) {
         throw UsageError("--probability belongs to a plan, not to --longest-cruise or --largest-payload");
     }
@@ -153,8 +147,7 @@ one that demands least energy. On a battery whose voltage falls with its charge 
 simulated and made anew until they land; the bound is then that of the highest voltage possible.)"};
     stage.max_inputs = 1;
     auto add = stage.options.add_options();
-    add("probability", cli::value<double>("P"),
-        "keep the reserve with this chance, as flights differ (0.95)");
+    add("probability", cli::value<double>("P"), "keep the reserve with this chance, as flights differ (0.95)");
     add("longest-cruise", "instead: the longest cruise that lands with the reserve [s]");
     add("largest-payload", "instead: the largest constant power that can be fed besides [W]");
     return flightwatt::cli::run_stage(argc, argv, stage, plan_file);

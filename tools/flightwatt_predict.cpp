@@ -31,8 +31,7 @@ Moment moment_of(const cli::StageCall& call) {
     if (call.has("until") == call.has("until-log-time")) {
         throw UsageError("expected either --until (seconds since lift-off) or --until-log-time");
     }
-    return {cli::positive_option(call, "until", "s"),
-            cli::positive_option(call, "until-log-time", "s").value_or(0.0)};
+    return {cli::positive_option(call, "until", "s"), cli::positive_option(call, "until-log-time", "s").value_or(0.0)};
 }
 
 /// When it is: of several aircraft, when the first has flown so long.
@@ -43,8 +42,7 @@ double time_of(const Moment& moment, const std::vector<flight::FlightSeries>& ca
     std::optional<NoAnswerError> refusal;
     for (const auto& series : candidates) {
         try {
-            const double time_s =
-                mechanical::time_since_lift_off(series, *moment.since_lift_off_s, sortie, options);
+            const double time_s = mechanical::time_since_lift_off(series, *moment.since_lift_off_s, sortie, options);
             first_s = std::min(first_s.value_or(time_s), time_s);
         } catch (const NoAnswerError& error) {
             if (!refusal) refusal = error;
@@ -98,11 +96,10 @@ void warn_of_reach(const cli::StageCall& call, const mechanical::PhaseModel& cru
     const auto& law = cruise.level_law.value();
     const double value = flown.covariates[law.covariate].value();
     if (level_at(law, value).within_flights) return;
-    cli::warn(
-        call,
-        fmt::format("{} = {:.4g} is beyond what the model's flights showed, {:.4g} to {:.4g}{}",
-                    to_string(law.covariate), value, law.least, law.most,
-                    law.covariate == mechanical::Covariate::airspeed_cubed ? "" : ": taken as the nearest"));
+    cli::warn(call,
+              fmt::format("{} = {:.4g} is beyond what the model's flights showed, {:.4g} to {:.4g}{}",
+                          to_string(law.covariate), value, law.least, law.most,
+                          law.covariate == mechanical::Covariate::airspeed_cubed ? "" : ": taken as the nearest"));
 }
 
 struct Prediction {
@@ -129,8 +126,7 @@ mechanical::FlightProgress read_progress(const cli::StageCall& call, const Momen
     auto series = choose_aircraft(std::move(candidates));
     cli::refuse_unknown_flights(options, {series.flight});
     if (power_track(series).empty() && !series.clock_restart) {
-        throw NoAnswerError(
-            fmt::format("{}: no power was measured by {:.1f} s of the log", series.flight, until_s));
+        throw NoAnswerError(fmt::format("{}: no power was measured by {:.1f} s of the log", series.flight, until_s));
     }
     const auto loaded = examine_flight(std::move(series), options);
     cli::warn_of(call, file, loaded);
@@ -170,10 +166,10 @@ std::string text_of(const Prediction& prediction) {
         "landing    {:.3f} Wh in {:.0f} s, as in the model\n"
         "remaining  {:.3f} Wh, 95 % interval {:.3f} to {:.3f} Wh\n"
         "total      {:.3f} Wh\n",
-        flown.energy_wh, flown.lift_off_s, flown.until_s, flown.until_s - flown.lift_off_s,
-        cruise.energy.energy_wh, remaining_s, cruise.remaining_mean_w, cruise.flown_w, cruise.expected_w,
-        units::percent_of(cruise.gain, 1.0), landing.energy_wh, landing_s, rest.energy_wh, interval.low_wh,
-        interval.high_wh, flown.energy_wh + rest.energy_wh);
+        flown.energy_wh, flown.lift_off_s, flown.until_s, flown.until_s - flown.lift_off_s, cruise.energy.energy_wh,
+        remaining_s, cruise.remaining_mean_w, cruise.flown_w, cruise.expected_w, units::percent_of(cruise.gain, 1.0),
+        landing.energy_wh, landing_s, rest.energy_wh, interval.low_wh, interval.high_wh,
+        flown.energy_wh + rest.energy_wh);
 }
 
 nlohmann::ordered_json json_of(const Prediction& prediction) {

@@ -78,8 +78,7 @@ void apply_options(const cli::StageCall& call, compute::ProfileSpecification& sp
     }
     if (call.has("above-idle")) specification.above_idle = true;
     if (specification.above_idle && specification.idle_s == 0.0) {
-        throw InputError({specification.file},
-                         "power above idle is asked for, and idle power is not measured",
+        throw InputError({specification.file}, "power above idle is asked for, and idle power is not measured",
                          "set idle_s, or idle_file of recordings");
     }
 }
@@ -123,8 +122,8 @@ int conclude(const cli::StageCall& call, const compute::ProfileOutcome& outcome,
     std::size_t failed = 0;
     for (const auto& component : outcome.components) failed += component.failures.size();
     if (failed == 0) return cli::ok;
-    cli::note(call, fmt::format("{} of {} runs gave no power, see {}/{}; the same command tries them again",
-                                failed, outcome.runs.size(), *call.output, compute::runs_name));
+    cli::note(call, fmt::format("{} of {} runs gave no power, see {}/{}; the same command tries them again", failed,
+                                outcome.runs.size(), *call.output, compute::runs_name));
     return cli::no_answer;
 }
 
@@ -179,8 +178,7 @@ Samplers: auto, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supp
     add("trials", cli::value("N"),
         "run N configurations of each component, spread over its range, and interpolate the others");
     add("check-interpolation", "of profiles: find each node from the others, and print the errors");
-    add("parameters", cli::value("A,B"),
-        "the parameters' names, of a profile that has flags (--check-interpolation)");
+    add("parameters", cli::value("A,B"), "the parameters' names, of a profile that has flags (--check-interpolation)");
     add("columns", cli::value("A,B,power_w"),
         "the columns' names, of a profile without a header (--check-interpolation)");
     return cli::run_stage(argc, argv, stage, profile_components);

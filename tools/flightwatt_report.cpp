@@ -70,17 +70,15 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
         page.head.notes.push_back("There is no model of these flights: the batch could not fit them.");
         return;
     }
-    page.sections.push_back(
-        model_section(report::model_of(*content.fit, cli::read_published(call)), figures, "model"));
+    page.sections.push_back(model_section(report::model_of(*content.fit, cli::read_published(call)), figures, "model"));
     const auto most = cli::count_option(call, "max-validation-flights");
     if (content.measured.size() < 2 || content.measured.size() > most) {
-        page.head.notes.push_back(fmt::format(
-            "The model is validated with 2 to {} flights, and there are {}; flightwatt validate does it.",
-            most, content.measured.size()));
+        page.head.notes.push_back(
+            fmt::format("The model is validated with 2 to {} flights, and there are {}; flightwatt validate does it.",
+                        most, content.measured.size()));
         return;
     }
-    page.sections.push_back(
-        report::validation_section(leave_one_out(content.measured, content.fit->options)));
+    page.sections.push_back(report::validation_section(leave_one_out(content.measured, content.fit->options)));
 }
 
 /// What the batch's folder has to say: flights, model, validation and battery.
@@ -89,21 +87,19 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
     battery::IdentificationOptions identification;
     identification.capacity_ah = cli::positive_option(call, "capacity", "Ah");
     const auto content = report::read_batch_content(out);
-    page.head.facts.emplace_back("flights",
-                                 fmt::format("{} logs, from {}", content.flights.size(), out.string()));
-    page.sections.push_back(report::flights_section(
-        content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt));
+    page.head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
+    page.sections.push_back(
+        report::flights_section(content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt));
     add_model(page, call, content, figures);
-    page.sections.push_back(report::battery_section(report::identify_for_report(
-        content.flights, identification, cli::count_option(call, "max-battery-flights"))));
+    page.sections.push_back(report::battery_section(
+        report::identify_for_report(content.flights, identification, cli::count_option(call, "max-battery-flights"))));
 }
 
 nlohmann::ordered_json summary_json(const Page& page) {
     auto figures = nlohmann::ordered_json::array();
     for (const auto& section : page.sections) {
         for (const auto& figure : section.figures) {
-            figures.push_back(
-                {{"id", figure.id}, {"section", section.title}, {"description", figure.description}});
+            figures.push_back({{"id", figure.id}, {"section", section.title}, {"description", figure.description}});
         }
     }
     return {{"title", page.head.title}, {"notes", page.head.notes}, {"figures", figures}};
@@ -115,8 +111,8 @@ void write_figure_files(const cli::StageCall& call, const std::vector<report::Se
     const auto folder = call.maybe<std::string>("figures");
     if (!folder) return;
     const auto files = write_figures(sections, web, *folder);
-    cli::note(call, fmt::format("{} figures in {}: .vl.json{}{}", files.figures, *folder,
-                                files.has_svg ? ", .svg" : "", files.has_pdf ? ", .pdf" : ""));
+    cli::note(call, fmt::format("{} figures in {}: .vl.json{}{}", files.figures, *folder, files.has_svg ? ", .svg" : "",
+                                files.has_pdf ? ", .pdf" : ""));
     if (!files.has_svg) cli::warn(call, "node is not there: no figure was rendered");
     if (files.has_svg && !files.has_pdf) cli::warn(call, "rsvg-convert is not there: no PDF was made");
 }
@@ -137,8 +133,7 @@ int write_page(const cli::StageCall& call) {
     if (inputs.out) add_batch(page, call, *inputs.out, published);
     if (!inputs.missions.empty()) {
         std::string names;
-        for (const auto& mission : inputs.missions)
-            names += (names.empty() ? "" : ", ") + setup_of(mission).file;
+        for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + setup_of(mission).file;
         facts.emplace_back("missions", names);
         auto sections = mission_sections(report::simulate_for_report(inputs.missions), published);
         std::move(sections.begin(), sections.end(), std::back_inserter(page.sections));

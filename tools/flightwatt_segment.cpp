@@ -17,8 +17,8 @@ int segment_flight(const cli::StageCall& call) {
     const auto loaded = cli::load_flight(call, file, cli::read_flight_options(call));
     const auto& [series, phases, power, exclusion, warnings] = loaded;
     for (const auto& other : phases.ground_events) {
-        cli::note(call, fmt::format("{}: no flight from {:.0f} to {:.0f} s: {}", file, other.start_s,
-                                    other.end_s, other.what));
+        cli::note(call, fmt::format("{}: no flight from {:.0f} to {:.0f} s: {}", file, other.start_s, other.end_s,
+                                    other.what));
     }
     for (const auto& fault : power.power_faults) {
         cli::warn(call, fmt::format("{}: power fault: {}", file, fault));
@@ -45,8 +45,7 @@ int main(int argc, char** argv) {
 lift-off until the height held is reached, cruise, landing from where that height is left until
 touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.)"};
     stage.max_inputs = 1;
-    stage.options.add_options()("explain",
-                                "show the reasons for each edge, and how good the power record is");
+    stage.options.add_options()("explain", "show the reasons for each edge, and how good the power record is");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, segment_flight);
 }

@@ -17,15 +17,14 @@ namespace {
 using namespace flightwatt;
 
 /// The mission with the schedule that was flown, wherever it came from.
-void write_schedule(const cli::StageCall& call, const std::string& text,
-                    const mission::PreparedMission& prepared, const mission::FlownMission& flight) {
+void write_schedule(const cli::StageCall& call, const std::string& text, const mission::PreparedMission& prepared,
+                    const mission::FlownMission& flight) {
     const auto file = call.maybe<std::string>("schedule-out");
     if (!file) return;
     const auto folder = std::filesystem::absolute(*file).parent_path();
     const auto heading = fmt::format("# {}\n", cli::one_line(describe(flight.simulation.summary)));
-    write_file_atomically(*file,
-                          heading + planned_mission_toml(text, call.inputs.front(), prepared.setup.compute,
-                                                         flight.schedule, folder));
+    write_file_atomically(*file, heading + planned_mission_toml(text, call.inputs.front(), prepared.setup.compute,
+                                                                flight.schedule, folder));
 }
 
 /// Draws flights if they were asked for.

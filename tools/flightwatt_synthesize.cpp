@@ -82,16 +82,14 @@ struct LogIdentity {
 
 /// Writes NAME.log, NAME.data and, if asked for, NAME.truth.csv; returns the log's size in bytes.
 std::size_t write_log(const cli::StageCall& call, const synthetic::SyntheticScenario& scenario,
-                      const synthetic::SyntheticSensors& sensors, const LogIdentity& identity,
-                      std::uint64_t seed) {
+                      const synthetic::SyntheticSensors& sensors, const LogIdentity& identity, std::uint64_t seed) {
     const auto log = make_synthetic_log(scenario, sensors, identity.name, identity.made_by, seed);
     const auto stem = std::filesystem::path(*call.output) / identity.name;
     write_file_atomically(stem.string() + ".log", log.log);
     write_file_atomically(stem.string() + ".data", log.data);
     if (call.has("truth")) write_file_atomically(stem.string() + ".truth.csv", truth_csv(scenario));
     if (!call.json) {
-        cli::note(call, fmt::format("{}: synthetic log of {:.0f} s", stem.string(),
-                                    scenario.end_s - scenario.begin_s));
+        cli::note(call, fmt::format("{}: synthetic log of {:.0f} s", stem.string(), scenario.end_s - scenario.begin_s));
     }
     return log.data.size() + log.log.size();
 }
@@ -107,13 +105,12 @@ void require_flyable(const mechanical::MechanicalModel& model, const std::string
         for (const double part_w : fourier.cos_w) most_w += std::abs(part_w);
         for (const double part_w : fourier.sin_w) most_w += std::abs(part_w);
         if (duration_s > longest_phase_s) {
-            throw InputError({file}, fmt::format("{} takes {} s, expected at most {} s", to_string(phase),
-                                                 duration_s, longest_phase_s));
+            throw InputError({file}, fmt::format("{} takes {} s, expected at most {} s", to_string(phase), duration_s,
+                                                 longest_phase_s));
         }
         if (!(most_w <= most_power_w)) {
-            throw InputError({file},
-                             fmt::format("the coefficients of {} add up to {} W, expected at most {} W",
-                                         to_string(phase), most_w, most_power_w));
+            throw InputError({file}, fmt::format("the coefficients of {} add up to {} W, expected at most {} W",
+                                                 to_string(phase), most_w, most_power_w));
         }
     }
 }
@@ -159,11 +156,10 @@ int synthesize(const cli::StageCall& call) {
         const auto log_seed = random();
         for (const auto& [hazard_name, hazard] : hazard_list) {
             LogIdentity identity;
-            identity.name =
-                fmt::format("{}_{:02}{}{}", name, i + 1, hazard_name.empty() ? "" : "_", hazard_name);
-            identity.made_by = fmt::format(
-                "Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
-                count, seed, hazard_name.empty() ? "" : ", hazard ", hazard_name);
+            identity.name = fmt::format("{}_{:02}{}{}", name, i + 1, hazard_name.empty() ? "" : "_", hazard_name);
+            identity.made_by =
+                fmt::format("Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
+                            count, seed, hazard_name.empty() ? "" : ", hazard ", hazard_name);
             const auto bytes = write_log(call, scenario_with(flight, hazard), sensors, identity, log_seed);
             written.push_back({{"flight", identity.name}, {"bytes", bytes}});
         }
@@ -188,8 +184,7 @@ synthetic. The same seed gives the same files.)"};
     add("name", cli::value("NAME")->default_value("opterra_synthetic"), "file names begin with it");
     add("spread", cli::value<double>("X")->default_value(1.0, "1"),
         "flight-to-flight spread, as a multiple of the paper's bands");
-    add("current-noise",
-        cli::value<double>("A")->default_value(synthetic::SyntheticSensors{}.current_noise_a, "0.001"),
+    add("current-noise", cli::value<double>("A")->default_value(synthetic::SyntheticSensors{}.current_noise_a, "0.001"),
         "noise of the current sensor, as a standard deviation");
     add("cruise", cli::value<double>("S"), "how long flights cruise, in seconds (the model's)");
     add("flight-messages-only", "leave out the messages that no flight is read from: small logs");

@@ -21,8 +21,7 @@ namespace {
 using namespace flightwatt;
 
 /// Those that are in cruise at the moment, with what they had flown by then.
-std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call,
-                                                  const flight::LoadedFlight& loaded,
+std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, const flight::LoadedFlight& loaded,
                                                   mechanical::MeasuredFlights measured, double until_s,
                                                   const flight::SegmentationOptions& options) {
     std::vector<mechanical::MeasuredFlight> flights;
@@ -69,8 +68,7 @@ std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
     for (const auto& name : names) {
         const auto covariate = mechanical::covariate_from(name);
         if (!covariate) {
-            throw UsageError(
-                fmt::format("--covariate {}: expected all, {}", name, mechanical::covariate_names()));
+            throw UsageError(fmt::format("--covariate {}: expected all, {}", name, mechanical::covariate_names()));
         }
         if (std::ranges::find(covariates, *covariate) == covariates.end()) {
             covariates.push_back(*covariate);

@@ -37,8 +37,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
     if (std::filesystem::is_directory(path, unknown)) fail(path, EISDIR);
     // Devices and pipes (-o /dev/stdout) cannot be replaced: write them directly.
     std::error_code ignored;
-    const bool special =
-        std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
+    const bool special = std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
     std::string target = special ? path.string() : path.string() + ".XXXXXX";
     const int file = special ? ::open(target.c_str(), O_WRONLY | O_CLOEXEC) : ::mkstemp(target.data());
     if (file < 0) fail(path, errno);

@@ -24,8 +24,7 @@ std::vector<CsvTable::Cell> split_line(std::string_view text, const Location& wh
             while (true) {
                 const auto quote = text.find('"', p + 1);
                 if (quote == std::string_view::npos) {
-                    throw InputError({where.file, where.line, cell.column},
-                                     "a quote is opened and not closed");
+                    throw InputError({where.file, where.line, cell.column}, "a quote is opened and not closed");
                 }
                 cell.text += text.substr(p + 1, quote - p - 1);
                 p = quote + 1;
@@ -65,8 +64,8 @@ void for_each_csv_row(std::string_view text, const std::string& file,
         CsvTable::Row row{line_number, split_line(line, {file, line_number})};
         if (width == 0) width = row.cells.size();
         if (row.cells.size() != width) {
-            throw InputError({file, line_number}, fmt::format("{} cells, expected {} as in the first line",
-                                                              row.cells.size(), width));
+            throw InputError({file, line_number},
+                             fmt::format("{} cells, expected {} as in the first line", row.cells.size(), width));
         }
         on_row(row);
     }

@@ -15,10 +15,10 @@ void require_known_format(const TomlTable& root) {
                          fmt::format("expected a whole number from 1 to {}", format_version));
     }
     if (format <= format_version) return;
-    throw InputError(root.where("format"),
-                     fmt::format("format = {} is newer than this program, which reads formats up to {}",
-                                 format, format_version),
-                     "use a newer FlightWatt, or write the file with this one");
+    throw InputError(
+        root.where("format"),
+        fmt::format("format = {} is newer than this program, which reads formats up to {}", format, format_version),
+        "use a newer FlightWatt, or write the file with this one");
 }
 
 }  // namespace flightwatt

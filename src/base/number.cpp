@@ -9,8 +9,7 @@ double number_or_nan_slowly(std::string_view text) {
     double value = 0.0;
     const char* end = text.data() + text.size();
     const auto [stop, status] = std::from_chars(text.data(), end, value);
-    if (status != std::errc{} || stop != end || !std::isfinite(value))
-        return std::numeric_limits<double>::quiet_NaN();
+    if (status != std::errc{} || stop != end || !std::isfinite(value)) return std::numeric_limits<double>::quiet_NaN();
     return value;
 }
 

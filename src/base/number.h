@@ -10,9 +10,8 @@
 namespace flightwatt {
 
 namespace detail {
-inline constexpr double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                           1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                           1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+inline constexpr double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                           1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 /// The general case: exponents, 16 digits and more, and everything that is not a number. Kept out of line,
 /// because its stack frame would slow the short decimals down.
@@ -45,8 +44,7 @@ inline double number_or_nan(std::string_view text) {
         }
     }
     if (p != end || count == 0 || count > 15) return detail::number_or_nan_slowly(text);
-    const double magnitude =
-        static_cast<double>(static_cast<std::int64_t>(digits)) / detail::powers_of_ten[decimals];
+    const double magnitude = static_cast<double>(static_cast<std::int64_t>(digits)) / detail::powers_of_ten[decimals];
     return negative ? -magnitude : magnitude;
 }
 

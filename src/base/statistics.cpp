@@ -25,9 +25,7 @@ double sample_variance(std::span<const double> values) {
 
 double sample_sd(std::span<const double> values) { return std::sqrt(sample_variance(values)); }
 
-double median(std::vector<double> values) {
-    return boost::math::statistics::median(values.begin(), values.end());
-}
+double median(std::vector<double> values) { return boost::math::statistics::median(values.begin(), values.end()); }
 
 double upper_median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

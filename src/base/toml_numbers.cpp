@@ -11,8 +11,7 @@ namespace {
 std::string describe(NumberRange range) {
     if (std::isinf(range.low)) return fmt::format("at most {}", range.high);
     if (std::isinf(range.high)) {
-        return range.low_excluded ? fmt::format("more than {}", range.low)
-                                  : fmt::format("{} or more", range.low);
+        return range.low_excluded ? fmt::format("more than {}", range.low) : fmt::format("{} or more", range.low);
     }
     return range.low_excluded ? fmt::format("more than {} and at most {}", range.low, range.high)
                               : fmt::format("{} to {}", range.low, range.high);
@@ -20,12 +19,10 @@ std::string describe(NumberRange range) {
 
 }  // namespace
 
-void require_in(NumberRange range, double value, std::string_view name, const Location& where,
-                std::string_view hint) {
+void require_in(NumberRange range, double value, std::string_view name, const Location& where, std::string_view hint) {
     const bool above_low = range.low_excluded ? value > range.low : value >= range.low;
     if (above_low && value <= range.high) return;
-    throw InputError(where, fmt::format("{} = {}, expected {}", name, value, describe(range)),
-                     std::string(hint));
+    throw InputError(where, fmt::format("{} = {}, expected {}", name, value, describe(range)), std::string(hint));
 }
 
 double number_in(NumberRange range, const TomlTable& table, std::string_view key, std::string_view hint) {
@@ -58,8 +55,7 @@ std::uint64_t count_in(const TomlTable& table, std::string_view key, std::uint64
     return static_cast<std::uint64_t>(value);
 }
 
-std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least,
-                          std::uint64_t otherwise) {
+std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least, std::uint64_t otherwise) {
     return table.has(key) ? count_in(table, key, least) : otherwise;
 }
 

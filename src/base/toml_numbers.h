@@ -34,7 +34,6 @@ double number_in_or(NumberRange range, const TomlTable& table, std::string_view 
 
 /// A whole number of at least `least`, and small enough that a double holds it exactly.
 std::uint64_t count_in(const TomlTable& table, std::string_view key, std::uint64_t least = 0);
-std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least,
-                          std::uint64_t otherwise);
+std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least, std::uint64_t otherwise);
 
 }  // namespace flightwatt

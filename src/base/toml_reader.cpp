@@ -87,8 +87,7 @@ TomlTable parse_toml(std::string_view text, const std::string& file) {
         auto root = std::make_shared<const toml::table>(toml::parse(text, file));
         return {root, root.get(), file, ""};
     } catch (const toml::parse_error& error) {
-        throw InputError(location_of(file, error.source()),
-                         fmt::format("is not TOML: {}", error.description()));
+        throw InputError(location_of(file, error.source()), fmt::format("is not TOML: {}", error.description()));
     }
 }
 

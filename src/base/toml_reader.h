@@ -55,8 +55,7 @@ class TomlTable {
 
   private:
     friend TomlTable parse_toml(std::string_view text, const std::string& file);
-    TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file,
-              std::string path);
+    TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::string file, std::string path);
     void ask(std::string_view key) const;
 
     const toml::node& require(std::string_view key) const;

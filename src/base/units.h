@@ -22,9 +22,7 @@ constexpr double ah_from_coulomb(double charge_as) { return charge_as / seconds_
 constexpr double mv_from_v(double voltage_v) { return voltage_v * 1000.0; }
 constexpr double percent_of(double part, double whole) { return part / whole * percent_per_whole; }
 constexpr double part_of(double whole, double percent) { return whole * percent / percent_per_whole; }
-constexpr double percent_from_pprz(double throttle_pprz) {
-    return throttle_pprz / pprz_full_scale * percent_per_whole;
-}
+constexpr double percent_from_pprz(double throttle_pprz) { return throttle_pprz / pprz_full_scale * percent_per_whole; }
 constexpr double pprz_from_percent(double throttle_percent) {
     return throttle_percent / percent_per_whole * pprz_full_scale;
 }
@@ -45,18 +43,7 @@ constexpr double joule_from_microjoule(double energy_uj) { return energy_uj * mi
 constexpr double second_from_millisecond(double time_ms) { return time_ms * milli; }
 
 /// What a declared unit measures; the base unit of each is the suffix used in names.
-enum class Quantity {
-    volt,
-    ampere,
-    watt,
-    ampere_hour,
-    watt_hour,
-    metre,
-    metre_per_second,
-    second,
-    percent,
-    degree
-};
+enum class Quantity { volt, ampere, watt, ampere_hour, watt_hour, metre, metre_per_second, second, percent, degree };
 
 struct Unit {
     Quantity quantity;

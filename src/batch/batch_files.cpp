@@ -75,13 +75,12 @@ bool is_unfinished_summary(std::string_view file) {
         return false;
     }
     const auto whole = file.substr(0, file.size() - ending.size());
-    return whole == catalogue_name ||
-           std::find(model_names.begin(), model_names.end(), whole) != model_names.end();
+    return whole == catalogue_name || std::find(model_names.begin(), model_names.end(), whole) != model_names.end();
 }
 
 std::string reason_of(const FlightRecord& record, const std::vector<LogFile>& logs) {
-    const auto same = std::find_if(logs.begin(), logs.end(),
-                                   [&](const LogFile& log) { return log.path.string() == record.log; });
+    const auto same =
+        std::find_if(logs.begin(), logs.end(), [&](const LogFile& log) { return log.path.string() == record.log; });
     if (same != logs.end()) return fmt::format("it is called {} now", same->flight);
     std::error_code ignored;
     if (std::filesystem::exists(record.log, ignored)) {

@@ -66,8 +66,7 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
         if (json.at("format").get<double>() > format_version) {
             throw InputError(
                 {file.string()},
-                fmt::format("its format is newer than this program, which reads formats up to {}",
-                            format_version),
+                fmt::format("its format is newer than this program, which reads formats up to {}", format_version),
                 "use a newer FlightWatt, or " + again);
         }
         fit.options = options_from(json.at("options"));
@@ -85,8 +84,7 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
 
 }  // namespace
 
-BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights,
-                     const mechanical::ModelFitOptions& options) {
+BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options) {
     auto fitted = fit_model(flights, options);
     const auto analyses = mechanical::analyse_model(fitted);
     BatchFit fit{options, {}, {}, {}, curve_bands(fitted, analyses)};

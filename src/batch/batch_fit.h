@@ -20,8 +20,7 @@ struct BatchFit {
 };
 
 /// Fits, analyses the errors and draws the bands. Throws what fit_model throws.
-BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights,
-                     const mechanical::ModelFitOptions& options);
+BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options);
 
 /// Writes OUT/model.toml (the model alone), OUT/model_errors.toml (with its errors) and OUT/fit.json (options
 /// and bands).

@@ -23,8 +23,7 @@ namespace {
 
 std::filesystem::path flights_folder(const BatchOptions& options) { return options.out / "flights"; }
 
-std::filesystem::path result_path(const BatchOptions& options, const std::string& flight,
-                                  const char* ending) {
+std::filesystem::path result_path(const BatchOptions& options, const std::string& flight, const char* ending) {
     return flights_folder(options) / (flight + ending);
 }
 
@@ -78,9 +77,9 @@ std::optional<FlightRecord> remembered(const BatchOptions& options, const LogFil
     if (!std::filesystem::is_regular_file(path)) return std::nullopt;
     auto record = record_from_json(read_file(path));
     if (!record || record->fingerprint != fingerprint) return std::nullopt;
-    const bool as_written = record->accepted ? !record->results.empty() &&
-                                                   record->results == results_fingerprint(options, log.flight)
-                                             : !has_results(options, log.flight);
+    const bool as_written =
+        record->accepted ? !record->results.empty() && record->results == results_fingerprint(options, log.flight)
+                         : !has_results(options, log.flight);
     if (!as_written) return std::nullopt;
     record->flight = log.flight;  // JSON holds no name that is not UTF-8
     return record;

@@ -109,11 +109,9 @@ struct RecordWriter {
             for (const auto phase : flight::all_phases) {
                 const auto& samples = flight.samples.phases[phase];
                 if (!samples) continue;
-                visit_measured_phase(flight, phase, *samples,
-                                     RecordWriter{phases[std::string(to_string(phase))]});
+                visit_measured_phase(flight, phase, *samples, RecordWriter{phases[std::string(to_string(phase))]});
             }
-            flights.push_back(
-                {{"flight", flight.samples.flight}, {"sortie", measured.sorties[i]}, {"phases", phases}});
+            flights.push_back({{"flight", flight.samples.flight}, {"sortie", measured.sorties[i]}, {"phases", phases}});
         }
         Json excluded = Json::array();
         for (const auto& [flight, phase, reason] : measured.exclusions) {
@@ -182,8 +180,7 @@ std::string verdict_text(const flight::ExplainedEdge& explained) {
     if (explained.witnesses.empty()) return explained.verdict;
     const auto& best = explained.witnesses.front();
     const bool agrees = std::abs(best.after_s) <= flight::agreement_s;
-    return fmt::format("{} {} {} ({:+.1f} s)", explained.verdict, agrees ? "with" : "from", best.what,
-                       best.after_s);
+    return fmt::format("{} {} {} ({:+.1f} s)", explained.verdict, agrees ? "with" : "from", best.what, best.after_s);
 }
 
 }  // namespace
@@ -204,8 +201,8 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
             record.verdicts.push_back({edge.edge.time_s, verdict_text(edge)});
         }
         for (const auto& span : sortie.phases) {
-            record.phases.push_back({sortie.number, span.phase, span.start.time_s, span.end.time_s,
-                                     span.start.gap_s, span.end.gap_s, span.complete,
+            record.phases.push_back({sortie.number, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s,
+                                     span.end.gap_s, span.complete,
                                      phase_statistics(series, span.start.time_s, span.end.time_s)});
         }
     }

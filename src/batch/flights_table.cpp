@@ -13,8 +13,7 @@ bool is_used(const BatchFlight& flight, const RecordedPhase& phase) {
     const auto name = mechanical::flight_name_of_sortie(flight.record.flight, phase.sortie);
     return std::any_of(flight.selection.flights.begin(), flight.selection.flights.end(),
                        [&](const mechanical::MeasuredFlight& measured) {
-                           return measured.samples.flight == name &&
-                                  measured.samples.phases[phase.phase].has_value();
+                           return measured.samples.flight == name && measured.samples.phases[phase.phase].has_value();
                        });
 }
 
@@ -64,9 +63,8 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
     cells.push_back(fmt::format("{}", row.gaps));
     cells.push_back(fmt::format("{:.1f}", row.longest_gap_s));
     cells.push_back(fmt::format("{}", flight.record.warnings.size()));
-    const auto fitted =
-        std::count_if(row.phases.values.begin(), row.phases.values.end(),
-                      [&](const auto* phase) { return phase != nullptr && is_used(flight, *phase); });
+    const auto fitted = std::count_if(row.phases.values.begin(), row.phases.values.end(),
+                                      [&](const auto* phase) { return phase != nullptr && is_used(flight, *phase); });
     cells.push_back(fmt::format("{} of 3", fitted));
     return cells;
 }
@@ -94,23 +92,23 @@ TextTable flights_table(const std::vector<BatchFlight>& flights) {
 
 std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
     CsvWriter csv({"flight", "sortie", "phase", "start_s", "end_s", "duration_s", "samples", "mean_power_w",
-                   "energy_wh", "counter_energy_wh", "used", "gaps", "longest_gap_s", "complete",
-                   "aircraft_id", "power_source", "power_faults", "error"});
+                   "energy_wh", "counter_energy_wh", "used", "gaps", "longest_gap_s", "complete", "aircraft_id",
+                   "power_source", "power_faults", "error"});
     const std::string none;
     for (const auto& flight : flights) {
         const auto& record = flight.record;
         if (!record.accepted) {
-            csv.add(record.flight, none, none, none, none, none, none, none, none, none, false, none, none,
-                    none, none, none, none, record.error);
+            csv.add(record.flight, none, none, none, none, none, none, none, none, none, false, none, none, none, none,
+                    none, none, record.error);
             continue;
         }
         for (const auto& phase : record.phases) {
             const auto& statistics = phase.statistics;
             csv.add(record.flight, phase.sortie, to_string(phase.phase), phase.start_s, phase.end_s,
-                    phase.end_s - phase.start_s, statistics.samples, statistics.mean_power_w,
-                    statistics.energy_wh, statistics.counter_energy_wh, is_used(flight, phase),
-                    statistics.gaps, statistics.longest_gap_s, phase.complete, record.aircraft_id,
-                    record.power_source, fmt::format("{}", fmt::join(record.power_faults, "; ")), none);
+                    phase.end_s - phase.start_s, statistics.samples, statistics.mean_power_w, statistics.energy_wh,
+                    statistics.counter_energy_wh, is_used(flight, phase), statistics.gaps, statistics.longest_gap_s,
+                    phase.complete, record.aircraft_id, record.power_source,
+                    fmt::format("{}", fmt::join(record.power_faults, "; ")), none);
         }
     }
     return csv.text();

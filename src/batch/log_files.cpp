@@ -19,10 +19,8 @@ namespace {
 
 bool is_log_name(const std::filesystem::path& path) {
     const auto name = path.filename().string();
-    constexpr std::array<std::string_view, 5> endings{".data", ".data.gz", ".data.bz2", ".data.xz",
-                                                      ".data.zst"};
-    return std::any_of(endings.begin(), endings.end(),
-                       [&](std::string_view ending) { return name.ends_with(ending); });
+    constexpr std::array<std::string_view, 5> endings{".data", ".data.gz", ".data.bz2", ".data.xz", ".data.zst"};
+    return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return name.ends_with(ending); });
 }
 
 /// What the nearest not-fitted.txt between the folder that was given and the log says; empty without one.
@@ -34,8 +32,7 @@ std::string why_not_fitted(const std::filesystem::path& log, const std::filesyst
         const auto text = read_file(file);
         auto reason = text.substr(0, text.find_first_of("\r\n"));
         if (reason.empty()) {
-            throw InputError({file.string(), 1}, "is empty",
-                             "its first line says why these logs are not fitted");
+            throw InputError({file.string(), 1}, "is empty", "its first line says why these logs are not fitted");
         }
         return reason;
     }
@@ -98,8 +95,7 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
             const auto cause = input.empty() || !error || error == std::errc::no_such_file_or_directory
                                    ? "does not exist"
                                    : error.message();
-            throw InputError({input.empty() ? "''" : input}, cause,
-                             "expected a .data log or a folder of them");
+            throw InputError({input.empty() ? "''" : input}, cause, "expected a .data log or a folder of them");
         }
         logs.push_back({input, {}, {}});
     }

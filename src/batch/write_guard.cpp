@@ -36,13 +36,12 @@ void change_mask(int how, const std::vector<int>& signals) {
 FolderLock::FolderLock(const std::filesystem::path& folder)
     : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
     if (folder_ < 0) {
-        throw OutputError(
-            fmt::format("cannot open the folder {}: {}", folder.string(), std::strerror(errno)));
+        throw OutputError(fmt::format("cannot open the folder {}: {}", folder.string(), std::strerror(errno)));
     }
     if (::flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     ::close(folder_);
-    throw OutputError(fmt::format("another run is writing into {}; wait for it, or choose another folder",
-                                  folder.string()));
+    throw OutputError(
+        fmt::format("another run is writing into {}; wait for it, or choose another folder", folder.string()));
 }
 
 FolderLock::~FolderLock() { ::close(folder_); }
@@ -65,8 +64,7 @@ bool WriteGate::close(std::chrono::milliseconds patience) {
     return changed_.wait_for(lock, patience, [this] { return inside_ == 0; });
 }
 
-Interruption::Interruption(WriteGate& gate, std::function<void(int signal)> farewell)
-    : signals_(ending_signals()) {
+Interruption::Interruption(WriteGate& gate, std::function<void(int signal)> farewell) : signals_(ending_signals()) {
     if (signals_.empty()) return;
     change_mask(SIG_BLOCK, signals_);
     const auto wait = [this, &gate, farewell = std::move(farewell), over = over_.get_token()] {

@@ -53,15 +53,13 @@ TheveninCircuit read_circuit(const TomlTable& table, BatteryIntervals& intervals
     TheveninCircuit circuit;
     const auto curve = table.table("open_circuit");
     circuit.open_circuit = read_curve(curve);
-    intervals.open_circuit_standard_error_v =
-        read_curve_errors(curve, circuit.open_circuit.soc_percent.size());
+    intervals.open_circuit_standard_error_v = read_curve_errors(curve, circuit.open_circuit.soc_percent.size());
     curve.refuse_unknown_keys();
     if (table.has("rc_resistance_ohm"))
         circuit.rc_resistance_ohm = number_in(at_least(0.0), table, "rc_resistance_ohm");
     if (circuit.rc_resistance_ohm > 0.0 || table.has("rc_time_constant_s")) {
-        circuit.rc_time_constant_s =
-            number_in(between(least_time_constant_s, greatest_time_constant_s), table, "rc_time_constant_s",
-                      "what is faster counts as resistance_ohm");
+        circuit.rc_time_constant_s = number_in(between(least_time_constant_s, greatest_time_constant_s), table,
+                                               "rc_time_constant_s", "what is faster counts as resistance_ohm");
     }
     return circuit;
 }
@@ -119,8 +117,7 @@ double full_energy_wh(const Battery& battery) {
     if (!battery.thevenin) return battery.capacity_ah * battery.voltage_v;
     const auto& curve = battery.thevenin->open_circuit;
     const double full_percent = curve.soc_percent.back();
-    return battery.capacity_ah * voltage_integral(curve, full_percent) /
-           (full_percent - curve.soc_percent.front());
+    return battery.capacity_ah * voltage_integral(curve, full_percent) / (full_percent - curve.soc_percent.front());
 }
 
 double open_circuit_voltage_v(const Battery& battery, double soc_percent) {
@@ -166,8 +163,7 @@ Battery battery_from(const TomlTable& table) {
         throw InputError(table.where("model"), fmt::format("there is no battery model '{}'", model),
                          "it is \"paper\" or \"thevenin\"");
     }
-    if (model == "paper")
-        battery.voltage_v = number_in(more_than_up_to(0.0, greatest_number), table, "voltage_v");
+    if (model == "paper") battery.voltage_v = number_in(more_than_up_to(0.0, greatest_number), table, "voltage_v");
     battery.resistance_ohm = number_in(at_least(0.0), table, "resistance_ohm");
     battery.capacity_ah = number_in(more_than_up_to(0.0, greatest_number), table, "capacity_ah");
     if (model == "thevenin") battery.thevenin = read_circuit(table, battery.intervals);
@@ -194,8 +190,7 @@ std::string to_toml(const Battery& battery) {
         if (circuit.rc_resistance_ohm > 0.0)
             text += fmt::format("rc_time_constant_s = {}\n", toml_real(circuit.rc_time_constant_s));
         text += fmt::format("\n[open_circuit]\nsoc_percent = {}\nvoltage_v = {}\n",
-                            toml_reals(circuit.open_circuit.soc_percent),
-                            toml_reals(circuit.open_circuit.voltage_v));
+                            toml_reals(circuit.open_circuit.soc_percent), toml_reals(circuit.open_circuit.voltage_v));
         const auto& errors = battery.intervals.open_circuit_standard_error_v;
         if (!errors.empty()) text += fmt::format("standard_error_v = {}\n", toml_reals(errors));
     }

@@ -43,9 +43,9 @@ struct BatteryIntervals {
 /// Thévenin's, whose source follows the state of charge and has an RC pair in series.
 struct Battery {
     std::string name;
-    double voltage_v = 0.0;       ///< U_int, of the paper's source; 0 in a Thévenin circuit
-    double resistance_ohm = 0.0;  ///< R_int, in series; 0 is an ideal source
-    double capacity_ah = 0.0;     ///< Q_c
+    double voltage_v = 0.0;                                  ///< U_int, of the paper's source; 0 in a Thévenin circuit
+    double resistance_ohm = 0.0;                             ///< R_int, in series; 0 is an ideal source
+    double capacity_ah = 0.0;                                ///< Q_c
     std::optional<TheveninCircuit> thevenin = std::nullopt;  ///< none: the paper's
     BatteryIntervals intervals = {};
 };

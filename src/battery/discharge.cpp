@@ -31,8 +31,8 @@ BatteryState after(const Step& step, double elapsed_s) {
     const auto rate = [&](const State& x, State& per_s, double time) {
         const BatteryState state{x[0], x[1]};
         // The limit is looked for at the step's samples: this min() only takes away what lies beyond it.
-        const double current_a = internal_current_a(
-            battery, std::min(step.load.power_w(time), power_limit_w(battery, state)), state);
+        const double current_a =
+            internal_current_a(battery, std::min(step.load.power_w(time), power_limit_w(battery, state)), state);
         per_s[0] = -units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
         per_s[1] = 0.0;
         if (!battery.thevenin) return;
@@ -82,10 +82,8 @@ std::optional<Onset> first_excess(const Step& step, double length_s) {
 
 bool is_below_cutoff(const Step& step, double elapsed_s, double cutoff_v) {
     const auto state = after(step, elapsed_s);
-    const double power_w =
-        std::min(step.load.power_w(step.time_s + elapsed_s), power_limit_w(step.battery, state));
-    return terminal_voltage_v(step.battery, state, internal_current_a(step.battery, power_w, state)) <
-           cutoff_v;
+    const double power_w = std::min(step.load.power_w(step.time_s + elapsed_s), power_limit_w(step.battery, state));
+    return terminal_voltage_v(step.battery, state, internal_current_a(step.battery, power_w, state)) < cutoff_v;
 }
 
 /// One step, ended by the first of empty, cut-off voltage and power limit.
@@ -101,8 +99,7 @@ Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
     }
     const auto state = after(step, length_s);
     std::optional<Onset> cut_off;
-    if (cutoff_v > 0.0)
-        cut_off = first_onset(length_s, [&](double s) { return is_below_cutoff(step, s, cutoff_v); });
+    if (cutoff_v > 0.0) cut_off = first_onset(length_s, [&](double s) { return is_below_cutoff(step, s, cutoff_v); });
     std::optional<Onset> empty;
     if (state.soc_percent <= 0.0)
         empty = first_onset(length_s, [&](double s) { return after(step, s).soc_percent <= 0.0; });
@@ -116,8 +113,8 @@ Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
 
 Discharge discharge(const Battery& battery, const Load& load, const BatteryState& state,
                     const DischargeOptions& options) {
-    if (!(load.end_s >= load.start_s) || !(options.max_step_s > 0.0) ||
-        !(state.soc_percent <= full_percent) || !(options.cutoff_voltage_v >= 0.0)) {
+    if (!(load.end_s >= load.start_s) || !(options.max_step_s > 0.0) || !(state.soc_percent <= full_percent) ||
+        !(options.cutoff_voltage_v >= 0.0)) {
         throw std::invalid_argument(
             "discharge: needs start_s <= end_s, a positive step, at most 100 % and no negative voltage");
     }
@@ -126,8 +123,7 @@ Discharge discharge(const Battery& battery, const Load& load, const BatteryState
     if (battery.thevenin) max_step_s = std::min(max_step_s, battery.thevenin->rc_time_constant_s / 2.0);
     const double length_s = load.end_s - load.start_s;
     // A quotient a rounding error above a whole number is that number.
-    const auto steps =
-        static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_step_s * (1.0 - 1e-12))));
+    const auto steps = static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_step_s * (1.0 - 1e-12))));
     Discharge result{state};
     double time_s = load.start_s;
     for (std::uint64_t k = 1; k <= steps; ++k) {

@@ -26,8 +26,7 @@ std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segm
     }
     low = std::max(low, 0.0);
     std::vector<double> knots;
-    for (int i = 0; i <= segments; ++i)
-        knots.push_back(std::lerp(low, high, static_cast<double>(i) / segments));
+    for (int i = 0; i <= segments; ++i) knots.push_back(std::lerp(low, high, static_cast<double>(i) / segments));
     return knots;
 }
 
@@ -60,8 +59,7 @@ CircuitFit best_fit(std::span<const AlignedRecord> records) {
         if (falls_throughout(fit)) fits.push_back(std::move(fit));
     }
     if (fits.empty()) throw NoAnswerError("the open-circuit voltage does not fall as charge is drawn");
-    return *std::ranges::min_element(fits, {},
-                                     [&](const CircuitFit& fit) { return criterion(fit, samples); });
+    return *std::ranges::min_element(fits, {}, [&](const CircuitFit& fit) { return criterion(fit, samples); });
 }
 
 /// The charge at which the fitted curve, which falls, has this voltage; 0 to the last knot.
@@ -103,9 +101,8 @@ double align(std::vector<AlignedRecord>& records, const CircuitFit& fit) {
 AlignedFit aligned_fit(std::span<const DischargeRecord> records) {
     AlignedFit aligned;
     for (const auto& record : records) aligned.records.push_back({&record, 0.0});
-    const auto fullest = *std::ranges::max_element(aligned.records, {}, [](const auto& aligned_record) {
-        return aligned_record.record->resting_voltage_v;
-    });
+    const auto fullest = *std::ranges::max_element(
+        aligned.records, {}, [](const auto& aligned_record) { return aligned_record.record->resting_voltage_v; });
     aligned.fit = best_fit({&fullest, 1});
     for (int i = 0; i < alignments; ++i) {
         const double moved_ah = align(aligned.records, aligned.fit);
@@ -146,8 +143,7 @@ std::vector<IdentifiedFlight> identified_flights(const AlignedFit& aligned) {
 
 }  // namespace
 
-BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
-                                       const IdentificationOptions& options) {
+BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
     if (records.empty()) throw NoAnswerError("no flight is left to identify a battery from");
     const auto aligned = aligned_fit(records);
     BatteryIdentification result;
@@ -166,8 +162,8 @@ BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
     battery.name = options.name;
     battery.resistance_ohm = aligned.fit.resistance_ohm;
     battery.capacity_ah = result.capacity.value_ah;
-    battery.thevenin = TheveninCircuit{extended.curve, aligned.fit.rc_resistance_ohm,
-                                       std::max(0.1, aligned.fit.rc_time_constant_s)};
+    battery.thevenin =
+        TheveninCircuit{extended.curve, aligned.fit.rc_resistance_ohm, std::max(0.1, aligned.fit.rc_time_constant_s)};
     battery.intervals.capacity_ah = result.capacity.interval_ah;
     battery.intervals.resistance_ohm = result.errors.resistance_ohm;
     battery.intervals.open_circuit_standard_error_v = extended.standard_error_v;
@@ -184,9 +180,8 @@ PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& 
     const auto settled_a = settled_current_a(record, circuit.rc_time_constant_s);
     PredictedVoltage predicted;
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        const BatteryState state{
-            initial_percent - units::percent_of(record.charge_ah[i], battery.capacity_ah),
-            circuit.rc_resistance_ohm * settled_a[i]};
+        const BatteryState state{initial_percent - units::percent_of(record.charge_ah[i], battery.capacity_ah),
+                                 circuit.rc_resistance_ohm * settled_a[i]};
         predicted.soc_percent.push_back(state.soc_percent);
         predicted.voltage_v.push_back(terminal_voltage_v(battery, state, record.current_a[i]));
     }

@@ -51,8 +51,7 @@ struct BatteryIdentification {
 /// has as many equal segments as Akaike's criterion prefers, counting samples by the autocorrelation
 /// of the residuals, and falls throughout. Throws NoAnswerError where the flights determine no such circuit,
 /// and as capacity_of does.
-BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
-                                       const IdentificationOptions& options);
+BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options);
 
 /// At every sample of a record; the state of charge may fall below 0 where the capacity is too small.
 struct PredictedVoltage {

@@ -9,15 +9,13 @@
 
 namespace flightwatt::cli {
 
-std::uint64_t count_option(const StageCall& call, const std::string& option, std::uint64_t least,
-                           std::uint64_t most) {
+std::uint64_t count_option(const StageCall& call, const std::string& option, std::uint64_t least, std::uint64_t most) {
     const auto text = call.get<std::string>(option);
     const auto number = parse_unsigned(text);
     if (number && *number >= least && *number <= most) return *number;
-    const auto range = most < std::numeric_limits<std::uint64_t>::max()
-                           ? fmt::format(" from {} to {}", least, most)
-                       : least > 0 ? fmt::format(" from {}", least)
-                                   : std::string();
+    const auto range = most < std::numeric_limits<std::uint64_t>::max() ? fmt::format(" from {} to {}", least, most)
+                       : least > 0                                      ? fmt::format(" from {}", least)
+                                                                        : std::string();
     throw UsageError(fmt::format("--{} {}: expected a whole number{}", option, one_line(text), range));
 }
 
@@ -27,8 +25,8 @@ double number_option(const StageCall& call, const std::string& option, double le
     throw UsageError(fmt::format("--{} {:g}: expected {:g} to {:g}", option, value, least, most));
 }
 
-std::optional<double> positive_option(const StageCall& call, const std::string& option,
-                                      const std::string& unit, double most) {
+std::optional<double> positive_option(const StageCall& call, const std::string& option, const std::string& unit,
+                                      double most) {
     const auto value = call.maybe<double>(option);
     if (!value || (*value > 0.0 && *value <= most && std::isfinite(*value))) return value;
     const auto limit = std::isfinite(most) ? fmt::format(" and at most {:g}", most) : std::string();

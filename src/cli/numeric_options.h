@@ -20,8 +20,7 @@ double number_option(const StageCall& call, const std::string& option, double le
 
 /// A finite number above 0 and at most `most`, or std::nullopt where the option was not given. `unit` is that
 /// of the number, for the message.
-std::optional<double> positive_option(const StageCall& call, const std::string& option,
-                                      const std::string& unit,
+std::optional<double> positive_option(const StageCall& call, const std::string& option, const std::string& unit,
                                       double most = std::numeric_limits<double>::infinity());
 
 }  // namespace flightwatt::cli

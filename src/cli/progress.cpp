@@ -21,15 +21,13 @@ std::string clock_text(double time_s) {
     const std::chrono::hh_mm_ss clock(whole);
     const auto [hours, minutes, s] =
         std::tuple(clock.hours().count(), clock.minutes().count(), clock.seconds().count());
-    return hours == 0 ? fmt::format("{}:{:02}", minutes, s)
-                      : fmt::format("{}:{:02}:{:02}", hours, minutes, s);
+    return hours == 0 ? fmt::format("{}:{:02}", minutes, s) : fmt::format("{}:{:02}:{:02}", hours, minutes, s);
 }
 
 std::string rate_text(const ProgressState& state, const std::string& unit) {
     if (!(state.per_s > 0.0)) return "";
     const auto left_s = static_cast<double>(state.all - std::min(state.done, state.all)) / state.per_s;
-    return fmt::format(", {:.{}f} {}/s, {} left", state.per_s, state.per_s < 100.0 ? 1 : 0, unit,
-                       clock_text(left_s));
+    return fmt::format(", {:.{}f} {}/s, {} left", state.per_s, state.per_s < 100.0 ? 1 : 0, unit, clock_text(left_s));
 }
 
 /// "[###...] ", as wide as `width` if that is enough for a bar that tells anything.

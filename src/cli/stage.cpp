@@ -21,8 +21,7 @@ namespace po = boost::program_options;
 constexpr const char* inputs_option = "inputs";
 
 /// Says what went wrong, and where; returns the exit code that stands for it.
-ExitCode failed(ExitCode code, const std::string& program, const std::string& message,
-                const std::string& where = "") {
+ExitCode failed(ExitCode code, const std::string& program, const std::string& message, const std::string& where = "") {
     const auto place = where.empty() ? "" : where + ": ";
     fmt::print(stderr, "{}: {}error: {}\n", program, one_line(place), one_line(message));
     return code;
@@ -31,16 +30,14 @@ ExitCode failed(ExitCode code, const std::string& program, const std::string& me
 StageCall parse(int argc, char** argv, const StageDefinition& definition, po::options_description& visible) {
     StageCall call;
     call.program = "flightwatt-" + definition.name;
-    visible.add_options()("output,o", po::value<std::string>()->value_name("FILE"),
-                          definition.output_help.c_str())("json", "print the summary as JSON")(
-        "help,h", "show this help")("version", "show the version");
+    visible.add_options()("output,o", po::value<std::string>()->value_name("FILE"), definition.output_help.c_str())(
+        "json", "print the summary as JSON")("help,h", "show this help")("version", "show the version");
     po::options_description all = visible;
     all.add_options()(inputs_option, po::value<std::vector<std::string>>());
     po::positional_options_description positional;
     positional.add(inputs_option, -1);
     const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).style(style).run(),
-              call.options);
+    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).style(style).run(), call.options);
     po::notify(call.options);
     call.json = call.has("json");
     call.output = call.maybe<std::string>("output");
@@ -59,8 +56,8 @@ void refuse_to_overwrite_inputs(const StageCall& call) {
     for (const auto& input : call.inputs) {
         std::error_code unknown;
         if (!std::filesystem::equivalent(*call.output, input, unknown)) continue;
-        throw UsageError(fmt::format("--output {} is the input {}, which would be lost; name another file",
-                                     *call.output, input));
+        throw UsageError(
+            fmt::format("--output {} is the input {}, which would be lost; name another file", *call.output, input));
     }
 }
 
@@ -81,8 +78,8 @@ int run(int argc, char** argv, const StageDefinition& definition, const StageBod
         throw UsageError(fmt::format("no input given; {}", usage_line(definition)));
     }
     if (call.inputs.size() > definition.max_inputs) {
-        throw UsageError(fmt::format("unexpected argument '{}'; {}", call.inputs[definition.max_inputs],
-                                     usage_line(definition)));
+        throw UsageError(
+            fmt::format("unexpected argument '{}'; {}", call.inputs[definition.max_inputs], usage_line(definition)));
     }
     refuse_to_overwrite_inputs(call);
     return body(call);

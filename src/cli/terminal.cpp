@@ -52,8 +52,7 @@ struct Canvas {
 
     void set(std::size_t x, std::size_t y, std::size_t who) {
         // Unicode numbers the dots of a cell down its left column, then its right, and the lowest two last.
-        constexpr std::array<std::array<unsigned, 4>, 2> bits{
-            {{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
+        constexpr std::array<std::array<unsigned, 4>, 2> bits{{{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
         const auto cell = y / dots_down * columns + x / dots_across;
         dots[cell] |= bits[x % dots_across][y % dots_down];
         line[cell] = who;
@@ -154,8 +153,7 @@ std::optional<TerminalPlot> terminal_plot(const StageCall& call, const std::stri
 }
 
 std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) {
-    if (lines.empty() || plot.rows < 2 || plot.columns < axis_columns + label_columns + least_columns)
-        return "";
+    if (lines.empty() || plot.rows < 2 || plot.columns < axis_columns + label_columns + least_columns) return "";
     double x_low = lines.front().x.front();
     double x_high = lines.front().x.back();
     for (const auto& line : lines) {
@@ -178,8 +176,7 @@ std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) 
     }
     const auto end = fmt::format("{:.0f} {}", x_high, plot.x_label);
     const auto start = fmt::format("{:.0f}", x_low);
-    const auto gap =
-        canvas.columns > start.size() + end.size() ? canvas.columns - start.size() - end.size() : 1;
+    const auto gap = canvas.columns > start.size() + end.size() ? canvas.columns - start.size() - end.size() : 1;
     return text + fmt::format("{:>{}}{}{:>{}}{}\n", "", axis_columns, start, "", gap, end);
 }
 

@@ -22,12 +22,11 @@ std::vector<double> axis_of(const std::vector<ProfileNode>& nodes, std::size_t p
 void refuse_duplicates(const std::vector<std::string>& parameters, const std::vector<ProfileNode>& sorted) {
     for (std::size_t i = 1; i < sorted.size(); ++i) {
         if (sorted[i].qos != sorted[i - 1].qos) continue;
-        const auto what = parameters.empty() ? "a profile without parameters"
-                                             : spell_qos(parameters, sorted[i].qos, " = ", ", ");
-        throw InputError(
-            sorted[i].where,
-            fmt::format("{} has a second node, the first is in line {}", what, sorted[i - 1].where.line),
-            "keep one row for each configuration");
+        const auto what =
+            parameters.empty() ? "a profile without parameters" : spell_qos(parameters, sorted[i].qos, " = ", ", ");
+        throw InputError(sorted[i].where,
+                         fmt::format("{} has a second node, the first is in line {}", what, sorted[i - 1].where.line),
+                         "keep one row for each configuration");
     }
 }
 
@@ -53,11 +52,10 @@ void require_full_grid(const PowerProfile& profile, const std::vector<ProfileNod
     std::size_t k = 0;
     while (k < sorted.size() && sorted[k].qos == grid_point(profile.axes, k)) ++k;
     if (static_cast<double>(k) >= grid_size) return;
-    throw InputError(
-        {profile.file},
-        fmt::format("the grid is incomplete: there is no node at {}",
-                    spell_qos(profile.parameters, grid_point(profile.axes, k), " = ", ", ")),
-        fmt::format("profile every combination of the values, here {} nodes", fmt::join(counts, " x ")));
+    throw InputError({profile.file},
+                     fmt::format("the grid is incomplete: there is no node at {}",
+                                 spell_qos(profile.parameters, grid_point(profile.axes, k), " = ", ", ")),
+                     fmt::format("profile every combination of the values, here {} nodes", fmt::join(counts, " x ")));
 }
 
 }  // namespace
@@ -80,15 +78,13 @@ PowerProfile make_power_profile(const std::string& file, const std::vector<std::
     return profile;
 }
 
-void require_in_range(const PowerProfile& profile, std::size_t parameter, double value,
-                      const Location& where) {
+void require_in_range(const PowerProfile& profile, std::size_t parameter, double value, const Location& where) {
     const auto& axis = profile.axes.at(parameter);
     if (value >= axis.front() && value <= axis.back()) return;
-    throw InputError(
-        where,
-        fmt::format("{} = {} is outside of the profiled range {} .. {} of {}", profile.parameters[parameter],
-                    value, axis.front(), axis.back(), profile.file),
-        "choose a value within it, or profile the component there");
+    throw InputError(where,
+                     fmt::format("{} = {} is outside of the profiled range {} .. {} of {}",
+                                 profile.parameters[parameter], value, axis.front(), axis.back(), profile.file),
+                     "choose a value within it, or profile the component there");
 }
 
 double power_w(const PowerProfile& profile, const std::vector<double>& qos) {

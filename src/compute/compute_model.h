@@ -36,8 +36,7 @@ PowerProfile make_power_profile(const std::string& file, const std::vector<std::
 
 /// Throws InputError at `where` (the place that asks for the value) if `value` is outside of what the
 /// parameter was profiled at: a profile is never extrapolated. `parameter` counts from 0.
-void require_in_range(const PowerProfile& profile, std::size_t parameter, double value,
-                      const Location& where);
+void require_in_range(const PowerProfile& profile, std::size_t parameter, double value, const Location& where);
 
 /// Power [W] at `qos` (one value a parameter), multilinear between the nodes around it and exact at them.
 /// Throws InputError, placed in the profile, if a value is out of range.

@@ -23,8 +23,7 @@ constexpr double rank_tolerance = 1e-10;
 
 /// A point a row.
 MatrixXd matrix_of(const QosPoints& points) {
-    MatrixXd matrix(static_cast<Index>(points.size()),
-                    static_cast<Index>(points.empty() ? 0 : points.front().size()));
+    MatrixXd matrix(static_cast<Index>(points.size()), static_cast<Index>(points.empty() ? 0 : points.front().size()));
     for (Index i = 0; i < matrix.rows(); ++i) {
         for (Index j = 0; j < matrix.cols(); ++j) {
             matrix(i, j) = points[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
@@ -104,8 +103,7 @@ std::optional<VectorXd> errors_of(const MatrixXd& points, const VectorXd& values
 
 }  // namespace
 
-LeaveOneOut summarize_errors(std::string method, std::vector<double> error_w,
-                             const std::vector<double>& power_w) {
+LeaveOneOut summarize_errors(std::string method, std::vector<double> error_w, const std::vector<double>& power_w) {
     LeaveOneOut summary;
     summary.method = std::move(method);
     double squares = 0.0;
@@ -126,8 +124,8 @@ LeaveOneOut summarize_errors(std::string method, std::vector<double> error_w,
     return summary;
 }
 
-std::vector<double> interpolate_thin_plate(AxisScale scale, const QosPoints& known,
-                                           const std::vector<double>& power_w, const QosPoints& at) {
+std::vector<double> interpolate_thin_plate(AxisScale scale, const QosPoints& known, const std::vector<double>& power_w,
+                                           const QosPoints& at) {
     const auto scaled = scaled_together(known, at, scale);
     const auto n = static_cast<Index>(known.size());
     const MatrixXd points = scaled.topRows(n);
@@ -143,8 +141,8 @@ std::vector<double> interpolate_thin_plate(AxisScale scale, const QosPoints& kno
     return {found.begin(), found.end()};
 }
 
-std::optional<LeaveOneOut> leave_one_out(AxisScale scale, const QosPoints& known,
-                                         const std::vector<double>& power_w, const QosPoints& at) {
+std::optional<LeaveOneOut> leave_one_out(AxisScale scale, const QosPoints& known, const std::vector<double>& power_w,
+                                         const QosPoints& at) {
     const MatrixXd points = scaled_together(known, at, scale).topRows(static_cast<Index>(known.size()));
     const VectorXd values = Eigen::Map<const VectorXd>(power_w.data(), static_cast<Index>(power_w.size()));
     const auto errors = errors_of(points, values);
@@ -186,16 +184,14 @@ LeaveOneOut leave_one_out(const PowerProfile& profile) {
             }
             stride *= axis.size();
         }
-        errors.push_back(ways == 0 ? std::numeric_limits<double>::quiet_NaN()
-                                   : sum / ways - profile.power_w[k]);
+        errors.push_back(ways == 0 ? std::numeric_limits<double>::quiet_NaN() : sum / ways - profile.power_w[k]);
     }
     return summarize_errors("linear between neighbours", std::move(errors), profile.power_w);
 }
 
 std::vector<LeaveOneOut> interpolation_errors(const PowerProfile& profile) {
     std::vector<LeaveOneOut> errors{leave_one_out(profile)};
-    if (const auto choice = choose_scale(grid_points(profile), profile.power_w))
-        errors.push_back(choice->error);
+    if (const auto choice = choose_scale(grid_points(profile), profile.power_w)) errors.push_back(choice->error);
     return errors;
 }
 

@@ -22,20 +22,19 @@ struct LeaveOneOut {
 };
 
 /// The summary of `error_w` beside the true powers.
-LeaveOneOut summarize_errors(std::string method, std::vector<double> error_w,
-                             const std::vector<double>& power_w);
+LeaveOneOut summarize_errors(std::string method, std::vector<double> error_w, const std::vector<double>& power_w);
 
 /// Power [W] at `at` from the nodes `known`, which need not be a grid: the thin-plate spline r^2 log r and a plane,
 /// exact at the nodes (Duchon 1977), all points scaled together. Throws NoAnswerError if the nodes are
 /// too few, or lie so that they determine nothing (all on a line).
-std::vector<double> interpolate_thin_plate(AxisScale scale, const QosPoints& known,
-                                           const std::vector<double>& power_w, const QosPoints& at);
+std::vector<double> interpolate_thin_plate(AxisScale scale, const QosPoints& known, const std::vector<double>& power_w,
+                                           const QosPoints& at);
 
 /// Finds each node from the others, all by one solution (Rippa, Adv. Comput. Math. 11, 1999); std::nullopt if
 /// one node less does not determine the spline. Axes stay scaled by all nodes and by the points `at` that are
 /// to be found later.
-std::optional<LeaveOneOut> leave_one_out(AxisScale scale, const QosPoints& known,
-                                         const std::vector<double>& power_w, const QosPoints& at = {});
+std::optional<LeaveOneOut> leave_one_out(AxisScale scale, const QosPoints& known, const std::vector<double>& power_w,
+                                         const QosPoints& at = {});
 
 /// The scale of the axes that finds the nodes best (by RMS error), and how well.
 struct ScaleChoice {

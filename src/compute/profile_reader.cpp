@@ -22,9 +22,8 @@ constexpr std::string_view error_column = "standard_error_w";
 constexpr std::string_view source_column = "source";
 constexpr std::string_view interpolated = "interpolated";
 /// What may follow power_w in a profile of ours: on what it rests.
-constexpr std::string_view evidence_columns[] = {error_column, "total_power_w", "above_idle_power_w",
-                                                 "duration_s", "energy_j",      "samples",
-                                                 "repeats",    source_column};
+constexpr std::string_view evidence_columns[] = {
+    error_column, "total_power_w", "above_idle_power_w", "duration_s", "energy_j", "samples", "repeats", source_column};
 
 void refuse_bad_names(const std::vector<std::string>& parameters, const Location& where) {
     std::set<std::string_view> seen;
@@ -44,8 +43,8 @@ void require_names(const ProfileNaming& naming, std::size_t count, const std::st
     const auto where = naming.where.file.empty() ? Location{file} : naming.where;
     if (naming.parameters.size() != count) {
         throw InputError(where,
-                         fmt::format("{} has {} parameters without names, and {} names are given", file,
-                                     count, naming.parameters.size()),
+                         fmt::format("{} has {} parameters without names, and {} names are given", file, count,
+                                     naming.parameters.size()),
                          count == 0 ? "leave `parameters` out" : "name them in order with `parameters`");
     }
     refuse_bad_names(naming.parameters, where);
@@ -69,10 +68,9 @@ std::size_t parameter_count(const CsvTable& table) {
     const auto& header = table.rows.front();
     const auto power = std::ranges::find(header.cells, power_column, &CsvTable::Cell::text);
     if (power == header.cells.end()) {
-        throw InputError(
-            {table.file, header.line, header.cells.back().column},
-            fmt::format("the last column is '{}', expected '{}'", header.cells.back().text, power_column),
-            "a profile's columns are its parameters and then power_w");
+        throw InputError({table.file, header.line, header.cells.back().column},
+                         fmt::format("the last column is '{}', expected '{}'", header.cells.back().text, power_column),
+                         "a profile's columns are its parameters and then power_w");
     }
     for (auto cell = power + 1; cell != header.cells.end(); ++cell) {
         if (std::ranges::find(evidence_columns, cell->text) != std::end(evidence_columns)) continue;
@@ -141,8 +139,7 @@ PowerProfile profile_without_header(CsvTable table, const ProfileNaming& naming)
         columns.push_back(i);
     }
     if (power.size() != 1) {
-        throw InputError(naming.where,
-                         fmt::format("{} columns are named power_w, expected one", power.size()));
+        throw InputError(naming.where, fmt::format("{} columns are named power_w, expected one", power.size()));
     }
     refuse_bad_names(parameters, naming.where);
     return make_power_profile(file, parameters, nodes_of(table, 0, columns, power.front()));
@@ -166,8 +163,7 @@ PowerProfile profile_of_powprofiler(const CsvTable& table, const PowprofilerColu
     if (columns.parameters.empty()) {
         return make_power_profile(table.file, {}, {{{}, mean(layer1_power_w(table)), {table.file}}});
     }
-    return make_power_profile(table.file, naming.parameters,
-                              nodes_of(table, 1, columns.parameters, columns.power));
+    return make_power_profile(table.file, naming.parameters, nodes_of(table, 1, columns.parameters, columns.power));
 }
 
 }  // namespace

@@ -44,9 +44,9 @@ ProfileTiming timing_from(const TomlTable& table, const ProfileTiming& fallback)
     timing.timeout_s = number_in_or(more_than(0.0), table, "timeout_s", fallback.timeout_s);
     const double least_s = timing.warm_up_s + timing.duration_s.value_or(0.0);
     if (timing.timeout_s <= least_s && table.has("timeout_s")) {
-        throw InputError(table.where("timeout_s"),
-                         fmt::format("timeout_s = {} is over before warm-up and duration, {} s",
-                                     timing.timeout_s, least_s));
+        throw InputError(
+            table.where("timeout_s"),
+            fmt::format("timeout_s = {} is over before warm-up and duration, {} s", timing.timeout_s, least_s));
     }
     return timing;
 }
@@ -57,8 +57,7 @@ std::vector<double> values_from(const TomlTable& ranges, const std::string& name
     range.refuse_keys_except({"values", "from", "to", "step"});
     if (range.has("values")) {
         if (range.has("from") || range.has("to") || range.has("step")) {
-            throw InputError(range.where(), fmt::format("{} has values and a range", name),
-                             "keep one of them");
+            throw InputError(range.where(), fmt::format("{} has values and a range", name), "keep one of them");
         }
         return range.numbers("values");
     }
@@ -66,8 +65,7 @@ std::vector<double> values_from(const TomlTable& ranges, const std::string& name
     const double to = range.number("to");
     const double step = range.number("step");
     if (step <= 0.0) throw InputError(range.where("step"), fmt::format("step = {} is not positive", step));
-    if (to < from)
-        throw InputError(range.where("to"), fmt::format("to = {} is less than from = {}", to, from));
+    if (to < from) throw InputError(range.where("to"), fmt::format("to = {} is less than from = {}", to, from));
     if ((to - from) / step > static_cast<double>(most_configurations)) {
         throw InputError(range.where("step"), fmt::format("step = {} makes too many values", step));
     }
@@ -82,8 +80,7 @@ std::vector<QosRange> ranges_from(const TomlTable& component) {
         const auto where = table->where(name);
         refuse_bad_name(name, "_", where);
         if (name == "component") {
-            throw InputError(where,
-                             "a parameter is called 'component', which stands for the component's name");
+            throw InputError(where, "a parameter is called 'component', which stands for the component's name");
         }
         QosRange range{name, values_from(*table, name)};
         if (range.values.empty()) throw InputError(where, fmt::format("{} has no values", name));
@@ -100,10 +97,9 @@ void require_use_of_parameters(const WrittenComponent& component) {
     const auto line = fmt::format("{}", fmt::join(component.command, " "));
     for (const auto& range : component.ranges) {
         if (line.find("{" + range.name + "}") != std::string::npos) continue;
-        throw InputError(
-            component.where,
-            fmt::format("the command of {} does not use its parameter {}", component.name, range.name),
-            fmt::format("write {{{}}} where its value belongs", range.name));
+        throw InputError(component.where,
+                         fmt::format("the command of {} does not use its parameter {}", component.name, range.name),
+                         fmt::format("write {{{}}} where its value belongs", range.name));
     }
 }
 
@@ -128,8 +124,7 @@ WrittenComponent component_from(const TomlTable& table, const std::string& name,
 }
 
 ProfiledComponent multiplied_out(const std::string& name, const std::vector<WrittenComponent>& parts,
-                                 const ProfileTiming& timing, const SamplerSettings& sampler,
-                                 const Location& where) {
+                                 const ProfileTiming& timing, const SamplerSettings& sampler, const Location& where) {
     std::vector<QosRange> ranges;
     for (const auto& part : parts) ranges.insert(ranges.end(), part.ranges.begin(), part.ranges.end());
     ProfiledComponent component{name, {}, {}, timing};
@@ -178,8 +173,8 @@ void require_recorded_file(const TomlTable& table, const std::vector<ProfiledCom
     }
 }
 
-void add_together(const TomlTable& root, const std::vector<WrittenComponent>& written,
-                  const ProfileTiming& timing, ProfileSpecification& specification) {
+void add_together(const TomlTable& root, const std::vector<WrittenComponent>& written, const ProfileTiming& timing,
+                  ProfileSpecification& specification) {
     for (const auto& group : root.tables("together")) {
         group.refuse_keys_except({"name", "components", "duration_s", "warm_up_s", "timeout_s"});
         const auto names = group.strings("components");
@@ -199,8 +194,7 @@ void add_together(const TomlTable& root, const std::vector<WrittenComponent>& wr
         if (std::ranges::find(components, name, &ProfiledComponent::name) != components.end()) {
             throw InputError(where, fmt::format("a second '{}'", name));
         }
-        components.push_back(
-            multiplied_out(name, parts, timing_from(group, timing), specification.sampler, where));
+        components.push_back(multiplied_out(name, parts, timing_from(group, timing), specification.sampler, where));
     }
 }
 
@@ -222,8 +216,7 @@ ProfileSpecification parse_profile_specification(std::string_view text, const st
     const auto components = root.table("components");
     std::vector<WrittenComponent> written;
     for (const auto& name : components.keys()) {
-        written.push_back(
-            component_from(components.table(name), name, components.where(name), specification, timing));
+        written.push_back(component_from(components.table(name), name, components.where(name), specification, timing));
         const auto& last = written.back();
         if (!last.alone) continue;
         specification.components.push_back(

@@ -11,8 +11,8 @@ namespace {
 
 std::string comments_of(const ComponentEstimate& component, const ProfileOutcome& outcome,
                         const ProfileSpecification& specification) {
-    std::string text = fmt::format("# Power of {}, profiled by flightwatt after {}; sampled by {}\n",
-                                   component.name, specification.file, outcome.sampler);
+    std::string text = fmt::format("# Power of {}, profiled by flightwatt after {}; sampled by {}\n", component.name,
+                                   specification.file, outcome.sampler);
     if (specification.above_idle) {
         text += fmt::format(
             "# power_w is what comes on top of the idle computer, which draws {:.5g} W "
@@ -27,8 +27,7 @@ std::string comments_of(const ComponentEstimate& component, const ProfileOutcome
         text += "# power_w is what the sampler saw, the idle computer's among it; that was not measured\n";
     }
     for (const auto& run : component.failures) {
-        text += fmt::format("# {} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status),
-                            run.note);
+        text += fmt::format("# {} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status), run.note);
     }
     if (component.interpolation) {
         text += fmt::format(
@@ -49,8 +48,7 @@ std::string row_of(const NodeEstimate& node, const std::optional<PowerEstimate>&
     if (idle) row += fmt::format("{:.6f},", node.total.power_w - idle->power_w);
     if (!node.is_measured) return row + ",,0,0,interpolated\n";
     return row + fmt::format("{:.6f},{:.6f},{},{},measured\n", node.total.duration_s,
-                             reported.power_w * node.total.duration_s, node.total.samples,
-                             node.total.repeats);
+                             reported.power_w * node.total.duration_s, node.total.samples, node.total.repeats);
 }
 
 /// The idle computer as a component without parameters, for missions of profiles above it.
@@ -97,8 +95,7 @@ std::string number_or(double value, int decimals, const std::string& unknown) {
     return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : unknown;
 }
 
-ReportedPower reported_power(const PowerEstimate& total, const std::optional<PowerEstimate>& idle,
-                             bool above_idle) {
+ReportedPower reported_power(const PowerEstimate& total, const std::optional<PowerEstimate>& idle, bool above_idle) {
     if (!above_idle) return {total.power_w, total.standard_error_w};
     return {total.power_w - idle->power_w, std::hypot(total.standard_error_w, idle->standard_error_w)};
 }

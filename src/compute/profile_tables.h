@@ -14,8 +14,7 @@ struct ReportedPower {
     double standard_error_w = 0.0;
 };
 
-ReportedPower reported_power(const PowerEstimate& total, const std::optional<PowerEstimate>& idle,
-                             bool above_idle);
+ReportedPower reported_power(const PowerEstimate& total, const std::optional<PowerEstimate>& idle, bool above_idle);
 
 /// A number with so many decimals, or `unknown` for one that is not finite.
 std::string number_or(double value, int decimals, const std::string& unknown);

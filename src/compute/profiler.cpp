@@ -27,8 +27,8 @@ std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& s
             // As many as say how well they are interpolated: one more than a plane needs.
             const auto fewest = std::max<std::size_t>(3, component.parameters.size() + 2);
             if (*trials < fewest) {
-                throw UsageError(fmt::format("--trials is {}, expected {} or more for {}", *trials, fewest,
-                                             component.name));
+                throw UsageError(
+                    fmt::format("--trials is {}, expected {} or more for {}", *trials, fewest, component.name));
             }
             QosPoints points;
             for (const auto& configuration : component.configurations) points.push_back(configuration.qos);
@@ -40,8 +40,7 @@ std::vector<std::vector<std::size_t>> chosen_nodes(const ProfileSpecification& s
     return chosen;
 }
 
-ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specification,
-                     const RunFrame& frame) {
+ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specification, const RunFrame& frame) {
     const auto& settings = specification.sampler;
     const bool is_idle = run.component == idle_component;
     const bool is_recorded = settings.kind == SamplerKind::recorded;
@@ -56,8 +55,7 @@ ComponentRun execute(const ProfileRun& run, const ProfileSpecification& specific
     }
     if (!is_recorded) return run_component(configuration.commands, timing, frame);
     const auto interval_s = settings.interval_is_given ? std::optional(settings.interval_s) : std::nullopt;
-    return run_of_recording(read_power_trace(configuration.recording, interval_s), timing,
-                            settings.interval_s);
+    return run_of_recording(read_power_trace(configuration.recording, interval_s), timing, settings.interval_s);
 }
 
 void do_run(ProfileRun& run, const ProfileSpecification& specification, const ProfilerOptions& options,
@@ -65,9 +63,9 @@ void do_run(ProfileRun& run, const ProfileSpecification& specification, const Pr
     const auto path = options.folder / run.layer1;
     make_directories(path.parent_path());
     auto output = std::filesystem::path(path).replace_extension(".txt");
-    auto result = execute(
-        run, specification,
-        {&sampler, specification.sampler.interval_s, std::move(output), options.signals, options.caught});
+    auto result =
+        execute(run, specification,
+                {&sampler, specification.sampler.interval_s, std::move(output), options.signals, options.caught});
     run.status = result.status;
     run.note = std::move(result.note);
     run.trace = std::move(result.trace);
@@ -88,12 +86,11 @@ void await_meter(PowerSampler& sampler, const ProfilerOptions& options) {
         if (files[0].revents != 0) throw Interrupted(options.caught());
         if (!sampler.read().empty()) return;
     }
-    throw NoAnswerError(
-        fmt::format("the sampler '{}' printed nothing for {} s", sampler.source, patience.count()));
+    throw NoAnswerError(fmt::format("the sampler '{}' printed nothing for {} s", sampler.source, patience.count()));
 }
 
-void do_runs(std::vector<ProfileRun>& runs, const ProfileSpecification& specification,
-             const ProfilerOptions& options, PowerSampler& sampler) {
+void do_runs(std::vector<ProfileRun>& runs, const ProfileSpecification& specification, const ProfilerOptions& options,
+             PowerSampler& sampler) {
     std::size_t done = 0;
     if (!std::ranges::all_of(runs, &ProfileRun::is_done)) await_meter(sampler, options);
     for (auto& run : runs) {
@@ -148,8 +145,7 @@ PowerEstimate idle_of(const std::vector<ProfileRun>& runs) {
 /// Layer 2 from the runs; configurations that were not to be run are interpolated, those that failed are not in it.
 ComponentEstimate estimate_component(const ProfiledComponent& component, std::size_t index,
                                      const std::vector<ProfileRun>& runs) {
-    ComponentEstimate estimate{
-        component.name, component.parameters, {}, component.configurations.size(), {}, {}};
+    ComponentEstimate estimate{component.name, component.parameters, {}, component.configurations.size(), {}, {}};
     std::set<std::size_t> tried;
     for (const auto& run : runs) {
         if (run.component == idle_component || run.index != index) continue;

@@ -15,8 +15,7 @@ namespace {
 constexpr auto any_source = [](const Track&) { return true; };
 
 template <typename Accept = decltype(any_source)>
-Track first_that_varies(const FlightSeries& series, std::string_view name,
-                        const Accept& accept = any_source) {
+Track first_that_varies(const FlightSeries& series, std::string_view name, const Accept& accept = any_source) {
     const Track* constant = nullptr;
     for (const auto& track : series.tracks) {
         if (track.name != name || track.empty() || !track.device.empty() || !accept(track)) continue;
@@ -35,8 +34,7 @@ Track first_of(const FlightSeries& series, std::string_view name) {
 
 Track throttle(const FlightSeries& series) {
     const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
-    auto found =
-        first_that_varies(series, "throttle_percent", [&](const Track& track) { return !is_thrust(track); });
+    auto found = first_that_varies(series, "throttle_percent", [&](const Track& track) { return !is_thrust(track); });
     return found.empty() ? first_that_varies(series, "throttle_percent", is_thrust) : found;
 }
 
@@ -69,8 +67,7 @@ Track chosen_track(const FlightSeries& series, std::string_view name) {
     return found;
 }
 
-std::vector<double> chosen_at(const FlightSeries& series, std::string_view name,
-                              const std::vector<double>& time_s) {
+std::vector<double> chosen_at(const FlightSeries& series, std::string_view name, const std::vector<double>& time_s) {
     const auto track = chosen_track(series, name);
     return track.empty() ? std::vector<double>{} : resample(track, time_s);
 }
@@ -98,8 +95,7 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
     if (!series.assumed_definitions.empty()) {
         std::vector<std::string> assumed;
         for (const auto& definition : series.assumed_definitions) assumed.push_back(definition.text);
-        warnings.push_back(
-            fmt::format("no .log beside it: message layouts assumed: {}", fmt::join(assumed, ", ")));
+        warnings.push_back(fmt::format("no .log beside it: message layouts assumed: {}", fmt::join(assumed, ", ")));
     }
     if (series.current_origin == CurrentOrigin::throttle) {
         warnings.emplace_back(
@@ -119,8 +115,8 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
 void require_power(const FlightSeries& series, const std::string& holds) {
     if (const auto& restart = series.clock_restart) {
         throw InputError({series.file},
-                         fmt::format("its clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})",
-                                     restart->from_s, restart->to_s, series.aircraft_id, restart->message),
+                         fmt::format("its clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
+                                     restart->to_s, series.aircraft_id, restart->message),
                          "it holds several recordings: split it where the time begins anew");
     }
     const auto power = choose_power(series);
@@ -130,10 +126,9 @@ void require_power(const FlightSeries& series, const std::string& holds) {
     for (const auto& assumed : series.assumed_definitions) reasons.push_back("assumed " + assumed.text);
     std::string reason;
     if (!reasons.empty()) reason = fmt::format(" ({})", fmt::join(reasons, "; "));
-    throw InputError(
-        {series.file}, fmt::format("holds no measured power of aircraft {}{}", series.aircraft_id, reason),
-        fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE{}{}",
-                    holds.empty() ? "" : "; it holds ", holds));
+    throw InputError({series.file}, fmt::format("holds no measured power of aircraft {}{}", series.aircraft_id, reason),
+                     fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE{}{}",
+                                 holds.empty() ? "" : "; it holds ", holds));
 }
 
 }  // namespace flightwatt::flight

@@ -20,8 +20,7 @@ Track chosen_track(const FlightSeries& series, std::string_view name);
 
 /// The track of that name at other times, linear between its points and constant outside; `time_s` must rise.
 /// Empty if the log has none.
-std::vector<double> chosen_at(const FlightSeries& series, std::string_view name,
-                              const std::vector<double>& time_s);
+std::vector<double> chosen_at(const FlightSeries& series, std::string_view name, const std::vector<double>& time_s);
 
 /// The power samples, whose clock most programs compute on.
 inline Track power_track(const FlightSeries& series) { return chosen_track(series, "power_w"); }

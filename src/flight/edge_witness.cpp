@@ -28,8 +28,7 @@ std::vector<Change> changes_of(const Track& state) {
     std::vector<Change> changes;
     for (std::size_t i = 1; i < state.value.size(); ++i) {
         if (state.value[i] == state.value[i - 1]) continue;
-        changes.push_back(
-            {state.time_s[i], static_cast<int>(state.value[i - 1]), static_cast<int>(state.value[i])});
+        changes.push_back({state.time_s[i], static_cast<int>(state.value[i - 1]), static_cast<int>(state.value[i])});
     }
     return changes;
 }
@@ -54,9 +53,7 @@ struct Sign {
     bool (*matches)(const BlockNames& names, const Change& change);
 };
 
-bool leaves_takeoff(const BlockNames& names, const Change& c) {
-    return name_contains(names, c.from, "takeoff");
-}
+bool leaves_takeoff(const BlockNames& names, const Change& c) { return name_contains(names, c.from, "takeoff"); }
 
 bool begins_to_land(const BlockNames& names, const Change& c) {
     return name_contains(names, c.to, "land") && !name_contains(names, c.from, "land");
@@ -67,8 +64,7 @@ constexpr Sign signs[] = {
     {EdgeKind::takeoff_end, "block", leaves_takeoff},
     {EdgeKind::takeoff_end, "mode", [](const BlockNames&, const Change& c) { return c.to == auto2_mode; }},
     {EdgeKind::landing_start, "block", begins_to_land},
-    {EdgeKind::landing_start, "mode",
-     [](const BlockNames&, const Change& c) { return c.from == auto2_mode; }},
+    {EdgeKind::landing_start, "mode", [](const BlockNames&, const Change& c) { return c.from == auto2_mode; }},
     {EdgeKind::touchdown, "mode", [](const BlockNames&, const Change& c) { return c.to == manual_mode; }},
 };
 
@@ -110,8 +106,7 @@ bool marks_edge(EdgeKind kind) { return kind == EdgeKind::lift_off || kind == Ed
 }  // namespace
 
 std::string_view to_string(EdgeKind kind) {
-    constexpr std::array<std::string_view, 4> names{"lift-off", "end of take-off", "start of landing",
-                                                    "touchdown"};
+    constexpr std::array<std::string_view, 4> names{"lift-off", "end of take-off", "start of landing", "touchdown"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -128,8 +123,7 @@ std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sorti
             explained.verdict = "no witness";
         } else {
             const double apart_s = std::abs(explained.witnesses.front().after_s);
-            explained.verdict =
-                apart_s <= agreement_s ? "agrees" : fmt::format("differs by {:.0f} s", apart_s);
+            explained.verdict = apart_s <= agreement_s ? "agrees" : fmt::format("differs by {:.0f} s", apart_s);
         }
         edges.push_back(std::move(explained));
     };

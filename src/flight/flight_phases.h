@@ -38,10 +38,10 @@ struct PerPhase {
 
 /// The few physical thresholds of the segmentation.
 struct SegmentationOptions {
-    double rest_s = 10.0;                ///< an aircraft rests when, for this long, its motor idles and
-    double rest_height_m = 3.0;          ///< its altitude stays within this range
-    double rest_speed_m_per_s = 4.0;     ///< and (where known) it is no faster than someone who carries it
-    double idle_throttle_percent = 5.0;  ///< idle is up to this (above the log's least, where speed is known)
+    double rest_s = 10.0;                   ///< an aircraft rests when, for this long, its motor idles and
+    double rest_height_m = 3.0;             ///< its altitude stays within this range
+    double rest_speed_m_per_s = 4.0;        ///< and (where known) it is no faster than someone who carries it
+    double idle_throttle_percent = 5.0;     ///< idle is up to this (above the log's least, where speed is known)
     double flight_throttle_percent = 20.0;  ///< what rises without ever using as much is no flight
     double flight_height_m = 10.0;          ///< what stays below this is a run-up, a taxi or a hop
     double ground_fraction = 0.025;         ///< of the flight's height: below, it stands or rolls

@@ -55,15 +55,13 @@ Track make_track(const std::vector<double>& time_s, const std::vector<double>& v
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (std::isfinite(values[i])) order.push_back(i);
     }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
     std::size_t merged = 0;  // how many rows the last point is made of
     for (const auto i : order) {
         if (!track.empty() && track.time_s.back() == time_s[i]) {
             ++merged;
             auto& value = track.value.back();
-            value = merge == Merge::latest ? values[i]
-                                           : value + (values[i] - value) / static_cast<double>(merged);
+            value = merge == Merge::latest ? values[i] : value + (values[i] - value) / static_cast<double>(merged);
             continue;
         }
         merged = 1;
@@ -141,8 +139,7 @@ FlightSeries cut_series(const FlightSeries& series, double until_s) {
     for (const auto& track : series.tracks) {
         if (track.since_s <= until_s) cut.tracks.push_back(cut_track(track, until_s));
     }
-    std::erase_if(cut.assumed_definitions,
-                  [&](const auto& definition) { return definition.since_s > until_s; });
+    std::erase_if(cut.assumed_definitions, [&](const auto& definition) { return definition.since_s > until_s; });
     cut_skipped(cut.skipped, until_s);
     if (cut.clock_restart && cut.clock_restart->known_s > until_s) cut.clock_restart.reset();
     return cut;

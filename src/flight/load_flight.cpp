@@ -82,8 +82,7 @@ FlightFile::FlightFile(const std::filesystem::path& path) : path_(path) {
     }
 }
 
-std::vector<FlightSeries> read_candidates(const FlightFile& file,
-                                          const std::optional<std::string>& aircraft_id) {
+std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
     std::vector<FlightSeries> candidates;
     std::vector<std::string> ids;
     if (file.is_series()) {
@@ -119,8 +118,7 @@ FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
         last = i;
     }
     if (ids.size() > 1) {
-        throw InputError({candidates.front().file},
-                         fmt::format("several aircraft flew: {}", fmt::join(ids, ", ")),
+        throw InputError({candidates.front().file}, fmt::format("several aircraft flew: {}", fmt::join(ids, ", ")),
                          "choose one with --aircraft ID");
     }
     return std::move(candidates[last]);
@@ -137,8 +135,7 @@ LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
     if (can_segment) loaded.power = check_power_record(series, loaded.phases, options.segmentation);
     if (options.correct_idle_offset) correct_idle_offset(series, loaded.power.idle);
     loaded.warnings = warnings_of(series);
-    loaded.warnings.insert(loaded.warnings.end(), loaded.phases.warnings.begin(),
-                           loaded.phases.warnings.end());
+    loaded.warnings.insert(loaded.warnings.end(), loaded.phases.warnings.begin(), loaded.phases.warnings.end());
     loaded.series = std::move(series);
     loaded.exclusion = exclusion_of(loaded, options);
     return loaded;

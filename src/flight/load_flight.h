@@ -59,8 +59,7 @@ class FlightFile {
 
 /// The series of each aircraft that may be meant: of the one that is named, else of all that sent telemetry.
 /// Judges nothing yet. Throws InputError where the file holds no telemetry, or the named one sent nothing.
-std::vector<FlightSeries> read_candidates(const FlightFile& file,
-                                          const std::optional<std::string>& aircraft_id);
+std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id);
 
 /// The one that flew: the segmentation finds a sortie in its altitude and throttle. Where none did, the only
 /// one. Throws InputError if that leaves several (it says which).

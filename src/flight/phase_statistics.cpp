@@ -25,8 +25,7 @@ double usual_interval_s(const std::vector<double>& time_s) {
 
 double gap_threshold_s(const std::vector<double>& time_s) { return 3.0 * usual_interval_s(time_s); }
 
-double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s,
-                  double end_s) {
+double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s, double end_s) {
     double integral = 0.0;
     double last_s = start_s;
     double last = interpolate_clamped(time_s, values, start_s);

@@ -25,8 +25,7 @@ PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, dou
 double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s);
 
 /// Integral of any channel over time between two times, linear between samples [channel * s].
-double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s,
-                  double end_s);
+double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s, double end_s);
 
 /// The mean of airspeed^3 [m^3/s^3] of the samples in [start_s, end_s]: gusts count, as they do for drag.
 /// std::nullopt if fewer than half of the seconds between have a sample within 5 s.

@@ -18,12 +18,8 @@ struct RowReader {
     const CsvTable& table;
     const CsvTable::Row& row;
 
-    const CsvTable::Cell& cell(const std::string& column) const {
-        return row.cells[column_index(table, column)];
-    }
-    double number(const std::string& column) const {
-        return cell_number(table, row, column_index(table, column));
-    }
+    const CsvTable::Cell& cell(const std::string& column) const { return row.cells[column_index(table, column)]; }
+    double number(const std::string& column) const { return cell_number(table, row, column_index(table, column)); }
     std::optional<double> maybe(const std::string& column) const {
         return cell(column).text.empty() ? std::nullopt : std::optional(number(column));
     }
@@ -89,12 +85,11 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
         for (const auto& span : sortie.phases) {
             const auto& [phase, start, end, complete] = span;
             const auto statistics = phase_statistics(series, start.time_s, end.time_s);
-            csv.add(sortie.number, to_string(phase), start.time_s, end.time_s, span.duration_s(),
-                    statistics.samples, statistics.mean_power_w, statistics.energy_wh,
-                    statistics.counter_energy_wh, statistics.gaps, statistics.longest_gap_s, complete,
-                    altitude(start), start.gap_s, start.throttle_percent, start.mode, start.block,
-                    start.takeoff_after_s, altitude(end), end.gap_s, end.throttle_percent, end.mode,
-                    end.block, end.takeoff_after_s);
+            csv.add(sortie.number, to_string(phase), start.time_s, end.time_s, span.duration_s(), statistics.samples,
+                    statistics.mean_power_w, statistics.energy_wh, statistics.counter_energy_wh, statistics.gaps,
+                    statistics.longest_gap_s, complete, altitude(start), start.gap_s, start.throttle_percent,
+                    start.mode, start.block, start.takeoff_after_s, altitude(end), end.gap_s, end.throttle_percent,
+                    end.mode, end.block, end.takeoff_after_s);
         }
     }
     return csv.text();

@@ -60,8 +60,8 @@ PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
     for (const auto& sortie : phases.sorties) {
         const auto first = std::lower_bound(time_s.begin(), time_s.end(), sortie.start_s());
         const auto last = std::upper_bound(first, time_s.end(), sortie.end_s());
-        record.flown.push_back({static_cast<std::size_t>(first - time_s.begin()),
-                                static_cast<std::size_t>(last - time_s.begin())});
+        record.flown.push_back(
+            {static_cast<std::size_t>(first - time_s.begin()), static_cast<std::size_t>(last - time_s.begin())});
     }
     return record;
 }
@@ -75,9 +75,8 @@ std::vector<std::size_t> resting_samples(const FlightSeries& series, const Power
     const auto rests = find_rests(grid, options);
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
         const auto at = static_cast<std::size_t>((record.time_s[i] - grid.start_s) / grid.step_s);
-        const bool resting = std::any_of(rests.begin(), rests.end(), [&](const GridSpan& rest) {
-            return at >= rest.begin && at < rest.end;
-        });
+        const bool resting = std::any_of(rests.begin(), rests.end(),
+                                         [&](const GridSpan& rest) { return at >= rest.begin && at < rest.end; });
         if (resting && record.throttle_percent[i] <= options.idle_throttle_percent) indices.push_back(i);
     }
     return indices;
@@ -85,8 +84,7 @@ std::vector<std::size_t> resting_samples(const FlightSeries& series, const Power
 
 /// The autopilot switches loads on the ground too (a burst after landing): the middle half of the samples is
 /// idle.
-std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a,
-                                        const std::vector<std::size_t>& resting) {
+std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, const std::vector<std::size_t>& resting) {
     constexpr std::size_t enough = 10;
     if (current_a.empty() || resting.size() < enough) return std::nullopt;
     std::vector<double> values;
@@ -94,8 +92,7 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a,
     const double middle = upper_median(values);
     std::vector<double> distances;
     for (const double value : values) distances.push_back(std::abs(value - middle));
-    const double reach =
-        5.0 * std::max(upper_median(std::move(distances)), 1e-6);  // beyond 3 sigma is no idling
+    const double reach = 5.0 * std::max(upper_median(std::move(distances)), 1e-6);  // beyond 3 sigma is no idling
     std::erase_if(values, [&](double value) { return std::abs(value - middle) > reach; });
     IdleCurrent idle;
     double squares = 0.0;
@@ -141,8 +138,7 @@ bool is_constant_in_flight(const PowerRecord& record) {
     constexpr std::size_t enough = 10;
     return std::any_of(record.flown.begin(), record.flown.end(), [&](const SampleRange& flown) {
         const auto power_w = std::span(record.power_w).subspan(flown.first, flown.last - flown.first);
-        return power_w.size() >= enough &&
-               std::ranges::count(power_w, power_w.front()) == std::ssize(power_w);
+        return power_w.size() >= enough && std::ranges::count(power_w, power_w.front()) == std::ssize(power_w);
     });
 }
 
@@ -174,8 +170,7 @@ std::vector<std::string> power_faults_of(const PowerRecord& record, const std::v
                         faulty_idle_current_a, part * units::percent_per_whole));
     }
     if (const double apart = power_difference(record); apart > faulty_power_difference) {
-        add(fmt::format("power is {:.0f} % away from voltage times current",
-                        apart * units::percent_per_whole));
+        add(fmt::format("power is {:.0f} % away from voltage times current", apart * units::percent_per_whole));
     }
     for (const auto& [name, counter] :
          {std::pair{"energy", &record.energy_wh}, std::pair{"charge", &record.charge_ah}}) {
@@ -184,11 +179,10 @@ std::vector<std::string> power_faults_of(const PowerRecord& record, const std::v
                             part * units::percent_per_whole));
         }
     }
-    for (const auto& [name, closure] : {std::pair{"energy", report.energy_closure_percent},
-                                        std::pair{"charge", report.charge_closure_percent}}) {
+    for (const auto& [name, closure] :
+         {std::pair{"energy", report.energy_closure_percent}, std::pair{"charge", report.charge_closure_percent}}) {
         if (closure && std::abs(*closure) > faulty_closure_percent) {
-            add(fmt::format("what was measured is {:+.0f} % away from the on-board {} counter", *closure,
-                            name));
+            add(fmt::format("what was measured is {:+.0f} % away from the on-board {} counter", *closure, name));
         }
     }
     if (power_sum_in_flight_w(record) < 0.0) add("power is negative on average in flight");
@@ -262,8 +256,8 @@ void correct_idle_offset(FlightSeries& series, const std::optional<IdleCurrent>&
     for (const auto& warning : before) {
         if (std::find(after.begin(), after.end(), warning) == after.end()) series.notes.push_back(warning);
     }
-    series.notes.push_back(fmt::format("the idle current of {:.4f} A ({} samples at rest) was taken out",
-                                       idle->mean_a, idle->samples));
+    series.notes.push_back(
+        fmt::format("the idle current of {:.4f} A ({} samples at rest) was taken out", idle->mean_a, idle->samples));
 }
 
 }  // namespace flightwatt::flight

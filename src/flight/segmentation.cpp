@@ -20,7 +20,7 @@ namespace {
 /// What lies between two rests: something moved, or the motor ran.
 struct Activity {
     GridSpan moving;
-    GridSpan span;  ///< with the ends of the rests beside it, which reach up to the last metres
+    GridSpan span;                          ///< with the ends of the rests beside it, which reach up to the last metres
     std::optional<double> ground_before_m;  ///< absent if the log begins with it
     std::optional<double> ground_after_m;   ///< absent if the log ends with it
 };
@@ -80,8 +80,7 @@ struct Grounds {
     bool disagreed = false;
 };
 
-Grounds grounds_of(const FlightGrid& grid, const Activity& activity,
-                   const std::optional<double>& planned_ground_m) {
+Grounds grounds_of(const FlightGrid& grid, const Activity& activity, const std::optional<double>& planned_ground_m) {
     const auto first = grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(activity.span.begin);
     const auto last = grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(activity.span.end);
     const auto [lowest, highest] = std::minmax_element(first, last);
@@ -124,18 +123,16 @@ std::string why_no_flight(const FlightGrid& grid, const Activity& activity, cons
     if (heights.highest_m < options.flight_height_m) {
         const double height_m = std::max(heights.highest_m, 0.0);
         return motor_known && throttle > options.idle_throttle_percent
-                   ? fmt::format("run-up, taxi or hop: throttle to {:.0f} %, height to {:.1f} m", throttle,
-                                 height_m)
+                   ? fmt::format("run-up, taxi or hop: throttle to {:.0f} %, height to {:.1f} m", throttle, height_m)
                    : fmt::format("carried or rolled: height to {:.1f} m, motor off", height_m);
     }
     if (!motor_known || throttle >= options.flight_throttle_percent) return "";
-    return fmt::format("altitude moved by {:.0f} m with the motor off: an estimator without a fix",
-                       heights.highest_m);
+    return fmt::format("altitude moved by {:.0f} m with the motor off: an estimator without a fix", heights.highest_m);
 }
 
 /// Between two neighbouring points of the grid, where the height crosses `level`.
-double crossing_s(const FlightGrid& grid, std::size_t begin, const std::vector<double>& height_m,
-                  std::size_t i, double level) {
+double crossing_s(const FlightGrid& grid, std::size_t begin, const std::vector<double>& height_m, std::size_t i,
+                  double level) {
     const double step = height_m[i + 1] - height_m[i];
     const double part = step == 0.0 ? 0.0 : std::clamp((level - height_m[i]) / step, 0.0, 1.0);
     return grid.time_s(begin + i) + part * grid.step_s;
@@ -156,8 +153,7 @@ template <typename Height>
 double held_height(Height&& height, std::size_t count, std::size_t hold, double top_m,
                    const SegmentationOptions& options) {
     std::vector<double> highest(count);
-    for (std::size_t i = 0; i < count; ++i)
-        highest[i] = std::max(height(i), i > 0 ? highest[i - 1] : height(0));
+    for (std::size_t i = 0; i < count; ++i) highest[i] = std::max(height(i), i > 0 ? highest[i - 1] : height(0));
     for (std::size_t i = 0; i < count; ++i) {
         const double later = highest[std::min(i + hold, count - 1)];
         const bool holds = later - highest[i] <= options.hold_fraction * top_m;
@@ -175,11 +171,9 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     const double ground_level = options.ground_fraction * heights.top_m;
     const double airborne_level = 0.25 * heights.top_m;
     const auto is_high = [&](double h) { return h > airborne_level; };
-    const auto up =
-        static_cast<std::size_t>(std::find_if(height.begin(), height.end(), is_high) - height.begin());
-    const auto down = static_cast<std::size_t>(std::find_if(height.rbegin(), height.rend(), is_high).base() -
-                                               height.begin()) -
-                      1;
+    const auto up = static_cast<std::size_t>(std::find_if(height.begin(), height.end(), is_high) - height.begin());
+    const auto down =
+        static_cast<std::size_t>(std::find_if(height.rbegin(), height.rend(), is_high).base() - height.begin()) - 1;
     SortieEdges edges;
     std::size_t lift_off = up;
     while (lift_off > 0 && height[lift_off] > ground_level) --lift_off;
@@ -207,8 +201,7 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     // dives) there is no take-off (or landing).
     if (!edges.lift_off_s && height[lift_off] >= airborne_level) takeoff_end = lift_off;
     if (!edges.touchdown_s && height[touchdown] >= airborne_level) landing_start = touchdown;
-    if (takeoff_end > lift_off)
-        edges.takeoff_end_s = crossing_s(grid, begin, height, takeoff_end - 1, reached);
+    if (takeoff_end > lift_off) edges.takeoff_end_s = crossing_s(grid, begin, height, takeoff_end - 1, reached);
     if (landing_start < touchdown) {
         const bool below = height[landing_start + 1] < left && height[landing_start] >= left;
         edges.landing_start_s =
@@ -246,14 +239,13 @@ PhaseEdge describe_edge(const Witnesses& witnesses, const FlightGrid& grid, doub
     if (!witnesses.block.empty()) edge.block = static_cast<int>(state_at(witnesses.block, time_s));
     for (const double takeoff : witnesses.takeoff.time_s) {
         const double after = takeoff - time_s;
-        if (!edge.takeoff_after_s || std::abs(after) < std::abs(*edge.takeoff_after_s))
-            edge.takeoff_after_s = after;
+        if (!edge.takeoff_after_s || std::abs(after) < std::abs(*edge.takeoff_after_s)) edge.takeoff_after_s = after;
     }
     return edge;
 }
 
-Sortie make_sortie(const Witnesses& witnesses, const FlightGrid& grid, const Activity& activity,
-                   const Heights& heights, const SegmentationOptions& options) {
+Sortie make_sortie(const Witnesses& witnesses, const FlightGrid& grid, const Activity& activity, const Heights& heights,
+                   const SegmentationOptions& options) {
     const auto edges = find_edges(grid, activity, heights, options);
     const double first_s = edges.lift_off_s.value_or(grid.time_s(activity.span.begin));
     const double last_s = edges.touchdown_s.value_or(grid.time_s(activity.span.end - 1));
@@ -264,12 +256,11 @@ Sortie make_sortie(const Witnesses& witnesses, const FlightGrid& grid, const Act
     sortie.height_m = heights.top_m;
     const auto add = [&](Phase phase, double start_s, double end_s, bool complete) {
         if (end_s <= start_s) return;
-        sortie.phases.push_back({phase, describe_edge(witnesses, grid, start_s),
-                                 describe_edge(witnesses, grid, end_s), complete});
+        sortie.phases.push_back(
+            {phase, describe_edge(witnesses, grid, start_s), describe_edge(witnesses, grid, end_s), complete});
     };
     if (edges.takeoff_end_s) add(Phase::takeoff, first_s, cruise_from, edges.lift_off_s.has_value());
-    add(Phase::cruise, cruise_from, cruise_to,
-        edges.takeoff_end_s.has_value() && edges.landing_start_s.has_value());
+    add(Phase::cruise, cruise_from, cruise_to, edges.takeoff_end_s.has_value() && edges.landing_start_s.has_value());
     if (edges.landing_start_s) add(Phase::landing, cruise_to, last_s, edges.touchdown_s.has_value());
     return sortie;
 }
@@ -281,12 +272,9 @@ void validate(const SegmentationOptions& options) {
         if (!good) throw UsageError(fmt::format("{} is {}, expected {}", name, value, expected));
     };
     const auto between = [](double value, double low, double high) { return value > low && value < high; };
-    require(between(options.ground_fraction, 0.0, 0.25), "ground fraction", options.ground_fraction,
-            "0 to 0.25");
-    require(between(options.cruise_fraction, 0.25, 1.0), "cruise fraction", options.cruise_fraction,
-            "0.25 to 1");
-    require(between(options.flight_height_m, 0.0, 1e4), "flight height", options.flight_height_m,
-            "more than 0 m");
+    require(between(options.ground_fraction, 0.0, 0.25), "ground fraction", options.ground_fraction, "0 to 0.25");
+    require(between(options.cruise_fraction, 0.25, 1.0), "cruise fraction", options.cruise_fraction, "0.25 to 1");
+    require(between(options.flight_height_m, 0.0, 1e4), "flight height", options.flight_height_m, "more than 0 m");
     require(options.rest_s >= 1.0, "rest", options.rest_s, "1 s or more");
     require(options.hold_s > 0.0, "hold", options.hold_s, "more than 0 s");
 }
@@ -298,8 +286,7 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
                               chosen_track(series, "block"), chosen_track(series, "takeoff")};
     const auto ground_m = ground_altitude_m(series);
     FlightPhases phases;
-    if (grid.throttle_percent.empty())
-        phases.warnings.emplace_back("no throttle: segmented by altitude alone");
+    if (grid.throttle_percent.empty()) phases.warnings.emplace_back("no throttle: segmented by altitude alone");
     for (const auto& activity : find_activities(grid, find_rests(grid, options), options)) {
         const auto grounds = grounds_of(grid, activity, ground_m);
         const auto heights = heights_of(grid, activity, grounds);
@@ -331,8 +318,8 @@ void require_sortie(const FlightSeries& series, const FlightPhases& phases, cons
     const auto seen = events.empty() ? std::string("it stood still throughout")
                                      : fmt::format("seen instead: {}", fmt::join(events, "; "));
     const auto power = power_track(series);
-    throw InputError(
-        {file}, fmt::format("holds no flight in {:.0f} s", power.time_s.back() - power.time_s.front()), seen);
+    throw InputError({file}, fmt::format("holds no flight in {:.0f} s", power.time_s.back() - power.time_s.front()),
+                     seen);
 }
 
 }  // namespace flightwatt::flight

@@ -147,8 +147,6 @@ FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path
     return series;
 }
 
-FlightSeries read_series_csv(const std::filesystem::path& path) {
-    return parse_series_csv(read_file(path), path);
-}
+FlightSeries read_series_csv(const std::filesystem::path& path) { return parse_series_csv(read_file(path), path); }
 
 }  // namespace flightwatt::flight

@@ -162,8 +162,7 @@ std::vector<telemetry::MessageRequest> flight_messages() {
 
 std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log) {
     const auto is_telemetry = [](const telemetry::MessageTable& table) {
-        return table.message != "TAKEOFF" && table.message != "PPRZ_MODE" &&
-               table.message != "NAVIGATION_REF";
+        return table.message != "TAKEOFF" && table.message != "PPRZ_MODE" && table.message != "NAVIGATION_REF";
     };
     std::vector<std::string> ids;
     for (const auto& sender : log.senders) {

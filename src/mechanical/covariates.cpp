@@ -49,9 +49,7 @@ std::optional<double> resting_voltage_v(const flight::FlightSeries& series, doub
 
 }  // namespace
 
-std::string_view to_string(Covariate covariate) {
-    return covariate_texts[static_cast<std::size_t>(covariate)];
-}
+std::string_view to_string(Covariate covariate) { return covariate_texts[static_cast<std::size_t>(covariate)]; }
 
 std::optional<Covariate> covariate_from(std::string_view name) {
     for (const auto covariate : all_covariates) {
@@ -75,15 +73,13 @@ Covariates covariates_of(const flight::FlightSeries& series, const flight::Sorti
         }
         if (span.phase != flight::Phase::cruise) continue;
         const double start_s = span.start.time_s;
-        if (const auto& first = sortie.phases.front();
-            first.phase == flight::Phase::takeoff && first.complete) {
+        if (const auto& first = sortie.phases.front(); first.phase == flight::Phase::takeoff && first.complete) {
             found[Covariate::time_to_cruise] = start_s - first.start.time_s;
         }
         found[Covariate::wind] = early_mean(chosen_track(series, "wind_speed_m_per_s"), start_s);
         found[Covariate::airspeed] = early_mean(airspeed, start_s);
         found[Covariate::ground_speed] = early_mean(chosen_track(series, "ground_speed_m_per_s"), start_s);
-        found[Covariate::airspeed_cubed] =
-            mean_cubed_airspeed_m3_per_s3(airspeed, start_s, start_s + early_s);
+        found[Covariate::airspeed_cubed] = mean_cubed_airspeed_m3_per_s3(airspeed, start_s, start_s + early_s);
     }
     return found;
 }

@@ -12,15 +12,7 @@ struct Sortie;
 namespace flightwatt::mechanical {
 
 /// What is known of a flight before its cruise, or early in it (see covariates_of).
-enum class Covariate {
-    height,
-    initial_voltage,
-    time_to_cruise,
-    wind,
-    airspeed,
-    ground_speed,
-    airspeed_cubed
-};
+enum class Covariate { height, initial_voltage, time_to_cruise, wind, airspeed, ground_speed, airspeed_cubed };
 
 inline constexpr std::size_t covariate_count = 7;
 inline constexpr std::array<Covariate, covariate_count> all_covariates{

@@ -29,9 +29,7 @@ struct LevelLaw {
 constexpr bool goes_through_origin(Covariate covariate) { return covariate == Covariate::airspeed_cubed; }
 
 /// How many flights a law and its spread need: one more than the line has parameters.
-constexpr std::size_t least_flights_of_law(Covariate covariate) {
-    return goes_through_origin(covariate) ? 2 : 3;
-}
+constexpr std::size_t least_flights_of_law(Covariate covariate) { return goes_through_origin(covariate) ? 2 : 3; }
 
 /// The law of `flights` (those that have the covariate), each counting the same; std::nullopt if fewer than 2
 /// have it, it is the same in all of them, or, for airspeed_cubed, their power is 0 on average. For

@@ -19,8 +19,7 @@ std::string why_excluded(const flight::PhaseSpan& span) {
     if (!span.complete) return "the log begins or ends inside of it";
     const double gap_s = std::max(span.start.gap_s, span.end.gap_s);
     if (gap_s <= longest_edge_gap * span.duration_s()) return "";
-    return fmt::format("its {} lies in a gap of {:.1f} s", span.start.gap_s == gap_s ? "start" : "end",
-                       gap_s);
+    return fmt::format("its {} lies in a gap of {:.1f} s", span.start.gap_s == gap_s ? "start" : "end", gap_s);
 }
 
 std::string why_too_few(const PhaseSamples& samples, std::size_t needed) {
@@ -28,8 +27,7 @@ std::string why_too_few(const PhaseSamples& samples, std::size_t needed) {
     return fmt::format("{} samples, {} are needed", samples.tau.size(), needed);
 }
 
-PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& span,
-                        const std::string& flight) {
+PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& span, const std::string& flight) {
     PhaseSamples samples{flight, span.duration_s(), {}, {}, span.start.time_s};
     for (std::size_t i = 0; i < power.time_s.size(); ++i) {
         const double time_s = power.time_s[i];
@@ -41,8 +39,7 @@ PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& spa
 }
 
 bool has_any_phase(const MeasuredFlight& flight) {
-    return std::ranges::any_of(flight.samples.phases.values,
-                               [](const auto& samples) { return samples.has_value(); });
+    return std::ranges::any_of(flight.samples.phases.values, [](const auto& samples) { return samples.has_value(); });
 }
 
 }  // namespace
@@ -73,8 +70,7 @@ MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight
                 measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(why)});
                 continue;
             }
-            samples.airspeed_cubed_m3_per_s3 =
-                mean_cubed_airspeed_m3_per_s3(airspeed, start_s, span.end.time_s);
+            samples.airspeed_cubed_m3_per_s3 = mean_cubed_airspeed_m3_per_s3(airspeed, start_s, span.end.time_s);
             if (span.phase == flight::Phase::cruise) samples.covariates = covariates_of(series, sortie);
             const auto statistics = phase_statistics(series, start_s, span.end.time_s);
             flight.energy_wh[span.phase] = statistics.energy_wh;

@@ -53,8 +53,7 @@ std::vector<double> curve_w(const FourierModel& model, double duration_s, std::s
 }
 
 double curve_rms_difference_w(const PhaseModel& a, const PhaseModel& b) {
-    const auto points =
-        std::max(points_of_curve(a.fourier, a.duration_s), points_of_curve(b.fourier, b.duration_s));
+    const auto points = std::max(points_of_curve(a.fourier, a.duration_s), points_of_curve(b.fourier, b.duration_s));
     const auto curve_a = curve_w(a.fourier, a.duration_s, points);
     const auto curve_b = curve_w(b.fourier, b.duration_s, points);
     double sum = 0.0;

@@ -57,8 +57,8 @@ struct PhaseErrors {
 
 /// How the flights' own curves differ over the phase, at evenly spread parts of it from begin to end.
 struct PhaseSpread {
-    std::vector<double> low_w;   ///< the least of the flights that count (the paper's grey band)
-    std::vector<double> high_w;  ///< the greatest of them
+    std::vector<double> low_w;                 ///< the least of the flights that count (the paper's grey band)
+    std::vector<double> high_w;                ///< the greatest of them
     std::vector<double> standard_deviation_w;  ///< of one flight about the weighted mean
     double counted_flights = 0.0;              ///< 1 / sum of squared weights: equal flights worth as much
 };

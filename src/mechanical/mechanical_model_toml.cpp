@@ -11,12 +11,11 @@ namespace flightwatt::mechanical {
 namespace {
 
 /// Numbers that are not negative, `count` of them.
-std::vector<double> sizes(const TomlTable& table, std::string_view key, std::size_t count,
-                          std::string_view because) {
+std::vector<double> sizes(const TomlTable& table, std::string_view key, std::size_t count, std::string_view because) {
     auto values = table.numbers(key);
     if (values.size() != count) {
-        throw InputError(table.where(key), fmt::format("{} has {} numbers, expected {}: {}", key,
-                                                       values.size(), count, because));
+        throw InputError(table.where(key),
+                         fmt::format("{} has {} numbers, expected {}: {}", key, values.size(), count, because));
     }
     for (const double value : values) {
         if (value < 0.0) {
@@ -26,13 +25,9 @@ std::vector<double> sizes(const TomlTable& table, std::string_view key, std::siz
     return values;
 }
 
-double positive(const TomlTable& table, std::string_view key) {
-    return number_in(more_than(0.0), table, key);
-}
+double positive(const TomlTable& table, std::string_view key) { return number_in(more_than(0.0), table, key); }
 
-double not_negative(const TomlTable& table, std::string_view key) {
-    return number_in(at_least(0.0), table, key);
-}
+double not_negative(const TomlTable& table, std::string_view key) { return number_in(at_least(0.0), table, key); }
 
 PhaseErrors read_errors(const TomlTable& table, std::size_t order) {
     constexpr std::string_view as_coefficients = "one for each coefficient of the phase";
@@ -57,18 +52,16 @@ PhaseSpread read_spread(const TomlTable& table) {
     spread.low_w = table.numbers("low_w");
     spread.high_w = table.numbers("high_w");
     if (spread.low_w.size() < 2 || spread.high_w.size() != spread.low_w.size()) {
-        throw InputError(
-            table.where("high_w"),
-            fmt::format("low_w has {} numbers and high_w {}, expected as many of each, two or more",
-                        spread.low_w.size(), spread.high_w.size()));
+        throw InputError(table.where("high_w"),
+                         fmt::format("low_w has {} numbers and high_w {}, expected as many of each, two or more",
+                                     spread.low_w.size(), spread.high_w.size()));
     }
     for (std::size_t i = 0; i < spread.low_w.size(); ++i) {
         if (spread.high_w[i] >= spread.low_w[i]) continue;
-        throw InputError(table.where("high_w"), fmt::format("number {} of high_w, {}, is below low_w's, {}",
-                                                            i + 1, spread.high_w[i], spread.low_w[i]));
+        throw InputError(table.where("high_w"), fmt::format("number {} of high_w, {}, is below low_w's, {}", i + 1,
+                                                            spread.high_w[i], spread.low_w[i]));
     }
-    spread.standard_deviation_w =
-        sizes(table, "standard_deviation_w", spread.low_w.size(), "as many as low_w has");
+    spread.standard_deviation_w = sizes(table, "standard_deviation_w", spread.low_w.size(), "as many as low_w has");
     spread.counted_flights = number_in(at_least(1.0), table, "counted_flights");
     table.refuse_unknown_keys();
     return spread;
@@ -79,9 +72,8 @@ std::string errors_toml(const PhaseErrors& errors) {
            fmt::format("omega_rad_per_s = {}\nfrequency_is_given = {}\na0_w = {}\ncos_w = {}\nsin_w = {}\n",
                        toml_real(errors.omega_rad_per_s), errors.frequency_is_given, toml_real(errors.a0_w),
                        toml_reals(errors.cos_w), toml_reals(errors.sin_w)) +
-           fmt::format("curve_w = {}\ndegrees_of_freedom = {}\nr2 = {}\ncondition = {}\n",
-                       toml_real(errors.curve_w), toml_real(errors.degrees_of_freedom), toml_real(errors.r2),
-                       toml_real(errors.condition)) +
+           fmt::format("curve_w = {}\ndegrees_of_freedom = {}\nr2 = {}\ncondition = {}\n", toml_real(errors.curve_w),
+                       toml_real(errors.degrees_of_freedom), toml_real(errors.r2), toml_real(errors.condition)) +
            fmt::format("autocorrelation = {}\neffective_samples = {}\n", toml_real(errors.autocorrelation),
                        toml_real(errors.effective_samples));
 }
@@ -89,8 +81,8 @@ std::string errors_toml(const PhaseErrors& errors) {
 std::string spread_toml(const PhaseSpread& spread) {
     return "# how the flights differ, at evenly spread parts of the phase from begin to end\n" +
            fmt::format("low_w = {}\nhigh_w = {}\nstandard_deviation_w = {}\ncounted_flights = {}\n",
-                       toml_reals(spread.low_w), toml_reals(spread.high_w),
-                       toml_reals(spread.standard_deviation_w), toml_real(spread.counted_flights));
+                       toml_reals(spread.low_w), toml_reals(spread.high_w), toml_reals(spread.standard_deviation_w),
+                       toml_real(spread.counted_flights));
 }
 
 FrequencyBound read_bound(const TomlTable& table) {
@@ -98,8 +90,7 @@ FrequencyBound read_bound(const TomlTable& table) {
     for (const auto bound : {FrequencyBound::none, FrequencyBound::low, FrequencyBound::high}) {
         if (name == to_string(bound)) return bound;
     }
-    throw InputError(table.where("at_bound"),
-                     fmt::format("at_bound = '{}', expected none, low or high", name));
+    throw InputError(table.where("at_bound"), fmt::format("at_bound = '{}', expected none, low or high", name));
 }
 
 FrequencyRange read_range(const TomlTable& table) {
@@ -178,8 +169,7 @@ PhaseModel read_phase(const TomlTable& table) {
     const auto order = phase.fourier.cos_w.size();
     if (const auto errors = table.optional_table("errors")) phase.errors = read_errors(*errors, order);
     if (const auto spread = table.optional_table("spread")) phase.spread = read_spread(*spread);
-    if (const auto spread = table.optional_table("level_spread"))
-        phase.level_spread = read_level_spread(*spread);
+    if (const auto spread = table.optional_table("level_spread")) phase.level_spread = read_level_spread(*spread);
     if (const auto law = table.optional_table("level_law")) phase.level_law = read_level_law(*law);
     if (const auto law = table.optional_table("airspeed_law")) phase.airspeed_law = read_airspeed_law(*law);
     if (const auto old = table.optional_table("airspeed")) phase.airspeed_law = read_airspeed_of_0_1(*old);
@@ -188,9 +178,8 @@ PhaseModel read_phase(const TomlTable& table) {
 }
 
 PhaseContribution read_contribution(const TomlTable& table) {
-    PhaseContribution part{
-        number_in(between(0.0, 1.0), table, "weight", "the weights of a phase are parts of 1"),
-        positive(table, "duration_s"), not_negative(table, "rms_w"), count_in(table, "samples")};
+    PhaseContribution part{number_in(between(0.0, 1.0), table, "weight", "the weights of a phase are parts of 1"),
+                           positive(table, "duration_s"), not_negative(table, "rms_w"), count_in(table, "samples")};
     table.refuse_unknown_keys();
     return part;
 }
@@ -230,10 +219,9 @@ std::string phase_toml(flight::Phase name, const PhaseModel& phase) {
     if (phase.samples > 0) text += fmt::format("samples = {}\n", phase.samples);
     if (phase.flights > 0) text += fmt::format("flights = {}\n", phase.flights);
     if (const auto& spread = phase.level_spread) {
-        text += fmt::format(
-            "level_spread = {{ flights = {}, level_sd_w = {}, drift_sd_w = {}, correlation_s = {} }}\n",
-            spread->flights, toml_real(spread->level_sd_w), toml_real(spread->drift_sd_w),
-            toml_real(spread->correlation_s));
+        text += fmt::format("level_spread = {{ flights = {}, level_sd_w = {}, drift_sd_w = {}, correlation_s = {} }}\n",
+                            spread->flights, toml_real(spread->level_sd_w), toml_real(spread->drift_sd_w),
+                            toml_real(spread->correlation_s));
     }
     if (phase.level_law) text += level_law_toml("level_law", *phase.level_law);
     if (phase.airspeed_law) text += level_law_toml("airspeed_law", *phase.airspeed_law);
@@ -246,9 +234,9 @@ std::string flight_toml(const FlightContribution& flight) {
     std::string text = fmt::format("\n[[flights]]\nflight = {}\n", toml_string(flight.flight));
     for (const auto phase : flight::all_phases) {
         if (const auto& part = flight.phases[phase]) {
-            text += fmt::format("{} = {{ weight = {}, duration_s = {}, rms_w = {}, samples = {} }}\n",
-                                to_string(phase), toml_real(part->weight), toml_real(part->duration_s),
-                                toml_real(part->rms_w), part->samples);
+            text += fmt::format("{} = {{ weight = {}, duration_s = {}, rms_w = {}, samples = {} }}\n", to_string(phase),
+                                toml_real(part->weight), toml_real(part->duration_s), toml_real(part->rms_w),
+                                part->samples);
         }
     }
     return text;
@@ -263,8 +251,7 @@ MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
     model.name = root.string("name");
     model.description = root.optional_string("description").value_or("");
     model.weighting = root.optional_string("weighting").value_or("");
-    for (const auto phase : flight::all_phases)
-        model.phases[phase] = read_phase(root.table(to_string(phase)));
+    for (const auto phase : flight::all_phases) model.phases[phase] = read_phase(root.table(to_string(phase)));
     for (const auto& flight : root.tables("flights")) model.flights.push_back(read_flight(flight));
     root.refuse_unknown_keys();
     return model;

@@ -13,9 +13,7 @@ namespace flightwatt::mechanical {
 namespace {
 
 /// Part i of a phase, of `points` from its begin to its end.
-double part_at(std::size_t i, std::size_t points) {
-    return static_cast<double>(i) / static_cast<double>(points - 1);
-}
+double part_at(std::size_t i, std::size_t points) { return static_cast<double>(i) / static_cast<double>(points - 1); }
 
 void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis) {
     const auto& model = fit.model.phases[phase];
@@ -34,15 +32,14 @@ void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const E
             of_flights = {spread->low_w[i], spread->high_w[i], spread->standard_deviation_w[i], power - reach,
                           power + reach};
         }
-        csv.add(to_string(phase), tau, time_s, power, error, power - wide * error, power + wide * error,
-                of_flights[0], of_flights[1], of_flights[2], of_flights[3], of_flights[4]);
+        csv.add(to_string(phase), tau, time_s, power, error, power - wide * error, power + wide * error, of_flights[0],
+                of_flights[1], of_flights[2], of_flights[3], of_flights[4]);
     }
 }
 
 }  // namespace
 
-std::optional<PhaseSpread> flight_envelope(const PhaseFit& fit, std::span<const double> weights,
-                                           std::size_t points) {
+std::optional<PhaseSpread> flight_envelope(const PhaseFit& fit, std::span<const double> weights, std::size_t points) {
     const double squares = std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
     if (std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }) < 2) return std::nullopt;
     PhaseSpread spread;
@@ -95,8 +92,7 @@ flight::PerPhase<PhaseErrorReport> add_errors(ModelFit& fit) {
     return reports;
 }
 
-flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit,
-                                        const flight::PerPhase<ErrorAnalysis>& analyses) {
+flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis>& analyses) {
     constexpr std::size_t points = 101;
     flight::PerPhase<CurveBand> bands;
     for (const auto phase : flight::all_phases) {
@@ -105,8 +101,7 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit,
         const double wide = student_t_half_width(analysis.errors.degrees_of_freedom);
         auto& band = bands[phase];
         for (std::size_t i = 0; i < points; ++i) {
-            const double time_s =
-                fitted.duration_s * static_cast<double>(i) / static_cast<double>(points - 1);
+            const double time_s = fitted.duration_s * static_cast<double>(i) / static_cast<double>(points - 1);
             const double power = power_w(fitted.fourier, time_s);
             const double reach = wide * curve_standard_error_w(analysis, time_s / fitted.duration_s);
             band.time_s.push_back(time_s);
@@ -123,10 +118,9 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit,
 
 std::string curves_csv(const ModelFit& fit, const flight::PerPhase<PhaseErrorReport>& reports) {
     constexpr int digits = 6;
-    CsvWriter csv(
-        {"phase", "tau", "time_s", "power_w", "standard_error_w", "low_95_w", "high_95_w", "flights_low_w",
-         "flights_high_w", "flights_sd_w", "population_low_95_w", "population_high_95_w"},
-        digits);
+    CsvWriter csv({"phase", "tau", "time_s", "power_w", "standard_error_w", "low_95_w", "high_95_w", "flights_low_w",
+                   "flights_high_w", "flights_sd_w", "population_low_95_w", "population_high_95_w"},
+                  digits);
     for (const auto phase : flight::all_phases) add_curve(csv, fit, phase, reports[phase].analysis);
     return csv.text();
 }

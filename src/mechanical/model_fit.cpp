@@ -43,9 +43,8 @@ std::string described(const ModelFitOptions& options, std::size_t flights) {
 /// Power beyond any aircraft's overflows on the way; a model of that is none.
 void refuse_what_is_no_number(flight::Phase phase, const FourierModel& model) {
     if (coefficients_of(model).allFinite()) return;
-    throw NoAnswerError(
-        fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
-                    to_string(phase)));
+    throw NoAnswerError(fmt::format("{}: the fit's coefficients are no numbers; is the power of all samples possible?",
+                                    to_string(phase)));
 }
 
 /// A law with the spread that a prediction needs.
@@ -57,8 +56,7 @@ LevelLaw wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) 
     throw NoAnswerError(fmt::format(
         "the cruise level cannot follow {}: {}, expected {} flights or more that have it and differ in it",
         to_string(covariate),
-        having == 0 ? "fewer than 2 flights tell it, or all tell the same"
-                    : fmt::format("{} flights tell it", having),
+        having == 0 ? "fewer than 2 flights tell it, or all tell the same" : fmt::format("{} flights tell it", having),
         needed));
 }
 
@@ -128,8 +126,7 @@ std::optional<FourierModel> nearest_series(const PhaseModel& model, std::span<co
     return series_of(fit->coefficients, model.fourier.omega_rad_per_s);
 }
 
-std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSamples> flights,
-                                                      const PhaseFit& fit) {
+std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSamples> flights, const PhaseFit& fit) {
     std::vector<DownWeightedSample> found;
     if (fit.loss == Loss::none || fit.loss_scale_w <= 0.0) return found;
     for (std::size_t i = 0; i < flights.size(); ++i) {

@@ -65,7 +65,6 @@ struct DownWeightedSample {
 
 /// The samples that counted less than half of a sample on the curve (0.7 % do with normal noise), those that
 /// counted least first. None for a plain fit. `flights` are those that were fitted, in their order.
-std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSamples> flights,
-                                                      const PhaseFit& fit);
+std::vector<DownWeightedSample> down_weighted_samples(std::span<const PhaseSamples> flights, const PhaseFit& fit);
 
 }  // namespace flightwatt::mechanical

@@ -83,8 +83,7 @@ void compare(OrderError& error, const std::vector<double>& best_w2) {
     std::vector<double> differences;
     std::ranges::transform(error.mean_square_w2, best_w2, std::back_inserter(differences), std::minus());
     error.behind_best_w2 = mean(differences);
-    error.standard_error_w2 =
-        std::sqrt(sample_variance(differences) / static_cast<double>(differences.size()));
+    error.standard_error_w2 = std::sqrt(sample_variance(differences) / static_cast<double>(differences.size()));
 }
 
 }  // namespace
@@ -93,8 +92,8 @@ std::string_view to_string(HeldBack held_back) {
     return held_back == HeldBack::one_flight ? "leave one flight out" : "blocks of time";
 }
 
-OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flights,
-                         const PhaseFitOptions& options, const WeightOptions& weights) {
+OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options,
+                         const WeightOptions& weights) {
     if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
     OrderChoice choice;
     choice.held_back = flights.size() > 1 ? HeldBack::one_flight : HeldBack::blocks_of_time;
@@ -111,8 +110,7 @@ OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flig
         return error.rms_w ? mean(error.mean_square_w2) : std::numeric_limits<double>::infinity();
     });
     if (!best->rms_w) {
-        throw NoAnswerError(
-            fmt::format("{}: no order can be fitted: {}", to_string(phase), choice.errors[0].reason));
+        throw NoAnswerError(fmt::format("{}: no order can be fitted: {}", to_string(phase), choice.errors[0].reason));
     }
     choice.order = choice.best = best->order;
     const auto best_w2 = best->mean_square_w2;

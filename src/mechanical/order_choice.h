@@ -43,7 +43,7 @@ struct OrderChoice {
 /// in turn. Chosen is the lowest order whose mean square error is within one standard error (of the
 /// difference, fold by fold) of the least. options.order is not read; weights by hand count as uniform.
 /// Throws NoAnswerError if no order can be fitted.
-OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flights,
-                         const PhaseFitOptions& options, const WeightOptions& weights);
+OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options,
+                         const WeightOptions& weights);
 
 }  // namespace flightwatt::mechanical

@@ -19,7 +19,7 @@ struct Expectation {
     double level_sd_w = 0.0;
     double weight_square_sum = 1.0;
     double degrees_of_freedom = 1.0;  ///< of level_sd_w
-    double shape_flown_w = 0.0;  ///< what the curve says beyond `flown_w`, where its shape is not believed
+    double shape_flown_w = 0.0;       ///< what the curve says beyond `flown_w`, where its shape is not believed
     double shape_remaining_w = 0.0;
 };
 
@@ -36,8 +36,7 @@ Expectation expect_by_curve(const PhaseForecast& cruise, double flown_s, double 
 LawLevel level_by_law(const PhaseModel& model, const FlightProgress& flown, LevelSource source) {
     if (source == LevelSource::airspeed) {
         if (!model.airspeed_law) {
-            throw NoAnswerError(
-                "the model has no airspeed law: fewer than 2 of its flights measured airspeed");
+            throw NoAnswerError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
         }
         if (!flown.airspeed_cubed_m3_per_s3) {
             throw NoAnswerError("the flight has not measured its airspeed");
@@ -49,17 +48,15 @@ LawLevel level_by_law(const PhaseModel& model, const FlightProgress& flown, Leve
     }
     const auto covariate = model.level_law->covariate;
     if (const auto& value = flown.covariates[covariate]) return level_at(*model.level_law, *value);
-    throw NoAnswerError(fmt::format("the flight does not tell its {}, which the model's level follows",
-                                    to_string(covariate)));
+    throw NoAnswerError(
+        fmt::format("the flight does not tell its {}, which the model's level follows", to_string(covariate)));
 }
 
-Expectation expect(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
-                   LevelSource source) {
+Expectation expect(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s, LevelSource source) {
     const double flown_s = flown.cruise_s();
     auto expected = expect_by_curve(cruise, flown_s, remaining_s);
     if (source == LevelSource::curve) return expected;
-    const double mean_w =
-        (expected.flown_w * flown_s + expected.remaining_w * remaining_s) / (flown_s + remaining_s);
+    const double mean_w = (expected.flown_w * flown_s + expected.remaining_w * remaining_s) / (flown_s + remaining_s);
     expected.shape_flown_w = expected.flown_w - mean_w;
     expected.shape_remaining_w = expected.remaining_w - mean_w;
     expected.flown_w = expected.remaining_w = mean_w;
@@ -82,8 +79,7 @@ struct Variances {
 
 /// To first order: level and drift are themselves estimated, with relative variances 2 / degrees of freedom,
 /// and the gain changes oppositely with the logarithms of both.
-double variance_of_gain(const Variances& of, double level_degrees_of_freedom,
-                        double drift_degrees_of_freedom) {
+double variance_of_gain(const Variances& of, double level_degrees_of_freedom, double drift_degrees_of_freedom) {
     const double flown_w2 = of.level_w2 + of.flown_drift_w2;
     if (!(flown_w2 > 0.0)) return 0.0;
     const double change = of.level_w2 * (of.flown_drift_w2 - of.drift_covariance_w2) / (flown_w2 * flown_w2);
@@ -91,23 +87,23 @@ double variance_of_gain(const Variances& of, double level_degrees_of_freedom,
 }
 
 /// The variance of the error y - gain x, share by share (docs/methods.md, Eq. 20).
-void add_shares(RestPrediction& rest, const Expectation& expected, const Variances& of,
-                double drift_degrees_of_freedom, double remaining_s) {
+void add_shares(RestPrediction& rest, const Expectation& expected, const Variances& of, double drift_degrees_of_freedom,
+                double remaining_s) {
     const double wh2_per_w2 = std::pow(units::wh_from_joule(remaining_s), 2);
     const double gain = rest.gain;
     auto& energy = rest.energy;
     const double average = 1.0 + expected.weight_square_sum;
     const double kept = 1.0 - gain;
-    const double drift_w2 = std::max(
-        0.0, of.remaining_drift_w2 - 2.0 * gain * of.drift_covariance_w2 + gain * gain * of.flown_drift_w2);
-    const double gain_w2 = (of.level_w2 + of.flown_drift_w2) *
-                           variance_of_gain(of, expected.degrees_of_freedom, drift_degrees_of_freedom);
+    const double drift_w2 =
+        std::max(0.0, of.remaining_drift_w2 - 2.0 * gain * of.drift_covariance_w2 + gain * gain * of.flown_drift_w2);
+    const double gain_w2 =
+        (of.level_w2 + of.flown_drift_w2) * variance_of_gain(of, expected.degrees_of_freedom, drift_degrees_of_freedom);
     const double shape_w = expected.shape_remaining_w - gain * expected.shape_flown_w;
     add_share(energy, {average * kept * kept * of.level_w2 * wh2_per_w2, expected.degrees_of_freedom});
     add_share(energy, {average * drift_w2 * wh2_per_w2, drift_degrees_of_freedom});
     add_share(energy, {shape_w * shape_w * wh2_per_w2, drift_degrees_of_freedom});
-    add_share(energy, {average * gain_w2 * wh2_per_w2,
-                       std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
+    add_share(energy,
+              {average * gain_w2 * wh2_per_w2, std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
 }
 
 }  // namespace
@@ -121,8 +117,7 @@ void add_share(EnergyEstimate& estimate, const VarianceShare& share) {
 }
 
 EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b) {
-    return {a.energy_wh + b.energy_wh, a.uncertainty_known && b.uncertainty_known,
-            a.variance_wh2 + b.variance_wh2,
+    return {a.energy_wh + b.energy_wh, a.uncertainty_known && b.uncertainty_known, a.variance_wh2 + b.variance_wh2,
             a.variance_square_per_degree_of_freedom + b.variance_square_per_degree_of_freedom};
 }
 
@@ -144,8 +139,7 @@ PhaseForecast forecast_of(const MechanicalModel& model, flight::Phase phase) {
         if (const auto& part = flight.phases[phase]) forecast.weight_square_sum += std::pow(part->weight, 2);
     }
     if (forecast.weight_square_sum == 0.0) {
-        forecast.weight_square_sum =
-            1.0 / static_cast<double>(std::max<std::size_t>(forecast.model.flights, 1));
+        forecast.weight_square_sum = 1.0 / static_cast<double>(std::max<std::size_t>(forecast.model.flights, 1));
     }
     return forecast;
 }
@@ -162,8 +156,7 @@ EnergyEstimate predict_rest_before_flight(const PhaseForecast& phase, double flo
     if (!phase.model.level_spread) return estimate;
     const auto& spread = *phase.model.level_spread;
     const double sd_wh = units::wh_from_joule(spread.level_sd_w * remaining_s);
-    add_share(estimate,
-              {sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1)});
+    add_share(estimate, {sd_wh * sd_wh * (1.0 + phase.weight_square_sum), static_cast<double>(spread.flights - 1)});
     return estimate;
 }
 
@@ -179,8 +172,7 @@ RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& f
     const auto& spread = *cruise.model.level_spread;
     const Drift drift{spread.drift_sd_w, spread.correlation_s};
     const Variances of{expected.level_sd_w * expected.level_sd_w, variance_of_mean_w2(drift, flown_s),
-                       variance_of_mean_w2(drift, remaining_s),
-                       covariance_of_means_w2(drift, flown_s, remaining_s)};
+                       variance_of_mean_w2(drift, remaining_s), covariance_of_means_w2(drift, flown_s, remaining_s)};
     const double flown_w2 = of.level_w2 + of.flown_drift_w2;
     // Flights that are all alike, without any drift: the model is right, whatever is measured.
     rest.gain = flown_w2 > 0.0 ? std::min((of.level_w2 + of.drift_covariance_w2) / flown_w2, 1.0) : 0.0;

@@ -24,8 +24,7 @@ std::string percent_of_change(double was, double is) {
 
 std::size_t highest_order(const MechanicalModel& model) {
     std::size_t order = 0;
-    for (const auto phase : flight::all_phases)
-        order = std::max(order, model.phases[phase].fourier.cos_w.size());
+    for (const auto phase : flight::all_phases) order = std::max(order, model.phases[phase].fourier.cos_w.size());
     return order;
 }
 
@@ -127,8 +126,7 @@ TextTable table_one(const MechanicalModel& model, TableIntervals intervals) {
     for (const auto phase : flight::all_phases) {
         add_column(table, std::string(column_names[phase]), column_of(model.phases[phase], order));
         if (intervals == TableIntervals::absent) continue;
-        add_column(table, fmt::format("{} +-", column_names[phase]),
-                   half_widths_of(model.phases[phase], order));
+        add_column(table, fmt::format("{} +-", column_names[phase]), half_widths_of(model.phases[phase], order));
     }
     return table;
 }

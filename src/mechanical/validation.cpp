@@ -41,22 +41,20 @@ void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Cova
         const auto power = fold.phase == flight::Phase::cruise
                                ? power_by_covariate(fold.others, covariate, fold.flown.covariates[covariate])
                                : constant_mean(fold.others);
-        if (power)
-            estimates.emplace_back(fmt::format("by_{}", to_string(covariate)), energy_of(*power, duration_s));
+        if (power) estimates.emplace_back(fmt::format("by_{}", to_string(covariate)), energy_of(*power, duration_s));
     }
 }
 
 Estimates predict_phase(const Fold& fold, const ModelFitOptions& options) {
     const double duration_s = fold.flown.duration_s;
     const auto mean = constant_mean(fold.others);
-    Estimates estimates{
-        {"fourier", predict_before_flight(forecast_of_others(fold, options), duration_s)},
-        {"constant_mean", energy_of(mean, duration_s)},
-        {"nearest_flight", energy_of(power_of_flight(fold.others, fold.nearest), duration_s)}};
+    Estimates estimates{{"fourier", predict_before_flight(forecast_of_others(fold, options), duration_s)},
+                        {"constant_mean", energy_of(mean, duration_s)},
+                        {"nearest_flight", energy_of(power_of_flight(fold.others, fold.nearest), duration_s)}};
     if (fold.phase != flight::Phase::cruise) {
         estimates.emplace_back("airspeed_cubed", energy_of(mean, duration_s));
-    } else if (const auto power = power_by_covariate(fold.others, Covariate::airspeed_cubed,
-                                                     fold.flown.airspeed_cubed_m3_per_s3)) {
+    } else if (const auto power =
+                   power_by_covariate(fold.others, Covariate::airspeed_cubed, fold.flown.airspeed_cubed_m3_per_s3)) {
         estimates.emplace_back("airspeed_cubed", energy_of(*power, duration_s));
     }
     return estimates;
@@ -80,12 +78,10 @@ Estimates predict_cruise_in_flight(const Fold& fold, const FlightProgress& flown
     Estimates estimates{
         {"fourier", after(known_wh, predict_rest_before_flight(forecast, flown.cruise_s(), remaining_s))},
         {"constant_mean", after(known_wh, energy_of(constant_mean(fold.others), remaining_s))},
-        {"nearest_flight",
-         after(known_wh, energy_of(power_of_flight(fold.others, fold.nearest), remaining_s))}};
+        {"nearest_flight", after(known_wh, energy_of(power_of_flight(fold.others, fold.nearest), remaining_s))}};
     if (!forecast.model.level_spread) return estimates;
     const auto update = [&](const char* name, LevelSource source) {
-        estimates.emplace_back(name,
-                               after(known_wh, predict_rest(forecast, flown, remaining_s, source).energy));
+        estimates.emplace_back(name, after(known_wh, predict_rest(forecast, flown, remaining_s, source).energy));
     };
     update("in_flight", LevelSource::curve);
     update("in_flight_constant", LevelSource::constant);
@@ -145,8 +141,7 @@ bool was_predicted(const ValidatedFlight& flight, std::optional<flight::Phase> p
 
 }  // namespace
 
-std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights,
-                                           const ModelFitOptions& options,
+std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                                            std::span<const Covariate> covariates) {
     if (flights.size() < 2) {
         throw NoAnswerError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
@@ -155,8 +150,7 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     std::set<std::string> names;
     for (const auto& flight : flights) {
         if (names.insert(flight.samples.flight).second) continue;
-        throw UsageError(
-            fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
+        throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
     }
     std::vector<ValidatedFlight> validated;
     for (const auto& excluded : flights) {
@@ -207,10 +201,8 @@ std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, con
     const auto count = static_cast<double>(score.flights);
     score.mean_absolute_error_wh /= count;
     score.bias_wh /= count;
-    if (phase != flight::Phase::landing && std::isfinite(percent))
-        score.mean_absolute_error_percent = percent / count;
-    if (with_interval > 0)
-        score.coverage_95 = static_cast<double>(covered) / static_cast<double>(with_interval);
+    if (phase != flight::Phase::landing && std::isfinite(percent)) score.mean_absolute_error_percent = percent / count;
+    if (with_interval > 0) score.coverage_95 = static_cast<double>(covered) / static_cast<double>(with_interval);
     return score;
 }
 

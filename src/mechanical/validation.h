@@ -46,8 +46,7 @@ struct ValidatedFlight {
 ///   in_flight_constant   predict_rest by the curve's mean
 ///   in_flight_airspeed   predict_rest by the airspeed so far
 /// Throws NoAnswerError for fewer than 2 flights, and what fit_phase_model throws.
-std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights,
-                                           const ModelFitOptions& options = {},
+std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
                                            std::span<const Covariate> covariates = {});
 
 /// How one model did over the flights, in one phase or in the whole.

@@ -34,8 +34,8 @@ double read_mission_time_s(const TomlTable& entry, std::string_view key, const T
 }
 
 /// Throws where one of `keys` stands with `other`.
-void refuse_beside(const TomlTable& entry, std::string_view other,
-                   std::initializer_list<std::string_view> keys, std::string_view why) {
+void refuse_beside(const TomlTable& entry, std::string_view other, std::initializer_list<std::string_view> keys,
+                   std::string_view why) {
     for (const auto key : keys) {
         if (!entry.has(key) || !entry.has(other)) continue;
         throw InputError(entry.where(key), fmt::format("`{}` stands with `{}`: {}", key, other, why),
@@ -78,9 +78,8 @@ constexpr std::array number_keys{
 };
 
 Disturbance read_disturbance(const TomlTable& entry, const PerPhase<double>& duration_s) {
-    entry.refuse_keys_except({"phase", "from", "to", "at", "mechanical_factor", "mechanical_w",
-                              "compute_factor", "compute_w", "soc_drop_percent", "capacity_factor",
-                              "resistance_factor"});
+    entry.refuse_keys_except({"phase", "from", "to", "at", "mechanical_factor", "mechanical_w", "compute_factor",
+                              "compute_w", "soc_drop_percent", "capacity_factor", "resistance_factor"});
     if (entry.has("soc_drop_percent") && !entry.has("at")) {
         throw InputError(entry.where("soc_drop_percent"), "a drop happens at one moment, and none is given",
                          "add at = SECONDS");
@@ -89,8 +88,7 @@ Disturbance read_disturbance(const TomlTable& entry, const PerPhase<double>& dur
         throw InputError(entry.where("at"), "`at` is when charge drops, and no soc_drop_percent is given",
                          "for a segment use from and to");
     }
-    refuse_beside(entry, "at",
-                  {"from", "to", "mechanical_factor", "mechanical_w", "compute_factor", "compute_w"},
+    refuse_beside(entry, "at", {"from", "to", "mechanical_factor", "mechanical_w", "compute_factor", "compute_w"},
                   "one is a moment, the other lasts");
     for (const std::string_view pack : {"capacity_factor", "resistance_factor"})
         refuse_beside(entry, pack, {"phase", "from", "to", "at"}, "a pack is weaker from the start on");

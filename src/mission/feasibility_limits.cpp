@@ -133,9 +133,7 @@ double spare_percent(const Mission& mission) {
 }
 
 FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
-    const auto mission_at = [&](double cruise_s) {
-        return with_minimum_energy_schedule(mission_of(cruise_s));
-    };
+    const auto mission_at = [&](double cruise_s) { return with_minimum_energy_schedule(mission_of(cruise_s)); };
     const auto spare_of = [&](double cruise_s) { return spare_percent(mission_at(cruise_s)); };
     // From a length that fits: schedules may need so much, never so little.
     double fits_s = shortest_cruise_s;
@@ -155,8 +153,7 @@ FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
 Mission with_payload(const Mission& mission, double payload_w) {
     auto loaded = mission;
     const auto index = loaded.compute.components.size();
-    loaded.compute.components.push_back(
-        {"payload", compute::make_power_profile("payload", {}, {{{}, payload_w, {}}})});
+    loaded.compute.components.push_back({"payload", compute::make_power_profile("payload", {}, {{{}, payload_w, {}}})});
     if (!loaded.utilities.empty()) loaded.utilities.resize(index + 1);
     for (auto& segment : loaded.schedule) segment.run.push_back({index, {}});
     return loaded;
@@ -168,15 +165,14 @@ FeasibilityLimit largest_payload(const AnyMission& mission) {
     if (const double spare = spare_of(0.0); spare < 0.0) {
         if (const auto summary = simulate(bare).summary; !summary.feasible)
             throw NoAnswerError("without any payload already: " + describe(summary));
-        throw NoAnswerError(fmt::format(
-            "without any payload the mission misses its reserve by {:.4g} points already", -spare));
+        throw NoAnswerError(
+            fmt::format("without any payload the mission misses its reserve by {:.4g} points already", -spare));
     }
     const auto bracket = bracket_of(spare_of, {0.0, 1.0}, 2.0, largest_payload_w);
     if (!bracket.bad)
         throw NoAnswerError(fmt::format("a payload of {:.3g} W still lands with the reserve", bracket.good));
     const double payload_w = last_good(spare_of, bracket.good, *bracket.bad);
-    return limit_at(payload_w, with_payload(bare, payload_w),
-                    with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
+    return limit_at(payload_w, with_payload(bare, payload_w), with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
 }
 
 std::optional<double> least_capacity_ah(const AnyMission& mission) {
@@ -226,13 +222,11 @@ std::string describe(const MissionSetup& mission, const InfeasibilityReport& rep
     std::vector<std::string> remedies;
     if (report.cruise_s) {
         remedies.push_back(fmt::format("a cruise {:.1f} s shorter ({:.1f} s)",
-                                       mission.duration_s[Phase::cruise] - *report.cruise_s,
-                                       *report.cruise_s));
+                                       mission.duration_s[Phase::cruise] - *report.cruise_s, *report.cruise_s));
     }
     if (report.fixed_spare_percent) {
-        remedies.push_back(
-            fmt::format("lower quality where it is fixed (the least leaves {:.2f} points to spare)",
-                        *report.fixed_spare_percent));
+        remedies.push_back(fmt::format("lower quality where it is fixed (the least leaves {:.2f} points to spare)",
+                                       *report.fixed_spare_percent));
     }
     if (report.reserve_soc_percent)
         remedies.push_back(fmt::format("a reserve of at most {:.2f} %", *report.reserve_soc_percent));
@@ -243,8 +237,8 @@ std::string describe(const MissionSetup& mission, const InfeasibilityReport& rep
     auto text = fmt::format(
         "no schedule lands with the reserve: the one that demands least energy is {}short by {:.2f} points "
         "({:.3f} Wh)",
-        report.cut_off_at_s ? fmt::format("cut off at {:.1f} s, ", *report.cut_off_at_s) : "",
-        report.short_percent, report.short_wh);
+        report.cut_off_at_s ? fmt::format("cut off at {:.1f} s, ", *report.cut_off_at_s) : "", report.short_percent,
+        report.short_wh);
     if (!remedies.empty()) text += fmt::format("; any one of these would do: {}", fmt::join(remedies, ", "));
     return text;
 }

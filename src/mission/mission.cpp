@@ -45,8 +45,7 @@ std::optional<double> mean_utility(const MissionSetup& mission, const Schedule& 
     double sum = 0.0;
     for (const auto& segment : schedule) {
         const double phase_start_s = timeline.start_s[segment.phase];
-        const double runs_s =
-            std::min(phase_start_s + segment.end_s, until_s) - (phase_start_s + segment.start_s);
+        const double runs_s = std::min(phase_start_s + segment.end_s, until_s) - (phase_start_s + segment.start_s);
         if (runs_s > 0.0) sum += utility_per_s(utilities, segment.run) * runs_s;
     }
     return sum / timeline.duration_s;

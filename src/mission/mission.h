@@ -71,8 +71,8 @@ struct ComponentChoices {
 
 /// How a mission's schedule may be planned.
 struct PlanSettings {
-    double slot_s = 10.0;  ///< QoS may change at its multiples, counted from each phase's start
-    double dwell_s = 0.0;  ///< a configuration once chosen stays at least so long
+    double slot_s = 10.0;                   ///< QoS may change at its multiples, counted from each phase's start
+    double dwell_s = 0.0;                   ///< a configuration once chosen stays at least so long
     std::vector<ComponentChoices> choices;  ///< one a component
 };
 
@@ -100,8 +100,7 @@ double utility_per_s(const Utility& utility, const std::vector<double>& qos);
 
 /// The utility of a configuration a second: the sum over the components that run and have a utility.
 /// `utilities` has one entry a component of the model (or none at all).
-double utility_per_s(const std::vector<std::optional<Utility>>& utilities,
-                     const compute::Configuration& configuration);
+double utility_per_s(const std::vector<std::optional<Utility>>& utilities, const compute::Configuration& configuration);
 
 /// Mean utility a second of what a schedule runs up to `until_s` [mission time], over the duration of the
 /// whole mission; none if the mission states no utility.

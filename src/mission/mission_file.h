@@ -23,8 +23,7 @@ struct MissionReading {
 AnyMission read_mission(const std::filesystem::path& path, const MissionReading& reading = {});
 
 /// The same from text; `path` names it and is where relative paths start.
-AnyMission parse_mission(std::string_view text, const std::filesystem::path& path,
-                         const MissionReading& reading = {});
+AnyMission parse_mission(std::string_view text, const std::filesystem::path& path, const MissionReading& reading = {});
 
 /// The mission file `text` (of `path`) with `schedule` in the place of its [plan], [policy] and [[schedule]];
 /// everything else says what it said, its keys sorted and without comments. `compute` is the mission's. The

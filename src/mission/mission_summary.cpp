@@ -34,9 +34,8 @@ double powered_until_s(const MissionSummary& summary) {
 
 std::string describe(const MissionSummary& summary) {
     if (const auto& failure = summary.undeliverable) {
-        return fmt::format(
-            "{}: the battery cannot deliver {:.6g} W at {:.6g} s: its limit U^2 / (4 R) is {:.6g} W",
-            summary.mission, failure->power_w, failure->time_s, failure->limit_w);
+        return fmt::format("{}: the battery cannot deliver {:.6g} W at {:.6g} s: its limit U^2 / (4 R) is {:.6g} W",
+                           summary.mission, failure->power_w, failure->time_s, failure->limit_w);
     }
     auto end = fmt::format("{:.2f} % left after {:.1f} s", *summary.final_soc_percent, summary.duration_s);
     if (summary.depleted_at_s) {
@@ -69,14 +68,9 @@ TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
     const bool utility = any([](const auto& summary) { return summary.utility.has_value(); });
     const bool sampled = any([](const auto& summary) { return summary.samples.has_value(); });
     TextTable table;
-    table.header = {"rank",
-                    "mission",
-                    "final_soc_percent",
-                    "energy_wh",
-                    "mechanical_energy_wh",
-                    "compute_energy_wh",
-                    "duration_s",
-                    "depleted_at_s"};
+    table.header = {
+        "rank",       "mission",      "final_soc_percent", "energy_wh", "mechanical_energy_wh", "compute_energy_wh",
+        "duration_s", "depleted_at_s"};
     if (cut_off) table.header.emplace_back("cut_off_at_s");
     if (utility) table.header.emplace_back("utility");
     if (sampled) table.header.emplace_back("probability_below_reserve");
@@ -84,15 +78,13 @@ TextTable comparison_table(const std::vector<MissionSummary>& ranked) {
         const auto name = summary.schedule == ScheduleOrigin::given
                               ? summary.mission
                               : fmt::format("{} ({})", summary.mission, to_string(summary.schedule));
-        std::vector<std::string> row{
-            std::to_string(table.rows.size() + 1), name,
-            cell(summary.final_soc_percent, 2),    cell(summary.energy_wh, 3),
-            cell(summary.mechanical_energy_wh, 3), cell(summary.compute_energy_wh, 3),
-            cell(summary.duration_s, 1),           cell(summary.depleted_at_s, 1)};
+        std::vector<std::string> row{std::to_string(table.rows.size() + 1), name,
+                                     cell(summary.final_soc_percent, 2),    cell(summary.energy_wh, 3),
+                                     cell(summary.mechanical_energy_wh, 3), cell(summary.compute_energy_wh, 3),
+                                     cell(summary.duration_s, 1),           cell(summary.depleted_at_s, 1)};
         if (cut_off) row.push_back(cell(summary.cut_off_at_s, 1));
         if (utility) row.push_back(cell(summary.utility, 3));
-        if (sampled)
-            row.push_back(summary.samples ? cell(summary.samples->probability_below_reserve, 4) : "-");
+        if (sampled) row.push_back(summary.samples ? cell(summary.samples->probability_below_reserve, 4) : "-");
         table.rows.push_back(std::move(row));
     }
     return table;

@@ -77,9 +77,9 @@ struct MissionSummary {
     /// Mean utility a second over the whole mission (of a linear utility of FPS with weight 1: mean FPS), where
     /// the mission states utilities. What would run after the battery's end has none.
     std::optional<double> utility;
-    bool feasible = false;  ///< the battery lasts: empty at the very end counts, any earlier does not
-    double reserve_soc_percent = 0.0;                           ///< what the mission asks to be left
-    bool keeps_reserve = false;                                 ///< feasible, and the reserve is left
+    bool feasible = false;             ///< the battery lasts: empty at the very end counts, any earlier does not
+    double reserve_soc_percent = 0.0;  ///< what the mission asks to be left
+    bool keeps_reserve = false;        ///< feasible, and the reserve is left
     std::optional<AdaptiveDecisions> decisions = std::nullopt;  ///< of an adaptive policy
     std::optional<SampledFlights> samples = std::nullopt;       ///< if flights were drawn
 };

@@ -17,13 +17,12 @@ constexpr double gap_that_is_none = 1e-5;
 
 /// How far below `wanted_percent` a simulated mission ends [points], counting what it demanded after the
 /// battery ended as a part of what a full one holds. Negative if there is more.
-double reserve_deficit_percent(const MissionSetup& mission, const MissionSummary& summary,
-                               double wanted_percent) {
+double reserve_deficit_percent(const MissionSetup& mission, const MissionSummary& summary, double wanted_percent) {
     const double deficit = wanted_percent - summary.final_soc_percent.value_or(0.0);
     if (summary.feasible) return deficit;
     // What is left after a cut-off cannot be drawn: it does not make up for what was demanded later.
-    return std::max(deficit, 0.0) + units::percent_of(summary.energy_wh - summary.delivered_energy_wh,
-                                                      full_energy_wh(mission.battery));
+    return std::max(deficit, 0.0) +
+           units::percent_of(summary.energy_wh - summary.delivered_energy_wh, full_energy_wh(mission.battery));
 }
 
 /// A schedule, simulated.
@@ -85,8 +84,7 @@ PlanStart start_of(const PlanningProblem& problem) { return {0.0, problem.initia
 
 /// No schedule that lands has more utility. Errors of the table are given away twice a slot.
 double proven_bound(const PlanningProblem& problem, const Planner& highest) {
-    const double slack_percent =
-        2.0 * static_cast<double>(slots_of(problem).size()) * highest.depletions.error_percent;
+    const double slack_percent = 2.0 * static_cast<double>(slots_of(problem).size()) * highest.depletions.error_percent;
     return plan_rest(problem, highest, start_of(problem), problem.reserve_soc_percent - slack_percent).bound;
 }
 
@@ -156,8 +154,7 @@ MissionPlan plan_by_simulation(const PlanningProblem& problem, const std::option
 MissionPlan plan_by_tables(const PlanningProblem& problem, const std::optional<double>& probability) {
     MissionPlan result;
     const auto planner = make_planner(problem);
-    if (probability)
-        result.margin_percent = margin_percent(problem, planner.depletions.configurations, *probability);
+    if (probability) result.margin_percent = margin_percent(problem, planner.depletions.configurations, *probability);
     const auto start = start_of(problem);
     const double wanted_percent = problem.reserve_soc_percent + result.margin_percent;
     double planned_percent = wanted_percent;
@@ -191,8 +188,7 @@ MissionSummary labelled_summary(const MissionPlan& plan) {
     constexpr double as_good_as_optimal = 1e-3;
     auto summary = plan.summary;
     const double utility = summary.utility.value_or(0.0);
-    const bool optimal =
-        plan.plan.bound_is_proven && plan.plan.bound - utility <= as_good_as_optimal * plan.plan.bound;
+    const bool optimal = plan.plan.bound_is_proven && plan.plan.bound - utility <= as_good_as_optimal * plan.plan.bound;
     summary.feasible = summary.feasible && plan.plan.feasible;
     summary.schedule = !plan.plan.feasible ? ScheduleOrigin::infeasible
                        : optimal           ? ScheduleOrigin::optimal

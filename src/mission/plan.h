@@ -31,8 +31,7 @@ struct MissionPlan {
 /// deplete the battery no more than the simulation. With `probability`, the reserve is kept with that chance: see
 /// sampling/level_deviation.h. Infeasible plans are returned as such. Throws InputError if the mission states no
 /// utility, or too many choices.
-MissionPlan plan_mission(const PlanningProblem& problem,
-                         const std::optional<double>& probability = std::nullopt);
+MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability = std::nullopt);
 
 /// What the flown mission comes to, labelled as optimal (its bound is within 0.1 %) or planned.
 MissionSummary labelled_summary(const MissionPlan& plan);

@@ -22,8 +22,7 @@ PreparedMission prepare(const AnyMission& mission) {
     return prepared;
 }
 
-FlownMission fly(const PreparedMission& prepared, const SimulationSteps& steps,
-                 const Disturbances& disturbances) {
+FlownMission fly(const PreparedMission& prepared, const SimulationSteps& steps, const Disturbances& disturbances) {
     FlownMission flown;
     std::optional<AdaptiveDecisions> decisions;
     if (prepared.adaptive) {

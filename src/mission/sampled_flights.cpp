@@ -58,8 +58,7 @@ Landing land(const DrawnFlight& flight, const std::vector<double>& times_s) {
     landing.final_soc_percent = charge.soc_percent;
     const double lasted_s = flight.segments.back().end_s - lasting_tolerance_s;
     landing.depleted = charge.empty_at_s && *charge.empty_at_s < lasted_s;
-    landing.battery_failure =
-        charge.undeliverable || (charge.ended_at_s() && *charge.ended_at_s() < lasted_s);
+    landing.battery_failure = charge.undeliverable || (charge.ended_at_s() && *charge.ended_at_s() < lasted_s);
     return landing;
 }
 
@@ -71,8 +70,7 @@ class Sampler {
         : prepared_(prepared), disturbances_(disturbances), spreads_(spreads), options_(options) {
         const double duration_s = timeline_of(prepared.setup.duration_s).duration_s;
         for (std::size_t i = 0; i < options.band_times; ++i) {
-            times_s_.push_back(duration_s * static_cast<double>(i) /
-                               static_cast<double>(options.band_times - 1));
+            times_s_.push_back(duration_s * static_cast<double>(i) / static_cast<double>(options.band_times - 1));
         }
     }
 
@@ -97,14 +95,13 @@ class Sampler {
         const auto setup = draw_flight(prepared_.setup, spreads_, options_.seed, index);
         const auto disturbances = rescale_to_flown_durations(disturbances_, planned_s, setup.duration_s);
         auto times_s = times_s_;
-        for (auto& time_s : times_s)
-            time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
-        const auto schedule =
-            prepared_.adaptive ? fly_adaptively(*prepared_.adaptive, setup, disturbances).schedule
-                               : rescale_to_flown_durations(prepared_.schedule, planned_s, setup.duration_s);
-        return land({setup, disturbed(setup.battery, disturbances),
-                     disturbed(load_segments(setup, schedule), disturbances)},
-                    times_s);
+        for (auto& time_s : times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
+        const auto schedule = prepared_.adaptive
+                                  ? fly_adaptively(*prepared_.adaptive, setup, disturbances).schedule
+                                  : rescale_to_flown_durations(prepared_.schedule, planned_s, setup.duration_s);
+        return land(
+            {setup, disturbed(setup.battery, disturbances), disturbed(load_segments(setup, schedule), disturbances)},
+            times_s);
     }
 
     const PreparedMission& prepared_;
@@ -133,8 +130,7 @@ void count_landings(const std::vector<Landing>& landings, SampledFlights& flight
         return landing.battery_failure || landing.final_soc_percent < flights.reserve_soc_percent;
     });
     flights.probability_depleted = share_of([](const Landing& landing) { return landing.depleted; });
-    flights.probability_battery_failure =
-        share_of([](const Landing& landing) { return landing.battery_failure; });
+    flights.probability_battery_failure = share_of([](const Landing& landing) { return landing.battery_failure; });
     flights.probability_below_reserve = p;
     flights.probability_below_reserve_standard_error = std::sqrt(p * (1.0 - p) / n);
     flights.probability_below_reserve_95 = wilson_interval(p, n);
@@ -147,8 +143,8 @@ std::vector<SocBand> bands_of(const std::vector<Landing>& landings, const std::v
         std::transform(landings.begin(), landings.end(), soc_percent.begin(),
                        [&](const Landing& landing) { return landing.soc_percent[i]; });
         std::ranges::sort(soc_percent);
-        bands.push_back({times_s[i], quantile(soc_percent, 0.05), quantile(soc_percent, 0.5),
-                         quantile(soc_percent, 0.95)});
+        bands.push_back(
+            {times_s[i], quantile(soc_percent, 0.05), quantile(soc_percent, 0.5), quantile(soc_percent, 0.95)});
     }
     return bands;
 }
@@ -170,8 +166,8 @@ void require_spread(const MissionSetup& mission) {
 SampledFlights sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                               const SamplingOptions& options) {
     if (options.samples < 2 || static_cast<double>(options.samples) > most_samples) {
-        throw UsageError(fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples,
-                                     most_samples));
+        throw UsageError(
+            fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples, most_samples));
     }
     require_spread(prepared.setup);
     const auto spreads = find_spreads(prepared.setup);
@@ -206,11 +202,9 @@ std::string describe(const SampledFlights& flights) {
         flights.mission, flights.samples, flights.reserve_soc_percent, flights.probability_below_reserve,
         flights.probability_below_reserve_95.low, flights.probability_below_reserve_95.high,
         flights.probability_depleted, flights.final_soc_mean_percent, flights.final_soc_sd_percent);
-    for (std::size_t i = 0; i < q.size(); ++i)
-        text += fmt::format(" {} %: {:.2f}", shown_quantiles_percent[i], q[i]);
+    for (std::size_t i = 0; i < q.size(); ++i) text += fmt::format(" {} %: {:.2f}", shown_quantiles_percent[i], q[i]);
     text += fmt::format("; drawn: {}", fmt::join(flights.drawn, ", "));
-    if (!flights.not_drawn.empty())
-        text += fmt::format("; not drawn: {}", fmt::join(flights.not_drawn, ", "));
+    if (!flights.not_drawn.empty()) text += fmt::format("; not drawn: {}", fmt::join(flights.not_drawn, ", "));
     return text;
 }
 

@@ -14,8 +14,7 @@ MissionTimeline timeline_of(const PerPhase<double>& duration_s) {
     return timeline;
 }
 
-double rescale_to_flown_durations_s(double time_s, const PerPhase<double>& planned_s,
-                                    const PerPhase<double>& flown_s) {
+double rescale_to_flown_durations_s(double time_s, const PerPhase<double>& planned_s, const PerPhase<double>& flown_s) {
     const auto planned = timeline_of(planned_s);
     const auto flown = timeline_of(flown_s);
     for (const auto phase : all_phases) {

@@ -35,8 +35,7 @@ constexpr double same_time_tolerance_s(double phase_duration_s) {
 }
 
 /// Where a time of the mission lies when its phases take other durations: at the same part of the same phase.
-double rescale_to_flown_durations_s(double time_s, const PerPhase<double>& planned_s,
-                                    const PerPhase<double>& flown_s);
+double rescale_to_flown_durations_s(double time_s, const PerPhase<double>& planned_s, const PerPhase<double>& flown_s);
 
 /// A part of a phase in which one configuration runs.
 struct ScheduleSegment : PhaseSegment {

@@ -18,12 +18,11 @@ constexpr double most_rows = 1e7;
 
 void require_output_step(double output_s, double duration_s) {
     if (!(output_s > 0.0) || !std::isfinite(output_s)) {
-        throw UsageError(
-            fmt::format("an output step of {} s makes no sense, expected more than 0", output_s));
+        throw UsageError(fmt::format("an output step of {} s makes no sense, expected more than 0", output_s));
     }
     if (duration_s / output_s > most_rows) {
-        throw UsageError(fmt::format("an output step of {} s makes more than {} rows of {} s", output_s,
-                                     most_rows, duration_s));
+        throw UsageError(
+            fmt::format("an output step of {} s makes more than {} rows of {} s", output_s, most_rows, duration_s));
     }
 }
 
@@ -43,8 +42,7 @@ std::vector<double> output_times(const LoadSegment& segment, double output_s) {
 /// A row, unless the last one says the same already: not every end of a segment is a jump.
 void add_row(SocCurve& curve, const battery::Battery& battery, const LoadSegment& segment, double time_s,
              const battery::Discharge& state) {
-    SocRow row{time_s, segment.phase, mechanical_w(segment, time_s), segment.compute_w,
-               power_w(segment, time_s)};
+    SocRow row{time_s, segment.phase, mechanical_w(segment, time_s), segment.compute_w, power_w(segment, time_s)};
     battery::BatteryState now = state;
     if (const auto ended_at_s = state.ended_at_s()) {
         // Without a load the RC pair discharges itself.
@@ -134,8 +132,7 @@ Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const
     const auto segments = disturbed(load_segments(mission, schedule), disturbances);
     if (segments.empty()) throw std::invalid_argument("simulate: the mission has no schedule");
     require_output_step(steps.output_s, segments.back().end_s);
-    const Supply supply{disturbed(mission.battery, disturbances),
-                        steps.cuts_off ? mission.cutoff_voltage_v : 0.0};
+    const Supply supply{disturbed(mission.battery, disturbances), steps.cuts_off ? mission.cutoff_voltage_v : 0.0};
     SocCurve curve;
     battery::Discharge state{{mission.initial_soc_percent}};
     for (const auto& segment : segments) {
@@ -153,9 +150,9 @@ Simulation simulate(const Mission& mission, const SimulationSteps& steps, const 
 
 std::string to_csv(const SocCurve& curve) {
     constexpr int digits = 10;
-    CsvWriter csv({"time_s", "phase", "mechanical_w", "compute_w", "power_w", "current_a", "soc_percent",
-                   "terminal_voltage_v"},
-                  digits);
+    CsvWriter csv(
+        {"time_s", "phase", "mechanical_w", "compute_w", "power_w", "current_a", "soc_percent", "terminal_voltage_v"},
+        digits);
     for (const auto& row : curve.rows) {
         csv.add(row.time_s, to_string(row.phase), row.mechanical_w, row.compute_w, row.power_w, row.current_a,
                 row.soc_percent, row.terminal_voltage_v);

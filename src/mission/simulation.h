@@ -47,8 +47,7 @@ Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const
                     const Disturbances& disturbances = {});
 
 /// The same with the mission's own schedule.
-Simulation simulate(const Mission& mission, const SimulationSteps& steps = {},
-                    const Disturbances& disturbances = {});
+Simulation simulate(const Mission& mission, const SimulationSteps& steps = {}, const Disturbances& disturbances = {});
 
 /// time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v
 std::string to_csv(const SocCurve& curve);

@@ -26,10 +26,8 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
                             record.warnings, {}};
         if (record.accepted) {
             auto selection = batch::select_for_fit(record, needed, load);
-            for (const auto& exclusion : selection.exclusions)
-                flight.exclusions.push_back(to_string(exclusion));
-            std::move(selection.flights.begin(), selection.flights.end(),
-                      std::back_inserter(content.measured));
+            for (const auto& exclusion : selection.exclusions) flight.exclusions.push_back(to_string(exclusion));
+            std::move(selection.flights.begin(), selection.flights.end(), std::back_inserter(content.measured));
             flight.verdicts = record.verdicts;
             flight.unusable_power = batch::exclusion_of(record, load);
             flight.series = std::move(series);

@@ -39,8 +39,7 @@ void add_record(ReportBattery& battery, const ReportFlight& flight) {
 }
 
 /// `most` of the records, the first and the last among them.
-std::vector<battery::DischargeRecord> spread_evenly(std::vector<battery::DischargeRecord> records,
-                                                    std::size_t most) {
+std::vector<battery::DischargeRecord> spread_evenly(std::vector<battery::DischargeRecord> records, std::size_t most) {
     if (records.size() <= most) return records;
     std::vector<battery::DischargeRecord> chosen;
     for (std::size_t i = 0; i < most; ++i) {
@@ -82,8 +81,7 @@ std::string rests_on(const ReportBattery& battery) {
 std::string some_of(const std::vector<std::string>& names) {
     constexpr std::size_t most = 10;
     const auto shown = std::min(most, names.size());
-    auto text =
-        fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+    auto text = fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
     if (shown < names.size()) text += fmt::format(" and {} more", names.size() - shown);
     return text;
 }
@@ -127,8 +125,8 @@ void add_identified(Section& section, const ReportBattery& battery) {
 
 }  // namespace
 
-ReportBattery identify_for_report(std::span<const ReportFlight> flights,
-                                  const battery::IdentificationOptions& options, std::size_t most) {
+ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
+                                  std::size_t most) {
     ReportBattery battery;
     for (const auto& flight : flights) add_record(battery, flight);
     battery.usable = battery.records.size();
@@ -152,11 +150,10 @@ Section battery_section(const ReportBattery& battery) {
     if (battery.identified) {
         add_identified(section, battery);
         if (battery.leave_one_out.empty()) {
-            section.html +=
-                paragraph(battery.no_answer.empty()
-                              ? "A single flight: there is no other one to check the battery with."
-                              : "The battery was not checked by leave-one-out: " + battery.no_answer,
-                          "soft");
+            section.html += paragraph(battery.no_answer.empty()
+                                          ? "A single flight: there is no other one to check the battery with."
+                                          : "The battery was not checked by leave-one-out: " + battery.no_answer,
+                                      "soft");
         }
     } else {
         section.html += paragraph("The battery was not identified: " + battery.no_answer + ".", "warning");

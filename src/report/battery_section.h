@@ -30,8 +30,8 @@ struct ReportBattery {
 /// Identifies the battery from the flights that have measured current and voltage: from `most` of them,
 /// spread evenly, where there are more (the work grows with their square). Throws UsageError as
 /// identify_battery.
-ReportBattery identify_for_report(std::span<const ReportFlight> flights,
-                                  const battery::IdentificationOptions& options, std::size_t most);
+ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
+                                  std::size_t most);
 
 /// Measured against modelled voltage, the open-circuit curve, parameters with intervals and how well each
 /// flight is predicted by the others; or why there is no such battery.

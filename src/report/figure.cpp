@@ -13,12 +13,9 @@
 namespace flightwatt::report {
 namespace {
 
-std::string dumped(const VegaJson& json) {
-    return json.dump(-1, ' ', false, VegaJson::error_handler_t::replace);
-}
+std::string dumped(const VegaJson& json) { return json.dump(-1, ' ', false, VegaJson::error_handler_t::replace); }
 
-VegaJson channel_of(std::string_view field, std::string_view type, std::string_view title,
-                    const VegaJson& more) {
+VegaJson channel_of(std::string_view field, std::string_view type, std::string_view title, const VegaJson& more) {
     VegaJson channel{{"field", field}, {"type", type}, {"title", title}};
     channel.update(more);
     return channel;
@@ -76,8 +73,8 @@ std::vector<std::size_t> visible_rows(const std::vector<double>& time_s, const s
     for (auto first = rows.begin(); first != rows.end();) {
         const auto end =
             std::find_if(first, rows.end(), [&](std::size_t i) { return column_of(i) != column_of(*first); });
-        const auto [least, greatest] = std::minmax_element(
-            first, end, [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+        const auto [least, greatest] =
+            std::minmax_element(first, end, [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
         std::vector<std::size_t> chosen{*first, *least, *greatest, *std::prev(end)};
         std::ranges::sort(chosen);
         std::ranges::unique_copy(chosen, std::back_inserter(kept));
@@ -151,9 +148,8 @@ VegaJson legend_parameter(std::string_view field, const VegaJson& series, std::s
 VegaJson shown_by_legend() { return vega(R"({"filter": {"param": "shown"}})"); }
 
 VegaJson phase_names(const VegaJson& data, std::string_view time_title) {
-    return layer(
-        data, R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0, "clip": false})",
-        {{"x", quantity("middle_s", time_title)}, {"text", category("word", "phase")}});
+    return layer(data, R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0, "clip": false})",
+                 {{"x", quantity("middle_s", time_title)}, {"text", category("word", "phase")}});
 }
 
 std::string valid_utf8(std::string_view text) {

@@ -26,8 +26,7 @@ bool ran(const std::vector<std::string>& command) {
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
     pid_t process = 0;
-    const int failure =
-        ::posix_spawnp(&process, arguments.front(), &actions, nullptr, arguments.data(), environ);
+    const int failure = ::posix_spawnp(&process, arguments.front(), &actions, nullptr, arguments.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
     if (failure == ENOENT) return false;
     if (failure != 0) {

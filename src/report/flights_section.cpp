@@ -57,10 +57,9 @@ std::string flight_id(std::size_t index) { return fmt::format("flight-{}", index
 
 /// One row a sortie of the flights that were not rejected.
 std::string flights_table_html(std::span<const ReportFlight> flights) {
-    TextTable table{
-        {"flight", "sortie", "take-off [s]", "cruise [s]", "landing [s]", "take-off [W]", "cruise [W]",
-         "landing [W]", "energy [Wh]", "counter [Wh]", "closure [%]", "gaps", "warnings", "fitted"},
-        {}};
+    TextTable table{{"flight", "sortie", "take-off [s]", "cruise [s]", "landing [s]", "take-off [W]", "cruise [W]",
+                     "landing [W]", "energy [Wh]", "counter [Wh]", "closure [%]", "gaps", "warnings", "fitted"},
+                    {}};
     HtmlTableOptions options{"Flights: durations, mean power, energy, closure, gaps and warnings", true, {}};
     for (std::size_t f = 0; f < flights.size(); ++f) {
         if (!flights[f].rejected.empty()) continue;
@@ -76,8 +75,8 @@ std::string flights_table_html(std::span<const ReportFlight> flights) {
 std::string excluded_html(std::span<const ReportFlight> flights) {
     TextTable table{{"flights", "excluded", "reason"}, {}};
     const auto add = [&](const std::string& flight, const std::string& what, const std::string& reason) {
-        const auto same = std::ranges::find_if(
-            table.rows, [&](const auto& row) { return row[1] == what && row[2] == reason; });
+        const auto same =
+            std::ranges::find_if(table.rows, [&](const auto& row) { return row[1] == what && row[2] == reason; });
         if (same == table.rows.end()) {
             table.rows.push_back({flight, what, reason});
         } else {
@@ -88,8 +87,7 @@ std::string excluded_html(std::span<const ReportFlight> flights) {
         if (!flight.rejected.empty()) add(flight.name, "rejected", flight.rejected);
         for (const auto& reason : flight.exclusions) {
             const auto name = flight.name + ": ";
-            add(flight.name, "from the model",
-                reason.starts_with(name) ? reason.substr(name.size()) : reason);
+            add(flight.name, "from the model", reason.starts_with(name) ? reason.substr(name.size()) : reason);
         }
     }
     if (table.rows.empty()) return paragraph("Nothing was excluded.");
@@ -113,12 +111,12 @@ double seconds_in_air(const ReportFlight& flight) {
     return time_s;
 }
 
-void add_flight(Section& section, const ReportFlight& flight,
-                const std::optional<mechanical::MechanicalModel>& model, std::size_t index, bool is_open) {
+void add_flight(Section& section, const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
+                std::size_t index, bool is_open) {
     const auto id = flight_id(index);
-    section.html += fmt::format(
-        "<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{:.0f} s in the air</span></summary>\n", id,
-        is_open ? " open" : "", escaped(flight.name), seconds_in_air(flight));
+    section.html +=
+        fmt::format("<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{:.0f} s in the air</span></summary>\n",
+                    id, is_open ? " open" : "", escaped(flight.name), seconds_in_air(flight));
     section.html += paragraph("From " + flight.log, "soft");
     if (!flight.warnings.empty()) {
         section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";

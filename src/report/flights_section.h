@@ -11,7 +11,6 @@ namespace flightwatt::report {
 
 /// All flights as a table (durations, power, energy, closure of integral and counter, gaps, warnings), those
 /// that are excluded with their reasons, and a part a flight that is drawn when it is opened.
-Section flights_section(std::span<const ReportFlight> flights,
-                        const std::optional<mechanical::MechanicalModel>& model);
+Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model);
 
 }  // namespace flightwatt::report

@@ -68,9 +68,9 @@ std::string table_html(const TextTable& table, const HtmlTableOptions& options) 
 }
 
 std::string figure_html(const Figure& figure) {
-    const auto keys = figure.time_signal.empty() ? std::string()
-                                                 : fmt::format(" data-zoom=\"{}\" data-scale=\"{}\"",
-                                                               figure.time_signal, figure.time_scale);
+    const auto keys = figure.time_signal.empty()
+                          ? std::string()
+                          : fmt::format(" data-zoom=\"{}\" data-scale=\"{}\"", figure.time_signal, figure.time_scale);
     return fmt::format(
         "<figure>\n<div class=\"figure\" tabindex=\"0\" role=\"group\" aria-label=\"{0}\" "
         "data-spec=\"spec-{1}\" "

@@ -22,9 +22,8 @@ template <typename Same>
 std::vector<const SimulatedMission*> first_of_each(Missions missions, const Same& same) {
     std::vector<const SimulatedMission*> firsts;
     for (const auto& simulated : missions) {
-        if (std::ranges::none_of(firsts, [&](const SimulatedMission* first) {
-                return same(first->mission, simulated.mission);
-            })) {
+        if (std::ranges::none_of(
+                firsts, [&](const SimulatedMission* first) { return same(first->mission, simulated.mission); })) {
             firsts.push_back(&simulated);
         }
     }
@@ -38,8 +37,7 @@ std::vector<Section> model_sections(Missions missions, const PublishedFigures& p
         if (!mechanical) continue;
         ReportModel model{*mechanical, "The missions' model, as their files name it."};
         model.table_one = table_one(*mechanical);
-        sections.push_back(
-            model_section(model, published, fmt::format("mission-model-{}", sections.size() + 1)));
+        sections.push_back(model_section(model, published, fmt::format("mission-model-{}", sections.size() + 1)));
     }
     return sections;
 }
@@ -104,12 +102,11 @@ Section map_section(Missions missions, const PublishedFigures& published) {
         std::vector<SimulatedMission> alike;
         std::ranges::copy_if(missions, std::back_inserter(alike),
                              [&](const auto& other) { return have_same_map(mission, other.mission); });
-        section.html +=
-            fmt::format("<h3>{}</h3>\n", mission.mechanical ? "Flight and computing" : "Computing alone");
+        section.html += fmt::format("<h3>{}</h3>\n", mission.mechanical ? "Flight and computing" : "Computing alone");
         const bool is_published = !mission.mechanical;  // the paper's Fig. 4 is without the flight
-        add_figure(section, qos_map_figure(*map, alike,
-                                           is_published ? published.soc_cells : std::vector<PublishedCell>{},
-                                           fmt::format("quality-{}", section.figures.size() + 1)));
+        add_figure(section,
+                   qos_map_figure(*map, alike, is_published ? published.soc_cells : std::vector<PublishedCell>{},
+                                  fmt::format("quality-{}", section.figures.size() + 1)));
     }
     return section;
 }
@@ -136,17 +133,17 @@ std::optional<double> gap_percent(const SimulatedMission& simulated) {
 }
 
 TextTable plans_table(Missions missions) {
-    TextTable table{{"mission", "schedule", "utility", "proven bound", "gap [%]", "final SoC [%]",
-                     "reserve [%]", "reserve kept"},
-                    {}};
+    TextTable table{
+        {"mission", "schedule", "utility", "proven bound", "gap [%]", "final SoC [%]", "reserve [%]", "reserve kept"},
+        {}};
     for (const auto& simulated : missions) {
         if (!simulated.planned) continue;
         const auto& summary = simulated.simulation.summary;
         const auto& planned = *simulated.planned;
         table.rows.push_back({simulated.title, to_string(summary.schedule), fixed(summary.utility, 4),
-                              planned.feasible ? fixed(planned.bound, 4) : "-",
-                              fixed(gap_percent(simulated), 4), fixed(summary.final_soc_percent, 4),
-                              fixed(summary.reserve_soc_percent, 4), summary.keeps_reserve ? "yes" : "no"});
+                              planned.feasible ? fixed(planned.bound, 4) : "-", fixed(gap_percent(simulated), 4),
+                              fixed(summary.final_soc_percent, 4), fixed(summary.reserve_soc_percent, 4),
+                              summary.keeps_reserve ? "yes" : "no"});
     }
     return table;
 }
@@ -156,19 +153,18 @@ TextTable running_table(const mission::Mission& mission) {
     for (const auto& running : running_times(mission)) {
         const auto& component = mission.compute.components[running.component];
         table.rows.push_back({fixed(running.start_s, 0), fixed(running.end_s, 0), component.name,
-                              describe_qos(component, running.qos),
-                              fixed(power_w(component.profile, running.qos), 2)});
+                              describe_qos(component, running.qos), fixed(power_w(component.profile, running.qos), 2)});
     }
     return table;
 }
 
 TextTable utility_table(std::vector<UtilityPoint> points) {
-    std::ranges::stable_sort(
-        points, [](const UtilityPoint& a, const UtilityPoint& b) { return a.utility > b.utility; });
+    std::ranges::stable_sort(points,
+                             [](const UtilityPoint& a, const UtilityPoint& b) { return a.utility > b.utility; });
     TextTable table{{"mission", "schedule", "utility", "final SoC [%]"}, {}};
     for (const auto& point : points) {
-        table.rows.push_back({point.mission, point.planned ? "planned" : "given", fixed(point.utility, 4),
-                              fixed(point.soc_percent, 4)});
+        table.rows.push_back(
+            {point.mission, point.planned ? "planned" : "given", fixed(point.utility, 4), fixed(point.soc_percent, 4)});
     }
     return table;
 }
@@ -195,8 +191,8 @@ void add_plan(Section& section, const SimulatedMission& planned, Missions missio
 
 Section plan_section(Missions missions) {
     Section section{"plan", "Plan"};
-    const bool any = std::ranges::any_of(
-        missions, [](const SimulatedMission& mission) { return mission.planned.has_value(); });
+    const bool any =
+        std::ranges::any_of(missions, [](const SimulatedMission& mission) { return mission.planned.has_value(); });
     if (!any) return section;
     section.html += paragraph(
         "Missions without a schedule of their own are planned: most utility of what keeps the reserve. The "

@@ -9,8 +9,7 @@
 
 namespace flightwatt::report {
 
-ReportModel model_of(const batch::BatchFit& fit,
-                     const std::optional<mechanical::MechanicalModel>& published) {
+ReportModel model_of(const batch::BatchFit& fit, const std::optional<mechanical::MechanicalModel>& published) {
     ReportModel model{fit.model, "Fitted by flightwatt batch to the flights above."};
     model.bands = fit.bands;
     model.table_one = cli::table_of(fit.model, published, mechanical::TableIntervals::present);
@@ -24,10 +23,8 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
     add_figure(section, model_figure(model.model, model.bands, published, id + "-curves"));
     if (model.table_one) {
         section.html += "<h3>Table I</h3>\n";
-        section.html +=
-            table_html(*model.table_one, {"Coefficients of the model as the paper's Table I", false, {}});
-        std::string legend =
-            "Coefficients in W. xi is the angular frequency on a time axis of 28 units a phase.";
+        section.html += table_html(*model.table_one, {"Coefficients of the model as the paper's Table I", false, {}});
+        std::string legend = "Coefficients in W. xi is the angular frequency on a time axis of 28 units a phase.";
         if (!model.bands[flight::Phase::cruise].time_s.empty()) {
             legend += " +- is half the 95 % interval of the mean of these flights.";
         }
@@ -43,14 +40,13 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
         "its durations alone; beside the constant mean power of each phase, the nearest flight's power, and, "
         "where it was measured, cruise power after the airspeed cubed.");
     add_figure(section, validation_figure(flights, "validation-errors"));
-    section.html +=
-        table_html(cli::scores_table(flights), {"Scores of the models on flights not fitted", true, {}});
+    section.html += table_html(cli::scores_table(flights), {"Scores of the models on flights not fitted", true, {}});
     constexpr std::size_t few = 20;
     if (flights.size() < few) {
-        section.html += paragraph(
-            fmt::format("Coverage over {} flights means little: each counts for {:.0f} points.",
-                        flights.size(), units::percent_of(1.0, static_cast<double>(flights.size()))),
-            "soft");
+        section.html +=
+            paragraph(fmt::format("Coverage over {} flights means little: each counts for {:.0f} points.",
+                                  flights.size(), units::percent_of(1.0, static_cast<double>(flights.size()))),
+                      "soft");
     }
     return section;
 }

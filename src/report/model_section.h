@@ -16,7 +16,7 @@ namespace flightwatt::report {
 /// A mechanical model and what is known of it.
 struct ReportModel {
     mechanical::MechanicalModel model;
-    std::string origin;  ///< "fitted to these flights", or the file it was read from
+    std::string origin;                                  ///< "fitted to these flights", or the file it was read from
     flight::PerPhase<mechanical::CurveBand> bands = {};  ///< without times: not known
     std::optional<TextTable> table_one = {};
 };

@@ -52,9 +52,7 @@ std::string opening_html(const PageHead& head, const std::vector<Section>& secti
 
 }  // namespace
 
-std::filesystem::path web_folder() {
-    return program_files("web", "FLIGHTWATT_WEB", "the report's web files");
-}
+std::filesystem::path web_folder() { return program_files("web", "FLIGHTWATT_WEB", "the report's web files"); }
 
 WebFiles read_web_files(const std::filesystem::path& folder) {
     WebFiles files;
@@ -76,13 +74,12 @@ WebFiles read_web_files(const std::filesystem::path& folder) {
 std::string page_html(const PageHead& head, const std::vector<Section>& sections, const WebFiles& web) {
     auto html = head_html(head, web) + "<body>\n" + opening_html(head, sections) + "<main>\n";
     for (const auto& section : sections) {
-        html +=
-            fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n",
-                        section.id, escaped(section.title));
+        html += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n",
+                            section.id, escaped(section.title));
         html += section.html + "</section>\n";
     }
-    html += "</main>\n<script type=\"application/json\" id=\"theme\">" +
-            script_json(VegaJson::parse(web.theme)) + "</script>\n";
+    html += "</main>\n<script type=\"application/json\" id=\"theme\">" + script_json(VegaJson::parse(web.theme)) +
+            "</script>\n";
     return html + inline_script(web.libraries) + inline_script(web.script) + "</body>\n</html>\n";
 }
 

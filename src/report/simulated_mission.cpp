@@ -63,8 +63,7 @@ std::string describe(const compute::ComputeModel& compute, const compute::Config
     for (const auto& running : run) {
         const auto& component = compute.components[running.component];
         text += (text.empty() ? "" : ", ") + component.name;
-        if (!running.qos.empty())
-            text += " " + compute::spell_qos(component.profile.parameters, running.qos, " ");
+        if (!running.qos.empty()) text += " " + compute::spell_qos(component.profile.parameters, running.qos, " ");
     }
     return text.empty() ? "nothing" : text;
 }

@@ -31,8 +31,8 @@ mechanical::FourierModel deviation_series(flight::Phase phase, const mechanical:
     return *std::move(series);
 }
 
-mechanical::PhaseModel deviated(flight::Phase phase, const mechanical::PhaseModel& model,
-                                const Deviation& deviation, double sign) {
+mechanical::PhaseModel deviated(flight::Phase phase, const mechanical::PhaseModel& model, const Deviation& deviation,
+                                double sign) {
     mechanical::PhaseModel flown = model;
     const auto difference = deviation_series(phase, model, deviation);
     flown.fourier.a0_w += sign * difference.a0_w;

@@ -58,9 +58,7 @@ std::string tenths(double value) { return ocaml_float(std::round(value * 10.0) /
 std::string hundredths(double value) { return ocaml_float(std::round(value * 100.0) / 100.0); }
 
 /// Counts up from 0 with every message, and begins anew at `count`.
-int turn_of(const Moment& m, double period_s, int count) {
-    return static_cast<int>(m.time_s / period_s) % count;
-}
+int turn_of(const Moment& m, double period_s, int count) { return static_cast<int>(m.time_s / period_s) % count; }
 int channel_of(const Moment& m) { return turn_of(m, 0.6, 12); }
 int waypoint_of(const Moment& m) { return turn_of(m, 1.2, 10); }
 
@@ -103,8 +101,7 @@ constexpr NamedValue named_values[] = {
     {"course_rad", [](const Moment& m) { return hundredths(m.state.course_rad); }},
     {"course_decideg", [](const Moment& m) { return whole(m.state.course_rad * 1800.0 / std::numbers::pi); }},
     {"speed_cm_per_s", [](const Moment& m) { return whole(m.state.ground_speed_m_per_s * 100.0); }},
-    {"airspeed",
-     [](const Moment& m) { return ocaml_float(m.state.airborne ? m.state.airspeed_m_per_s : 0.0); }},
+    {"airspeed", [](const Moment& m) { return ocaml_float(m.state.airborne ? m.state.airspeed_m_per_s : 0.0); }},
     {"wind_east", [](const Moment& m) { return hundredths(m.state.wind_east_m_per_s); }},
     {"wind_north", [](const Moment& m) { return hundredths(m.state.wind_north_m_per_s); }},
     {"week_ms", [](const Moment& m) { return whole(378000000.0 + m.time_s * 1000.0); }},
@@ -114,8 +111,7 @@ constexpr NamedValue named_values[] = {
     {"azimuth", [](const Moment& m) { return std::to_string(29 * channel_of(m)); }},
     {"waypoint", [](const Moment& m) { return std::to_string(waypoint_of(m)); }},
     {"waypoint_east", [](const Moment& m) { return ocaml_float(reference_east_m + 20.5 * waypoint_of(m)); }},
-    {"waypoint_north",
-     [](const Moment& m) { return ocaml_float(reference_north_m + 13.25 * waypoint_of(m)); }},
+    {"waypoint_north", [](const Moment& m) { return ocaml_float(reference_north_m + 13.25 * waypoint_of(m)); }},
     {"commands",
      [](const Moment& m) {
          return fmt::format("{:.0f},-240,1030", units::pprz_from_percent(m.state.throttle_percent));
@@ -135,8 +131,7 @@ struct MessageRow {
 
 constexpr MessageRow message_rows[] = {
     // What power and phases are read from.
-    {1.1, "ENERGY",
-     "throttle:uint8:% voltage:float:V current:float:A power:float:W charge:float:Ah energy:float:Wh",
+    {1.1, "ENERGY", "throttle:uint8:% voltage:float:V current:float:A power:float:W charge:float:Ah energy:float:Wh",
      "throttle_percent voltage_v current_a power_w charge_ah energy_wh"},
     {0.5, "ESTIMATOR", "z:float:m z_dot:float:m/s", "altitude_m climb_m_per_s"},
     {0.5, "NAVIGATION",
@@ -164,15 +159,13 @@ constexpr MessageRow message_rows[] = {
     {1.2, "WP_MOVED", "wp_id:uint8 utm_east:float:m utm_north:float:m alt:float:m utm_zone:uint8",
      "waypoint waypoint_east waypoint_north 105. 32"},
     {5.0, "COMMANDS", "values:int16[]:ticks", "commands"},
-    {10.0, "WIND_INFO",
-     "ac_id:uint8 flags:uint8 east:float:m/s north:float:m/s up:float:m/s airspeed:float:m/s",
+    {10.0, "WIND_INFO", "ac_id:uint8 flags:uint8 east:float:m/s north:float:m/s up:float:m/s airspeed:float:m/s",
      "7 5 wind_east wind_north 0. airspeed"},
     {2.0, "FBW_STATUS", "rc_status:uint8 frame_rate:uint8:Hz mode:uint8 vsupply:float:V current:float:A",
      "0 61 0 voltage_v current_a"},
     {5.1, "ALIVE", "md5sum:uint8[]", "104,72,204,189,120,93,193,159,136,145,150,137,96,217,124,229"},
     {5.0, "PONG", "", ""},
-    {7.1, "LOGGER_STATUS", "status:uint8 errno:uint8 used:uint32 logfile:char[]",
-     "1 0 logged_bytes log_file"},
+    {7.1, "LOGGER_STATUS", "status:uint8 errno:uint8 used:uint32 logfile:char[]", "1 0 logged_bytes log_file"},
 };
 
 std::vector<std::string> split(const std::string& text, char separator) {

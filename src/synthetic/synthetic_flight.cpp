@@ -27,17 +27,15 @@ constexpr double oscillation = 0.008;  // of the height, while the autopilot hol
 constexpr double oscillation_period_s = 47.0;
 
 /// Propeller power grows about with the cube of its speed.
-double throttle_for(double power_w) {
-    return 100.0 * std::cbrt(std::clamp(power_w / full_power_w, 0.0, 1.0));
-}
+double throttle_for(double power_w) { return 100.0 * std::cbrt(std::clamp(power_w / full_power_w, 0.0, 1.0)); }
 
 /// How far a dive takes the aircraft down at `time_s`, as a part of its height.
 double dive_depth(const SyntheticFlight& flight, double time_s) {
     for (const double start_s : flight.dives_s) {
         const double since_s = time_s - start_s;
         if (since_s < 0.0 || since_s > dive_down_s + dive_low_s + dive_up_s) continue;
-        return dive_part * std::min({since_s / dive_down_s, 1.0,
-                                     (dive_down_s + dive_low_s + dive_up_s - since_s) / dive_up_s});
+        return dive_part *
+               std::min({since_s / dive_down_s, 1.0, (dive_down_s + dive_low_s + dive_up_s - since_s) / dive_up_s});
     }
     return 0.0;
 }
@@ -82,8 +80,7 @@ std::optional<Motor> unusual_motor(const SyntheticFlight& flight, double time_s)
     for (const double start_s : flight.dives_s) {
         const double since_s = time_s - start_s;
         if (since_s >= 0.0 && since_s < dive_down_s) return off;
-        if (since_s >= dive_down_s && since_s < dive_down_s + dive_low_s + dive_up_s)
-            return Motor{full_power_w, 100.0};
+        if (since_s >= dive_down_s && since_s < dive_down_s + dive_low_s + dive_up_s) return Motor{full_power_w, 100.0};
     }
     const double landed_s = time_s - flight.end_s(flight::Phase::landing);
     if (flight.power_burst_after_landing && landed_s > 15.0 && landed_s < 18.0) return Motor{40.0, 0.0};
@@ -97,8 +94,7 @@ std::optional<Motor> unusual_motor(const SyntheticFlight& flight, double time_s)
 
 double power_w_at(const SyntheticFlight& flight, double time_s) {
     const double touchdown = flight.end_s(flight::Phase::landing);
-    if (time_s >= flight.motor_run_up_s && time_s < flight.motor_run_up_end_s())
-        return flight.motor_run_up_power_w;
+    if (time_s >= flight.motor_run_up_s && time_s < flight.motor_run_up_end_s()) return flight.motor_run_up_power_w;
     if (time_s < flight.lift_off_s - spool_up_s || time_s > touchdown + motor_off_after_s) return 0.0;
     const auto phase_power_w = [&](flight::Phase phase) {
         const double tau = (time_s - flight.start_s(phase)) / flight.duration_s[phase];
@@ -111,8 +107,7 @@ double power_w_at(const SyntheticFlight& flight, double time_s) {
     // Power does not jump: the cruise takes over from the climb, and the descent from the cruise.
     const double from_climb = std::clamp(1.0 - cruised_s / hand_over_s, 0.0, 1.0);
     const double to_landing = std::clamp(1.0 - to_descent_s / hand_over_s, 0.0, 1.0);
-    return from_climb * phase_power_w(flight::Phase::takeoff) +
-           to_landing * phase_power_w(flight::Phase::landing) +
+    return from_climb * phase_power_w(flight::Phase::takeoff) + to_landing * phase_power_w(flight::Phase::landing) +
            (1.0 - from_climb - to_landing) * phase_power_w(flight::Phase::cruise);
 }
 
@@ -132,8 +127,8 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     constexpr double half_step_s = 0.05;
     const double height = height_m(flight, time_s);
     state.altitude_m = flight.ground_altitude_m + height;
-    state.climb_m_per_s = (height_m(flight, time_s + half_step_s) - height_m(flight, time_s - half_step_s)) /
-                          (2.0 * half_step_s);
+    state.climb_m_per_s =
+        (height_m(flight, time_s + half_step_s) - height_m(flight, time_s - half_step_s)) / (2.0 * half_step_s);
     const double usual_w = power_w_at(flight, time_s);
     const auto motor = unusual_motor(flight, time_s).value_or(Motor{usual_w, throttle_for(usual_w)});
     state.power_w = motor.power_w;
@@ -149,8 +144,7 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     const double angle = flown_s * flight.airspeed_m_per_s / flight.circle_radius_m;
     state.east_m = flight.circle_radius_m * std::sin(angle);
     state.north_m = flight.circle_radius_m * (1.0 - std::cos(angle));
-    state.course_rad =
-        std::fmod(0.5 * std::numbers::pi - angle + 2000.0 * std::numbers::pi, 2.0 * std::numbers::pi);
+    state.course_rad = std::fmod(0.5 * std::numbers::pi - angle + 2000.0 * std::numbers::pi, 2.0 * std::numbers::pi);
     if (state.airborne) {
         state.ground_speed_m_per_s =
             std::hypot(flight.airspeed_m_per_s * std::sin(state.course_rad) + flight.wind_east_m_per_s,
@@ -172,9 +166,7 @@ SyntheticState state_at(const SyntheticFlight& flight, double time_s) {
     return state;
 }
 
-SyntheticScenario plain_scenario(const SyntheticFlight& flight) {
-    return {{flight}, 8.0, flight.log_end_s()};
-}
+SyntheticScenario plain_scenario(const SyntheticFlight& flight) { return {{flight}, 8.0, flight.log_end_s()}; }
 
 const std::vector<std::pair<std::string, Hazard>>& hazards() {
     static const std::vector<std::pair<std::string, Hazard>> all{

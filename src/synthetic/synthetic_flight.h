@@ -22,8 +22,8 @@ struct SyntheticFlight {
     double airspeed_m_per_s = 13.0;
     double wind_east_m_per_s = 2.0;
     double wind_north_m_per_s = -1.0;
-    std::vector<double> dives_s;   ///< in cruise: down to a third of the height and up again
-    double estimator_fix_s = 0.0;  ///< until then the estimator reads 0, then it climbs to the truth
+    std::vector<double> dives_s;                   ///< in cruise: down to a third of the height and up again
+    double estimator_fix_s = 0.0;                  ///< until then the estimator reads 0, then it climbs to the truth
     bool power_burst_after_landing = false;        ///< without throttle
     bool throttle_burst_before_touchdown = false;  ///< at the end of a glide with the motor off
     /// Power [W] of a phase at tau in [0, 1] of it.

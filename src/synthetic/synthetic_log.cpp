@@ -30,17 +30,16 @@ double current_of_power_a(double power_w, double rest_v, double resistance_ohm) 
 /// Sensors and counters, stepped through the flight.
 class Simulation {
   public:
-    Simulation(const SyntheticSensors& sensors, std::mt19937_64& random)
-        : sensors_(sensors), random_(random) {}
+    Simulation(const SyntheticSensors& sensors, std::mt19937_64& random) : sensors_(sensors), random_(random) {}
 
     Moment step(const SyntheticFlight& flight, double time_s) {
         Moment moment;
         moment.time_s = time_s;
         moment.state = state_at(flight, time_s);
         const double rest_v = rest_voltage_v(charge_ah_, sensors_.pack_capacity_ah);
-        const double current_a = moment.state.power_w > 0.0 ? current_of_power_a(moment.state.power_w, rest_v,
-                                                                                 sensors_.pack_resistance_ohm)
-                                                            : sensors_.idle_current_a;
+        const double current_a = moment.state.power_w > 0.0
+                                     ? current_of_power_a(moment.state.power_w, rest_v, sensors_.pack_resistance_ohm)
+                                     : sensors_.idle_current_a;
         moment.voltage_v = rest_v - sensors_.pack_resistance_ohm * current_a;
         // Reported is the charge that the voltage follows from: what has been drawn until now.
         moment.charge_ah = charge_ah_;
@@ -65,8 +64,7 @@ class Simulation {
 /// A link that loses single lines and, while the aircraft cruises far off, now and then all for some seconds.
 class LossyLink {
   public:
-    LossyLink(double lost_fraction, std::mt19937_64& random)
-        : lost_fraction_(lost_fraction), random_(random) {
+    LossyLink(double lost_fraction, std::mt19937_64& random) : lost_fraction_(lost_fraction), random_(random) {
         next_burst_s_ = mean_pause_s() * exponential_(random_);
     }
 
@@ -90,8 +88,8 @@ class LossyLink {
     double burst_end_s_ = 0.0;
 };
 
-std::string log_document(const SyntheticFlight& flight, const std::vector<Report>& reports,
-                         const std::string& name, const std::string& made_by) {
+std::string log_document(const SyntheticFlight& flight, const std::vector<Report>& reports, const std::string& name,
+                         const std::string& made_by) {
     LogDocument document;
     document.comment = fmt::format(" SYNTHETIC: no aircraft flew this. {} ", made_by);
     document.time_of_day_s = 1577872800.0;
@@ -149,8 +147,8 @@ SyntheticLog make_synthetic_log(const SyntheticScenario& scenario, const Synthet
         if (!takeoff_sent && moment.state.airborne) {
             const bool logged = time_s >= scenario.begin_s;
             if (logged)
-                log.data += data_line(time_s, aircraft_id, "TAKEOFF",
-                                      {fmt::format("{:.0f}", time_s - scenario.begin_s)});
+                log.data +=
+                    data_line(time_s, aircraft_id, "TAKEOFF", {fmt::format("{:.0f}", time_s - scenario.begin_s)});
             takeoff_sent = true;
         }
         const bool far_off = time_s > flight.start_s(flight::Phase::cruise) + 10.0 &&

@@ -31,9 +31,8 @@ std::size_t line_of(std::string_view text, std::size_t offset) {
 MessageDefinition read_message(const pugi::xml_node& node) {
     MessageDefinition message{attribute(node, "name"), {}, ".log"};
     for (const auto& field : node.children("field")) {
-        message.fields.push_back({attribute(field, "name"), attribute(field, "type"),
-                                  attribute(field, "unit"), attribute(field, "alt_unit"),
-                                  parse_number(attribute(field, "alt_unit_coef"))});
+        message.fields.push_back({attribute(field, "name"), attribute(field, "type"), attribute(field, "unit"),
+                                  attribute(field, "alt_unit"), parse_number(attribute(field, "alt_unit_coef"))});
     }
     return message;
 }
@@ -80,8 +79,7 @@ void for_each_tag(std::string_view text, std::string_view name, Use&& use) {
     const std::string opening = fmt::format("<{}", name);
     for (auto at = text.find(opening); at != std::string_view::npos; at = text.find(opening, at + 1)) {
         const auto after = at + opening.size();
-        if (after >= text.size() || (text[after] != ' ' && text[after] != '\t' && text[after] != '\n'))
-            continue;
+        if (after >= text.size() || (text[after] != ' ' && text[after] != '\t' && text[after] != '\n')) continue;
         const auto end = tag_end(text, at);
         if (end == std::string_view::npos) return;
         std::string tag(text.substr(at, end - at));
@@ -97,8 +95,7 @@ AircraftConfiguration read_aircraft(std::string_view text, const pugi::xml_node&
     aircraft.id = attribute(node, "ac_id");
     aircraft.name = attribute(node, "name");
     for_each_tag(text, "flight_plan", [&](const pugi::xml_node& plan) {
-        if (!aircraft.ground_altitude_m)
-            aircraft.ground_altitude_m = parse_number(attribute(plan, "ground_alt"));
+        if (!aircraft.ground_altitude_m) aircraft.ground_altitude_m = parse_number(attribute(plan, "ground_alt"));
     });
     int position = 0;
     for_each_tag(text, "block", [&](const pugi::xml_node& block) {
@@ -110,8 +107,7 @@ AircraftConfiguration read_aircraft(std::string_view text, const pugi::xml_node&
         const auto name = attribute(define, "name");
         if (name.starts_with("MilliAmpereOfAdc")) {
             aircraft.current_origin = CurrentOrigin::sensor;
-        } else if (name.starts_with("MILLIAMP_AT_FULL_THROTTLE") &&
-                   aircraft.current_origin == CurrentOrigin::unknown) {
+        } else if (name.starts_with("MILLIAMP_AT_FULL_THROTTLE") && aircraft.current_origin == CurrentOrigin::unknown) {
             aircraft.current_origin = CurrentOrigin::throttle;
         }
     });

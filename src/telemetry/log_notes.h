@@ -11,7 +11,7 @@ namespace flightwatt::telemetry {
 /// Where the autopilot's current came from.
 enum class CurrentOrigin {
     unknown,
-    sensor,  ///< the airframe converts an ADC reading: MilliAmpereOfAdc
+    sensor,    ///< the airframe converts an ADC reading: MilliAmpereOfAdc
     throttle,  ///< computed from it (MILLIAMP_AT_FULL_THROTTLE alone): a power model fitted to it is circular
 };
 

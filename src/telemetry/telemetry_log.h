@@ -59,13 +59,11 @@ struct TelemetryLog {
 /// Reads the wanted messages of a Paparazzi .data text; only these are parsed. `data_file` is named in errors,
 /// `configuration` is what its .log says. Throws InputError for a text that holds no telemetry line.
 TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                            std::optional<LogConfiguration> configuration,
-                            const std::vector<MessageRequest>& wanted);
+                            std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
 
 /// The same for any text, which need not hold telemetry.
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                             std::optional<LogConfiguration> configuration,
-                             const std::vector<MessageRequest>& wanted);
+                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
 
 /// Names of the messages in a .data text, with their counts, most frequent first: for explaining what a log
 /// holds when it lacks what is wanted.

@@ -58,9 +58,8 @@ TEST(CsvWriter, WritesNumbersTextsAndWhatIsAbsent) {
     CsvWriter csv({"time_s", "phase", "count", "used", "current_a"});
     csv.add(0.1, "a, b", std::size_t{3}, true, std::optional<double>());
     csv.add(1.0 / 3.0, std::string("cruise"), -1, false, std::optional<double>(2.5));
-    EXPECT_EQ(
-        csv.text(),
-        "time_s,phase,count,used,current_a\n0.1,\"a, b\",3,true,\n0.3333333333333333,cruise,-1,false,2.5\n");
+    EXPECT_EQ(csv.text(),
+              "time_s,phase,count,used,current_a\n0.1,\"a, b\",3,true,\n0.3333333333333333,cruise,-1,false,2.5\n");
 }
 
 TEST(CsvWriter, RoundsToTheDigitsAskedFor) {

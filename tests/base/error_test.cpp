@@ -25,8 +25,7 @@ TEST(InputError, HoldsPlaceMessageAndHint) {
 /// Each has an exit code of its own: catching one must not catch another.
 TEST(Errors, AreNotOfOneAnother) {
     EXPECT_FALSE((std::is_base_of_v<InputError, UsageError> || std::is_base_of_v<UsageError, InputError>));
-    EXPECT_FALSE(
-        (std::is_base_of_v<InputError, NoAnswerError> || std::is_base_of_v<NoAnswerError, InputError>));
+    EXPECT_FALSE((std::is_base_of_v<InputError, NoAnswerError> || std::is_base_of_v<NoAnswerError, InputError>));
     EXPECT_FALSE((std::is_base_of_v<OutputError, InputError> || std::is_base_of_v<InputError, OutputError>));
 }
 

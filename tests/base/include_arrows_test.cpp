@@ -100,8 +100,7 @@ TEST(IncludeArrows, PointOnlyWhereTheLayoutAllows) {
 TEST(IncludeArrows, HeadersInSubFoldersArePrivateToTheirModule) {
     for (const auto* folder : {"src", "tools", "tests"}) {
         for (const auto& [file, line, target] : include_lines(folder)) {
-            if (!std::filesystem::exists(test::source_dir() / "src" / target) || !is_private(target))
-                continue;
+            if (!std::filesystem::exists(test::source_dir() / "src" / target) || !is_private(target)) continue;
             const auto place = below(file, folder);
             const auto first = place.begin()->string();
             if (folder == std::string("tests") && (first == "helpers" || first == "bench")) continue;

@@ -21,8 +21,8 @@ TEST(ParseNumber, ReadsWhatPaparazziWrites) {
 }
 
 TEST(ParseNumber, RefusesWhatIsNoWholeFiniteNumber) {
-    for (const auto* text : {"", " ", "12,5", "12.5x", "nan", "inf", "-", ".", "1e", "1 ", " 1", "0x10",
-                             "--1", "1.2.3", "1e999"}) {
+    for (const auto* text :
+         {"", " ", "12,5", "12.5x", "nan", "inf", "-", ".", "1e", "1 ", " 1", "0x10", "--1", "1.2.3", "1e999"}) {
         EXPECT_FALSE(parse_number(text).has_value()) << "'" << text << "'";
         EXPECT_TRUE(std::isnan(number_or_nan(text))) << "'" << text << "'";
     }
@@ -34,9 +34,8 @@ TEST(ParseNumber, IsCorrectlyRoundedOnBothPaths) {
     std::uniform_int_distribution<int> decimals(0, 17);
     for (int i = 0; i < 20000; ++i) {
         char text[64];
-        const auto end = std::to_chars(text, text + sizeof text, mantissa(random), std::chars_format::fixed,
-                                       decimals(random))
-                             .ptr;
+        const auto end =
+            std::to_chars(text, text + sizeof text, mantissa(random), std::chars_format::fixed, decimals(random)).ptr;
         double expected = 0.0;
         std::from_chars(text, end, expected);
         const auto parsed = parse_number({text, static_cast<std::size_t>(end - text)});

@@ -12,8 +12,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 TEST(TomlReader, ReadsTypedValuesInTheOrderOfTheFile) {
-    const auto root =
-        parse_toml("b = 2\na = 1.5\nname = \"x\"\nlist = [1, 2.5]\n[t]\nflag = true\n", "m.toml");
+    const auto root = parse_toml("b = 2\na = 1.5\nname = \"x\"\nlist = [1, 2.5]\n[t]\nflag = true\n", "m.toml");
     EXPECT_EQ(root.number("b"), 2.0);
     EXPECT_EQ(root.number("a"), 1.5);
     EXPECT_EQ(root.string("name"), "x");
@@ -24,8 +23,8 @@ TEST(TomlReader, ReadsTypedValuesInTheOrderOfTheFile) {
 }
 
 template <typename Use>
-void expect_error(const std::string& text, std::size_t line, const std::string& message,
-                  const std::string& hint, Use&& use) {
+void expect_error(const std::string& text, std::size_t line, const std::string& message, const std::string& hint,
+                  Use&& use) {
     try {
         use(parse_toml(text, "m.toml"));
         FAIL() << "accepted: " << text;
@@ -52,8 +51,8 @@ TEST(TomlReader, RefusesWithFileAndLine) {
 
 TEST(TomlText, ReadsBackExactly) {
     const std::string odd = "quote \" backslash \\ tab \t end";
-    const auto root = parse_toml("s = " + toml_string(odd) + "\nx = " + toml_real(0.1) +
-                                     "\ny = " + toml_real(28.0) + "\nz = " + toml_reals({1.0, 1e-300}),
+    const auto root = parse_toml("s = " + toml_string(odd) + "\nx = " + toml_real(0.1) + "\ny = " + toml_real(28.0) +
+                                     "\nz = " + toml_reals({1.0, 1e-300}),
                                  "m.toml");
     EXPECT_EQ(root.string("s"), odd);
     EXPECT_EQ(root.number("x"), 0.1);

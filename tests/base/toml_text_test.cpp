@@ -18,8 +18,7 @@ TEST(TomlString, EscapesWhatAReaderWouldTakeForSomethingElse) {
 }
 
 TEST(TomlString, IsReadBack) {
-    for (const std::string text :
-         {"", "caf\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x9A\x81", "tab\tline\n\"quoted\" \\"}) {
+    for (const std::string text : {"", "caf\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x9A\x81", "tab\tline\n\"quoted\" \\"}) {
         EXPECT_EQ(read_back(toml_string(text))["value"].value<std::string>(), text);
     }
 }
@@ -40,8 +39,8 @@ TEST(TomlReal, IsTheShortestTextOfTheSameDouble) {
     EXPECT_EQ(toml_real(-0.0), "-0.0");
     EXPECT_EQ(toml_reals({}), "[]");
     EXPECT_EQ(toml_reals({1.0, 0.25}), "[1.0, 0.25]");
-    for (const double value : {0.1, 1e300, 1e-300, 1.0 / 3.0, 9.9000000000000004, 1e22,
-                               std::numeric_limits<double>::denorm_min()}) {
+    for (const double value :
+         {0.1, 1e300, 1e-300, 1.0 / 3.0, 9.9000000000000004, 1e22, std::numeric_limits<double>::denorm_min()}) {
         const auto read = read_back(toml_real(value));
         ASSERT_TRUE(read["value"].is_floating_point()) << toml_real(value);
         EXPECT_EQ(read["value"].value<double>(), value);

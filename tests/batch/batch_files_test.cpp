@@ -20,8 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-void write_record(const std::filesystem::path& out, const std::string& flight,
-                  const std::filesystem::path& log) {
+void write_record(const std::filesystem::path& out, const std::string& flight, const std::filesystem::path& log) {
     FlightRecord record;
     record.flight = flight;
     record.log = log.string();
@@ -48,10 +47,9 @@ TEST(LeftOvers, SayWhyAFlightIsDropped) {
     write_record(out, "moved_2", "moved.data");
     write_file_atomically(out / "flights" / (std::string("damaged") + record_ending), "{");
     const std::vector<LogFile> logs{{"here.data", "here"}, {"moved.data", "moved"}};
-    EXPECT_THAT(words(find_dropped(logs, out)),
-                ElementsAre("damaged, its log is gone", "gone, its log is gone",
-                            "kept, its log " + kept.string() + " is not in this batch",
-                            "moved_2, it is called moved now"));
+    EXPECT_THAT(words(find_dropped(logs, out)), ElementsAre("damaged, its log is gone", "gone, its log is gone",
+                                                            "kept, its log " + kept.string() + " is not in this batch",
+                                                            "moved_2, it is called moved now"));
     remove_left_overs(logs, out);
     EXPECT_THAT(find_dropped(logs, out), IsEmpty());
     EXPECT_TRUE(std::filesystem::exists(out / "flights" / "here.record.json"));
@@ -71,8 +69,8 @@ TEST(LeftOvers, AreRemovedFromTheOutputFolderToo) {
     remove_left_overs({{"a.data", "a"}}, out);
     std::vector<std::string> left;
     for (const auto& [name, content] : test::contents(out)) left.push_back(name);
-    EXPECT_THAT(left, ElementsAre("flights.csv", "flights.csv.backup", "model.toml", "model.toml.Ab3-Ef",
-                                  "notes.txt.Ab3dEf"));
+    EXPECT_THAT(
+        left, ElementsAre("flights.csv", "flights.csv.backup", "model.toml", "model.toml.Ab3-Ef", "notes.txt.Ab3dEf"));
 }
 
 TEST(StoredFlights, AreWhatTheBatchLeft) {
@@ -92,8 +90,7 @@ TEST(StoredFlights, AreWhatTheBatchLeft) {
     EXPECT_THAT(stored[1].record.verdicts[0].text, HasSubstr("agrees with TAKEOFF"));
     const auto files = test::contents(scratch / "out");
     EXPECT_EQ(to_csv(stored[1].series), files.at("flights/opterra_synthetic_01.series.csv"));
-    EXPECT_EQ(phases_csv(stored[1].series, stored[1].phases),
-              files.at("flights/opterra_synthetic_01.phases.csv"));
+    EXPECT_EQ(phases_csv(stored[1].series, stored[1].phases), files.at("flights/opterra_synthetic_01.phases.csv"));
 }
 
 TEST(StoredFlights, RefuseWhatIsNoBatchFolder) {
@@ -102,8 +99,7 @@ TEST(StoredFlights, RefuseWhatIsNoBatchFolder) {
     make_directories(scratch / "flights");
     EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no record of a flight"));
     test::write_text(scratch / "flights" / "a.record.json", "{}");
-    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }),
-                HasSubstr("run flightwatt batch again"));
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("run flightwatt batch again"));
 }
 
 }  // namespace

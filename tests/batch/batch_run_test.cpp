@@ -60,12 +60,11 @@ TEST_F(BatchOfTwo, WritesThreeFilesAFlight) {
         names.push_back(name);
         EXPECT_FALSE(content.empty()) << name;
     }
-    EXPECT_THAT(names, UnorderedElementsAre("flights.csv", "flights/opterra_synthetic_01.phases.csv",
-                                            "flights/opterra_synthetic_01.record.json",
-                                            "flights/opterra_synthetic_01.series.csv",
-                                            "flights/opterra_synthetic_02.phases.csv",
-                                            "flights/opterra_synthetic_02.record.json",
-                                            "flights/opterra_synthetic_02.series.csv"));
+    EXPECT_THAT(
+        names, UnorderedElementsAre(
+                   "flights.csv", "flights/opterra_synthetic_01.phases.csv", "flights/opterra_synthetic_01.record.json",
+                   "flights/opterra_synthetic_01.series.csv", "flights/opterra_synthetic_02.phases.csv",
+                   "flights/opterra_synthetic_02.record.json", "flights/opterra_synthetic_02.series.csv"));
 }
 
 TEST_F(BatchOfTwo, DoesNothingTwice) { expect_redone({}); }
@@ -98,8 +97,8 @@ TEST_F(BatchOfTwo, GoesOnWhereAKilledOneStopped) {
 }
 
 TEST_F(BatchOfTwo, DoesDamagedResultsAgain) {
-    for (const auto* file : {"opterra_synthetic_01.series.csv", "opterra_synthetic_01.phases.csv",
-                             "opterra_synthetic_01.record.json"}) {
+    for (const auto* file :
+         {"opterra_synthetic_01.series.csv", "opterra_synthetic_01.phases.csv", "opterra_synthetic_01.record.json"}) {
         std::filesystem::resize_file(flights / file, std::filesystem::file_size(flights / file) / 2);
         expect_redone({one});
         write_text(flights / file, "");

@@ -25,8 +25,7 @@ BatchFlight two_sorties() {
     flight.record.accepted = true;
     flight.record.aircraft_id = "7";
     flight.record.power_source = "ENERGY.power";
-    flight.record.phases = {phase(1, flight::Phase::takeoff, 10, 30),
-                            phase(2, flight::Phase::cruise, 100, 400),
+    flight.record.phases = {phase(1, flight::Phase::takeoff, 10, 30), phase(2, flight::Phase::cruise, 100, 400),
                             phase(2, flight::Phase::landing, 400, 450)};
     flight.record.phases[2].complete = false;
     flight.record.phases[2].statistics.counter_energy_wh.reset();
@@ -50,9 +49,8 @@ BatchFlight rejected_flight() {
 TEST(Catalogue, HasARowAPhaseAndARejectedLog) {
     const auto table = parse_csv(catalogue_csv({two_sorties(), rejected_flight()}), "flights.csv");
     const std::vector<std::string> first(table.columns.begin(), table.columns.begin() + 11);
-    EXPECT_THAT(first,
-                testing::ElementsAre("flight", "sortie", "phase", "start_s", "end_s", "duration_s", "samples",
-                                     "mean_power_w", "energy_wh", "counter_energy_wh", "used"));
+    EXPECT_THAT(first, testing::ElementsAre("flight", "sortie", "phase", "start_s", "end_s", "duration_s", "samples",
+                                            "mean_power_w", "energy_wh", "counter_energy_wh", "used"));
     ASSERT_EQ(table.rows.size(), 4U);
     const auto cell = [&](std::size_t row, const char* column) {
         return table.rows[row].cells[column_index(table, column)].text;
@@ -78,11 +76,11 @@ TEST(FlightsTable, HasARowASortie) {
     const auto table = flights_table({two_sorties(), rejected_flight()});
     ASSERT_EQ(table.rows.size(), 3U);
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
-    EXPECT_THAT(table.rows[0], testing::ElementsAre("twice, \"up\"", "1", "20", "-", "-", "25.0", "-", "-",
-                                                    "0.500", "0.250", "10", "0", "0.0", "0", "1 of 3"));
+    EXPECT_THAT(table.rows[0], testing::ElementsAre("twice, \"up\"", "1", "20", "-", "-", "25.0", "-", "-", "0.500",
+                                                    "0.250", "10", "0", "0.0", "0", "1 of 3"));
     // An asterisk: the log ends in the landing. Its counter is not known, so neither is the sortie's.
-    EXPECT_THAT(table.rows[1], testing::ElementsAre("twice, \"up\"", "2", "-", "300", "50*", "-", "25.0",
-                                                    "25.0", "1.000", "-", "20", "0", "0.0", "0", "1 of 3"));
+    EXPECT_THAT(table.rows[1], testing::ElementsAre("twice, \"up\"", "2", "-", "300", "50*", "-", "25.0", "25.0",
+                                                    "1.000", "-", "20", "0", "0.0", "0", "1 of 3"));
     EXPECT_EQ(table.rows[2][0], "bad");
     EXPECT_EQ(table.rows[2][2], "-");
 }

@@ -40,8 +40,7 @@ class KilledBatch : public testing::Test {
 
     /// Starts `flightwatt-batch in -o OUT --jobs JOBS`; what it says goes to the file stderr.
     ::pid_t start(const std::string& out, unsigned jobs) {
-        return test::start_program("flightwatt-batch", {"in", "-o", out, "--jobs", std::to_string(jobs)},
-                                   folder);
+        return test::start_program("flightwatt-batch", {"in", "-o", out, "--jobs", std::to_string(jobs)}, folder);
     }
 
     std::map<std::string, std::string> left_alone(unsigned jobs) {
@@ -95,9 +94,8 @@ TEST_F(KilledBatch, GoesOnAfterCtrlC) {
     ASSERT_TRUE(WIFEXITED(status));
     ASSERT_EQ(WEXITSTATUS(status), 130);
     EXPECT_THAT(read_file(folder / "stderr"),
-                testing::ContainsRegex(
-                    "flightwatt-batch: stopped by SIGINT after [0-9]+ of 12 logs; the same command "
-                    "goes on from there\n$"));
+                testing::ContainsRegex("flightwatt-batch: stopped by SIGINT after [0-9]+ of 12 logs; the same command "
+                                       "goes on from there\n$"));
     for (const auto& [name, content] : contents(folder / "out")) {
         ASSERT_TRUE(whole.contains(name)) << name;  // nothing half-written
         EXPECT_EQ(content, whole.at(name)) << name;

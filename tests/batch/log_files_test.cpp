@@ -51,9 +51,9 @@ TEST(FindLogs, TakesALogOnceHoweverItIsWritten) {
     const auto folder = test::scratch_dir();
     const auto log = touch(folder / "logs" / "a.data");
     std::filesystem::create_directory_symlink(folder / "logs", folder / "link");
-    const auto logs = find_logs({log.string(), (folder / "logs").string(), log.string(),
-                                 (folder / "logs" / ".." / "logs").string(), (folder / "link").string(),
-                                 std::filesystem::relative(log).string()});
+    const auto logs =
+        find_logs({log.string(), (folder / "logs").string(), log.string(), (folder / "logs" / ".." / "logs").string(),
+                   (folder / "link").string(), std::filesystem::relative(log).string()});
     EXPECT_THAT(names(logs), ElementsAre("a"));
 }
 
@@ -62,8 +62,7 @@ TEST(FindLogs, GivesEachLogANameOfItsOwn) {
     for (const auto* name : {"1/x.data", "2/x.data", "3/x.data", "4/x_2.data", "5/.data", "6/.data"}) {
         touch(folder / name);
     }
-    EXPECT_THAT(names(find_logs({folder.string()})),
-                ElementsAre("x", "x_2", "x_3", "x_2_2", "unnamed", "unnamed_2"));
+    EXPECT_THAT(names(find_logs({folder.string()})), ElementsAre("x", "x_2", "x_3", "x_2_2", "unnamed", "unnamed_2"));
 }
 
 TEST(FindLogs, KeepsLinksToNowhereToBeReported) {
@@ -88,8 +87,7 @@ TEST(FindLogs, RefusesWhatIsNotThere) {
               "b.data: does not exist; expected a .data log or a folder of them");
     EXPECT_EQ(rejected([&] { find_logs({(folder / std::string(300, 'x')).string()}); }, folder),
               std::string(300, 'x') + ": File name too long; expected a .data log or a folder of them");
-    EXPECT_EQ(rejected([&] { find_logs({""}); }),
-              "'': does not exist; expected a .data log or a folder of them");
+    EXPECT_EQ(rejected([&] { find_logs({""}); }), "'': does not exist; expected a .data log or a folder of them");
 }
 
 TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {
@@ -107,8 +105,7 @@ TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {
     EXPECT_THAT(reasons({folder.string()}), ElementsAre("", reason, reason));
     EXPECT_THAT(reasons({folder.string() + "/"}), ElementsAre("", reason, reason));
     EXPECT_THAT(reasons({(folder / "odd").string()}), ElementsAre("", "")) << "asked for by name";
-    EXPECT_THAT(reasons({folder.string(), (folder / "odd" / "b.data").string()}),
-                ElementsAre("", "", reason));
+    EXPECT_THAT(reasons({folder.string(), (folder / "odd" / "b.data").string()}), ElementsAre("", "", reason));
     write_text(folder / "odd" / "not-fitted.txt", "\n");
     EXPECT_THAT(rejected([&] { find_logs({folder.string()}); }), testing::HasSubstr("not-fitted.txt:1"));
 }

@@ -116,8 +116,7 @@ TEST(SampleLogs, AreTheSameCompressed) {
         EXPECT_EQ(series.flight, "opterra_synthetic_03");
         EXPECT_EQ(warnings_of(series), warnings_of(plain));
         EXPECT_EQ(to_csv(series), to_csv(plain)) << ending;
-        EXPECT_EQ(flight::phases_csv(series, flight::segment(series)), phases_csv(plain, segment(plain)))
-            << ending;
+        EXPECT_EQ(flight::phases_csv(series, flight::segment(series)), phases_csv(plain, segment(plain))) << ending;
     }
 }
 
@@ -137,8 +136,7 @@ TEST(SampleLogs, OfSeveralAircraftAskWhich) {
               "opterra_synthetic_01.data: several aircraft flew: 7, 8; choose one with --aircraft ID");
     const auto seventh = flight::read_flight(both, "7");
     const auto alone = flight::read_flight(test::sample(1));
-    EXPECT_EQ(flight::phases_csv(seventh, flight::segment(seventh)),
-              flight::phases_csv(alone, flight::segment(alone)));
+    EXPECT_EQ(flight::phases_csv(seventh, flight::segment(seventh)), flight::phases_csv(alone, flight::segment(alone)));
     EXPECT_EQ(flight::power_track(flight::read_flight(both, "8")).value,
               flight::power_track(flight::read_flight(test::sample(2))).value);
 }
@@ -196,8 +194,7 @@ TEST(RealFlights, ConvergeToAModel) {
             for (const auto& recorded : flight.record.phases) {
                 if (recorded.phase != phase) continue;
                 measured_w += weight_of(model, flight.record.flight, phase) *
-                              units::joule_from_wh(recorded.statistics.energy_wh) /
-                              (recorded.end_s - recorded.start_s);
+                              units::joule_from_wh(recorded.statistics.energy_wh) / (recorded.end_s - recorded.start_s);
             }
         }
         const double fitted_w = energy_j(fitted.fourier, fitted.duration_s) / fitted.duration_s;

@@ -162,8 +162,8 @@ TEST(FolderLock, KeepsASecondRunOut) {
         const FolderLock second(folder);
         ADD_FAILURE() << "two at once";
     } catch (const OutputError& error) {
-        EXPECT_EQ(std::string(error.what()), "another run is writing into " + folder.string() +
-                                                 "; wait for it, or choose another folder");
+        EXPECT_EQ(std::string(error.what()),
+                  "another run is writing into " + folder.string() + "; wait for it, or choose another folder");
     }
     first.reset();
     EXPECT_NO_THROW(FolderLock{folder});
@@ -178,9 +178,7 @@ TEST(FolderLock, HoldsOneFolderOnly) {
     EXPECT_NO_THROW(FolderLock{folder / "b"});
 }
 
-TEST(FolderLock, FailsWhereThereIsNoFolder) {
-    EXPECT_THROW(FolderLock{test::scratch_dir() / "missing"}, OutputError);
-}
+TEST(FolderLock, FailsWhereThereIsNoFolder) { EXPECT_THROW(FolderLock{test::scratch_dir() / "missing"}, OutputError); }
 
 }  // namespace
 }  // namespace flightwatt::batch

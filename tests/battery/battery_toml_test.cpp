@@ -46,8 +46,7 @@ TEST(BatteryToml, RefusesWhatIsNoBattery) {
         text.replace(text.find(from), from.size(), to);
         return rejected([&] { battery_from(parse_toml(text, "b.toml")); });
     };
-    EXPECT_EQ(of("thevenin", "rint"),
-              "b.toml:2:1: there is no battery model 'rint'; it is \"paper\" or \"thevenin\"");
+    EXPECT_EQ(of("thevenin", "rint"), "b.toml:2:1: there is no battery model 'rint'; it is \"paper\" or \"thevenin\"");
     EXPECT_EQ(of("[0.0, 50.0, 100.0]", "[0.0, 50.0, 99.0]"),
               "b.toml:9:1: soc_percent does not rise from 0 to 100; expected [0, ..., 100]");
     EXPECT_EQ(of("[10.0, 11.4, 12.5]", "[10.0, 12.5]"),
@@ -73,9 +72,7 @@ TEST(BatteryToml, ReadsThePaperBattery) {
 }
 
 TEST(BatteryToml, RefusesWhatIsNoPaperBattery) {
-    const auto of = [](const std::string& text) {
-        return rejected([&] { battery_from(parse_toml(text, "b.toml")); });
-    };
+    const auto of = [](const std::string& text) { return rejected([&] { battery_from(parse_toml(text, "b.toml")); }); };
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\n"), "");
     EXPECT_EQ(of("voltage_v = 0\nresistance_ohm = 0\ncapacity_ah = 1\n"),
               "b.toml:1:1: voltage_v = 0, expected more than 0 and at most 1000000");
@@ -93,8 +90,7 @@ TEST(BatteryToml, RefusesWhatIsNoPaperBattery) {
 TEST(BatteryToml, HasAFormatThatIsKnown) {
     const auto folder = test::scratch_dir();
     const auto path = test::write_text(folder / "b.toml", "format = 2\nvoltage_v = 10\n");
-    EXPECT_NE(rejected([&] { read_battery(path); }, folder).find("b.toml:1:1: format = 2 is newer"),
-              std::string::npos);
+    EXPECT_NE(rejected([&] { read_battery(path); }, folder).find("b.toml:1:1: format = 2 is newer"), std::string::npos);
     test::write_text(path, to_toml({"pack", 10.0, 0.0, 1.0}));
     EXPECT_EQ(read_battery(path).capacity_ah, 1.0);
 }

@@ -14,10 +14,8 @@ std::function<double(double)> constant(double power) {
     return [power](double) { return power; };
 }
 
-double after_constant_percent(const Battery& battery, double power, double time_s,
-                              double from_percent = 100.0) {
-    return from_percent -
-           100.0 * internal_current_a(battery, power) * time_s / (3600.0 * battery.capacity_ah);
+double after_constant_percent(const Battery& battery, double power, double time_s, double from_percent = 100.0) {
+    return from_percent - 100.0 * internal_current_a(battery, power) * time_s / (3600.0 * battery.capacity_ah);
 }
 
 TEST(Discharge, MeetsTheClosedFormOfConstantPower) {

@@ -26,8 +26,7 @@ constexpr std::size_t all_seeds = 20;
 constexpr std::size_t enough_seeds = 18;
 
 /// In how many of seeds 1..20 each parameter's interval holds the truth. A seed is `flights` flights.
-std::map<std::string, std::size_t> held(const Battery& pack, const SyntheticDischarge& settings,
-                                        std::size_t flights) {
+std::map<std::string, std::size_t> held(const Battery& pack, const SyntheticDischarge& settings, std::size_t flights) {
     std::map<std::string, std::size_t> counts;
     for (std::size_t seed = 1; seed <= all_seeds; ++seed) {
         std::vector<DischargeRecord> records;
@@ -146,8 +145,8 @@ TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
     // 12.5 V falling by 1.4 V over 3.2 Ah behind 0.06 ohm, and no RC pair.
     std::vector<DischargeRecord> records;
     for (const auto* name : {"01", "02", "03", "04", "05", "06"}) {
-        records.push_back(discharge_record(flight::read_flight(
-            test::source_dir() / "logs" / (std::string("opterra_synthetic_") + name + ".data"))));
+        records.push_back(discharge_record(
+            flight::read_flight(test::source_dir() / "logs" / (std::string("opterra_synthetic_") + name + ".data"))));
     }
     const auto found = identify_battery(records, {3.2, {}, ""});
     EXPECT_LE(found.errors.resistance_ohm.low, 0.06);
@@ -166,8 +165,8 @@ TEST(Identification, ForetellsRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     std::vector<DischargeRecord> records;
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
-        records.push_back(discharge_record(
-            flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
+        records.push_back(
+            discharge_record(flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
         EXPECT_GT(records.back().resting_voltage_v, 12.3);  // a pack of 11.1 V that starts full
     }
     for (const auto& check : leave_each_out(records, {})) {
@@ -176,8 +175,8 @@ TEST(Identification, ForetellsRealFlights) {
         EXPECT_LT(check.voltage_rms_v, 0.120) << check.flight;
     }
     const auto found = identify_battery(records, {});
-    fmt::print("resistance {:.4f} ohm [{:.4f}, {:.4f}]\n", found.fit.resistance_ohm,
-               found.errors.resistance_ohm.low, found.errors.resistance_ohm.high);
+    fmt::print("resistance {:.4f} ohm [{:.4f}, {:.4f}]\n", found.fit.resistance_ohm, found.errors.resistance_ohm.low,
+               found.errors.resistance_ohm.high);
     EXPECT_EQ(found.cells, 3);
     EXPECT_EQ(found.capacity.origin, CapacityOrigin::chart);
     EXPECT_GT(found.fit.resistance_ohm, 0.05);

@@ -21,8 +21,7 @@ TEST(TheveninDischarge, MeetsTheClosedFormOfConstantCurrent) {
     const auto pack = straight_pack();
     constexpr double current_a = 3.0;
     const auto exact = [&](double t) {
-        return BatteryState{100.0 - 100.0 * current_a * t / 7200.0,
-                            0.05 * current_a * (1.0 - std::exp(-t / 25.0))};
+        return BatteryState{100.0 - 100.0 * current_a * t / 7200.0, 0.05 * current_a * (1.0 - std::exp(-t / 25.0))};
     };
     const auto load = [&](double t) { return current_a * terminal_voltage_v(pack, exact(t), current_a); };
     for (const double step_s : {0.02, 0.1, 1.0}) {
@@ -69,9 +68,7 @@ TEST(TheveninDischarge, EndsAtCutOff) {
     auto pack = straight_pack();
     pack.thevenin->rc_resistance_ohm = 0.0;
     constexpr double current_a = 4.0;
-    const auto load = [&](double t) {
-        return current_a * (12.5 - 1.5 * current_a * t / 7200.0 - 0.08 * current_a);
-    };
+    const auto load = [&](double t) { return current_a * (12.5 - 1.5 * current_a * t / 7200.0 - 0.08 * current_a); };
     const double exact_s = (12.5 - 0.32 - 11.7) / 1.5 * 7200.0 / current_a;
     for (const double step_s : {0.1, 0.33}) {
         const auto end = discharge(pack, {load, 0.0, 1000.0}, {100.0, 0.0}, {step_s, 11.7});

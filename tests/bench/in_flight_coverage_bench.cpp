@@ -36,8 +36,8 @@ void print_row(std::size_t flights, double until_s, std::size_t left_out) {
     }
     const auto count = static_cast<double>(sets * flights);
     const double error = std::sqrt(covered * (1.0 - covered) / count);
-    fmt::print("{:>14}  {:>7.0f}  {:>8.0f}  {:>6.1f} +- {:.1f}  {:>15.3f}  {:>15.3f}\n", flights - 1, until_s,
-               count, units::percent_of(covered, 1.0), units::percent_of(error, 1.0), before_wh, during_wh);
+    fmt::print("{:>14}  {:>7.0f}  {:>8.0f}  {:>6.1f} +- {:.1f}  {:>15.3f}  {:>15.3f}\n", flights - 1, until_s, count,
+               units::percent_of(covered, 1.0), units::percent_of(error, 1.0), before_wh, during_wh);
     std::fflush(stdout);
 }
 

@@ -28,8 +28,8 @@ void print_row(flight::Phase phase, const test::CoverageCase& made, const test::
         "{:>14}\n",
         to_string(phase), made.noise_w, made.autocorrelation, made.together, percent(coverage.covered),
         percent(binomial_error(coverage.covered, coverage.fits)), percent(coverage.a0_covered),
-        percent(binomial_error(coverage.a0_covered, coverage.fits)), coverage.mean_error_ratio,
-        coverage.at_bound, coverage.without_answer);
+        percent(binomial_error(coverage.a0_covered, coverage.fits)), coverage.mean_error_ratio, coverage.at_bound,
+        coverage.without_answer);
     std::fflush(stdout);
 }
 

@@ -12,8 +12,7 @@
 namespace flightwatt::bench {
 
 std::vector<telemetry::MessageRequest> energy_messages() {
-    constexpr std::array<std::string_view, 5> names{"ENERGY", "ESTIMATOR", "NAVIGATION", "PPRZ_MODE",
-                                                    "TAKEOFF"};
+    constexpr std::array<std::string_view, 5> names{"ENERGY", "ESTIMATOR", "NAVIGATION", "PPRZ_MODE", "TAKEOFF"};
     auto requests = flight::flight_messages();
     std::erase_if(requests, [&](const telemetry::MessageRequest& request) {
         return std::find(names.begin(), names.end(), request.message) == names.end();
@@ -62,8 +61,7 @@ NumberCount count_numbers(std::string_view text) {
 }
 
 std::filesystem::path benchmark_log() {
-    if (const char* named = std::getenv("FLIGHTWATT_BENCH_LOG"); named != nullptr && *named != '\0')
-        return named;
+    if (const char* named = std::getenv("FLIGHTWATT_BENCH_LOG"); named != nullptr && *named != '\0') return named;
     return std::filesystem::path(FLIGHTWATT_SOURCE_DIR) / "logs" / "opterra_synthetic_01.data";
 }
 

@@ -51,8 +51,8 @@ void print_memory(const std::filesystem::path& path) {
     const auto log = parse_energy(path, data.text());
     const auto peak_kb = status_kb("VmHWM");
     const auto file_kb = status_kb("RssFile");
-    fmt::print("rows {} pages_at_a_break {} peak_kb {} file_kb {} beyond_file_kb {}\n", row_count(log),
-               breaks, peak_kb, file_kb, peak_kb - file_kb);
+    fmt::print("rows {} pages_at_a_break {} peak_kb {} file_kb {} beyond_file_kb {}\n", row_count(log), breaks, peak_kb,
+               file_kb, peak_kb - file_kb);
 }
 
 int run(std::string_view pass, const std::filesystem::path& path) {
@@ -64,8 +64,7 @@ int run(std::string_view pass, const std::filesystem::path& path) {
         fmt::print("lines {} words {} characters {}\n", count.lines, count.words, count.characters);
     } else if (pass == "numbers") {
         const auto count = count_numbers(telemetry::DataFile(path).text());
-        fmt::print("lines {} numbers {} others {} sum {}\n", count.lines, count.numbers, count.others,
-                   count.sum);
+        fmt::print("lines {} numbers {} others {} sum {}\n", count.lines, count.numbers, count.others, count.sum);
     } else if (pass == "memory") {
         print_memory(path);
     } else {

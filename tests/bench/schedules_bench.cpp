@@ -24,8 +24,7 @@ constexpr int runge_kutta_steps = 43;
 
 mission::PlanningProblem paper_mission() {
     return std::get<mission::PlanningProblem>(mission::read_mission(
-        std::filesystem::path(FLIGHTWATT_SOURCE_DIR) / "missions" / "paper" / "plan.toml",
-        {true, std::nullopt}));
+        std::filesystem::path(FLIGHTWATT_SOURCE_DIR) / "missions" / "paper" / "plan.toml", {true, std::nullopt}));
 }
 
 /// The paper's mission with everything that a schedule needs looked up beforehand.
@@ -60,8 +59,7 @@ class ScheduleRate {
   public:
     explicit ScheduleRate(const Problem& problem)
         : battery_(problem.mission.battery), timeline_(mission::timeline_of(problem.mission.duration_s)) {
-        for (const auto phase : flight::all_phases)
-            curves_[phase] = problem.mission.mechanical->phases[phase].fourier;
+        for (const auto phase : flight::all_phases) curves_[phase] = problem.mission.mechanical->phases[phase].fourier;
         for (const auto& run : problem.planner.depletions.configurations) {
             choice_w_.push_back(power_w(problem.mission.compute, run));
         }
@@ -78,8 +76,8 @@ class ScheduleRate {
         const auto& segment = (*schedule_)[now_];
         const double load_w = power_w(curves_[segment.phase], time_s - timeline_.start_s[segment.phase]) +
                               choice_w_[segment.configuration];
-        percent_per_s = -units::percent_of(internal_current_a(battery_, load_w),
-                                           units::coulomb_from_ah(battery_.capacity_ah));
+        percent_per_s =
+            -units::percent_of(internal_current_a(battery_, load_w), units::coulomb_from_ah(battery_.capacity_ah));
     }
 
     double end_s() const { return timeline_.duration_s; }
@@ -97,21 +95,18 @@ class ScheduleRate {
     std::size_t now_ = 0;
 };
 
-double soc_by_odeint(ScheduleRate& rate, const std::vector<mission::TabledSegment>& schedule,
-                     double initial_percent) {
+double soc_by_odeint(ScheduleRate& rate, const std::vector<mission::TabledSegment>& schedule, double initial_percent) {
     namespace odeint = boost::numeric::odeint;
     odeint::runge_kutta4<double, double, double, double, odeint::vector_space_algebra> stepper;
     rate.take(schedule);
     double soc = initial_percent;
-    odeint::integrate_n_steps(stepper, std::ref(rate), soc, 0.0, rate.end_s() / runge_kutta_steps,
-                              runge_kutta_steps);
+    odeint::integrate_n_steps(stepper, std::ref(rate), soc, 0.0, rate.end_s() / runge_kutta_steps, runge_kutta_steps);
     return soc;
 }
 
 /// The greatest difference to the simulation (Runge-Kutta from jump to jump, 0.1 s), over some of the
 /// schedules.
-double worst_difference(const Problem& problem,
-                        const std::vector<std::vector<mission::TabledSegment>>& schedules,
+double worst_difference(const Problem& problem, const std::vector<std::vector<mission::TabledSegment>>& schedules,
                         const std::vector<double>& soc) {
     double worst = 0.0;
     std::size_t lasting = 0;
@@ -121,8 +116,8 @@ double worst_difference(const Problem& problem,
         std::vector<mission::ScheduleSegment> schedule;
         for (const auto& segment : schedules[i])
             schedule.push_back({segment, problem.planner.depletions.configurations[segment.configuration]});
-        const double reference = simulate(problem.mission, schedule, {100.0, 0.1})
-                                     .summary.final_soc_percent.value_or(std::nan(""));
+        const double reference =
+            simulate(problem.mission, schedule, {100.0, 0.1}).summary.final_soc_percent.value_or(std::nan(""));
         worst = std::max(worst, std::abs(soc[i] - reference));
     }
     return lasting == 0 ? std::nan("") : worst;
@@ -149,8 +144,7 @@ void final_soc_by_slots(benchmark::State& state) {
     const auto depletions = make_slot_depletions(problem.planner.depletions, schedules.front());
     std::vector<std::uint16_t> choices;
     for (const auto& schedule : schedules) {
-        for (const auto& segment : schedule)
-            choices.push_back(static_cast<std::uint16_t>(segment.configuration));
+        for (const auto& segment : schedule) choices.push_back(static_cast<std::uint16_t>(segment.configuration));
     }
     std::vector<double> soc(schedules.size());
     for (auto _ : state) {

@@ -27,8 +27,7 @@ BENCHMARK(segmentation_of_a_flight)->Unit(benchmark::kMicrosecond);
 
 /// Samples of the published cruise with noise, evenly over the phase.
 mechanical::PhaseSamples cruise_samples(std::size_t count) {
-    const auto model =
-        mechanical::read_mechanical_model(source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
+    const auto model = mechanical::read_mechanical_model(source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
     const auto& cruise = model.phases[flight::Phase::cruise];
     std::mt19937 random(1);
     std::normal_distribution<double> noise_w(0.0, 1.0);
@@ -36,23 +35,21 @@ mechanical::PhaseSamples cruise_samples(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         samples.tau.push_back((static_cast<double>(i) + 0.5) / static_cast<double>(count));
         samples.power_w.push_back(
-            flightwatt::mechanical::power_w(cruise.fourier, samples.tau.back() * cruise.duration_s) +
-            noise_w(random));
+            flightwatt::mechanical::power_w(cruise.fourier, samples.tau.back() * cruise.duration_s) + noise_w(random));
     }
     return samples;
 }
 
 void fit_of_a_phase(benchmark::State& state) {
-    const std::vector<mechanical::PhaseSamples> flights{
-        cruise_samples(static_cast<std::size_t>(state.range(0)))};
+    const std::vector<mechanical::PhaseSamples> flights{cruise_samples(static_cast<std::size_t>(state.range(0)))};
     for (auto _ : state) benchmark::DoNotOptimize(fit_phase(flight::Phase::cruise, flights));
 }
 BENCHMARK(fit_of_a_phase)->ArgName("samples")->Arg(6000)->Unit(benchmark::kMillisecond);
 
 /// The paper's phased mission, 688 s, with the default Runge-Kutta step.
 void simulation_of_a_mission(benchmark::State& state) {
-    const auto mission = std::get<mission::Mission>(
-        mission::read_mission(source_dir() / "missions" / "paper" / "phased.toml"));
+    const auto mission =
+        std::get<mission::Mission>(mission::read_mission(source_dir() / "missions" / "paper" / "phased.toml"));
     for (auto _ : state) benchmark::DoNotOptimize(mission::simulate(mission));
 }
 BENCHMARK(simulation_of_a_mission)->Unit(benchmark::kMillisecond);

@@ -47,8 +47,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 test::Outcome run_command(const std::string& command) {
     const auto folder = test::scratch_dir();
     const auto source = test::source_dir();
-    const auto result =
-        test::run_shell(command, folder, "LC_ALL=C COLUMNS=80 SOURCE=" + test::shell_quoted(source));
+    const auto result = test::run_shell(command, folder, "LC_ALL=C COLUMNS=80 SOURCE=" + test::shell_quoted(source));
     const auto shown = [&](const std::string& text) {
         // The scratch folder may lie in the source folder, so it goes first.
         return replaced(replaced(text, folder.string(), "SCRATCH"), source.string(), "SOURCE");
@@ -77,8 +76,7 @@ TEST_P(GoldenRun, PrintsAndReturnsWhatIsExpected) {
     EXPECT_TRUE(differing.empty()) << "if the change is wanted, FLIGHTWATT_REGENERATE=1 writes it";
 }
 
-INSTANTIATE_TEST_SUITE_P(Cli, GoldenRun, testing::ValuesIn(case_names()),
-                         [](const auto& run) { return run.param; });
+INSTANTIATE_TEST_SUITE_P(Cli, GoldenRun, testing::ValuesIn(case_names()), [](const auto& run) { return run.param; });
 
 /// Another file there would never be looked at.
 TEST(Golden, HoldsCasesAlone) {

@@ -45,8 +45,8 @@ std::string shown(const std::string& environment, bool on_terminal) {
     const auto out = folder / "shown";
     const auto help = (test::binary_dir() / "bin" / "flightwatt").string() + " help missions";
     const auto run = on_terminal ? "script -qec '" + help + "' /dev/null" : help;
-    const auto line = "FLIGHTWATT_DOCS=" + folder.string() + " TERM=xterm " + environment + " " + run +
-                      " > " + out.string() + " 2>&1 < /dev/null";
+    const auto line = "FLIGHTWATT_DOCS=" + folder.string() + " TERM=xterm " + environment + " " + run + " > " +
+                      out.string() + " 2>&1 < /dev/null";
     return std::system(line.c_str()) == 0 ? read_file(out) : "";
 }
 

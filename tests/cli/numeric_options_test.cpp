@@ -45,8 +45,7 @@ TEST(CountOption, RefusesOthersWithTheRange) {
     }
     EXPECT_EQ(refusal([] { count_option(call_with({"--count=0"}), "count", 1); }),
               "--count 0: expected a whole number from 1");
-    EXPECT_EQ(refusal([] { count_option(call_with({"--count=x"}), "count"); }),
-              "--count x: expected a whole number");
+    EXPECT_EQ(refusal([] { count_option(call_with({"--count=x"}), "count"); }), "--count x: expected a whole number");
 }
 
 TEST(NumberOption, LiesInItsRange) {

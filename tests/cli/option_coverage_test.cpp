@@ -43,8 +43,7 @@ std::vector<std::string> texts_of_tests() {
 
 bool has_word(const std::string& text, const std::string& word) {
     const auto in_word = [&](std::size_t at) {
-        return at < text.size() &&
-               (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '-');
+        return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '-');
     };
     for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
         const bool begins = word.starts_with('-') || at == 0 || !in_word(at - 1) || text[at - 1] == '-';
@@ -58,8 +57,7 @@ std::set<std::string> options_of(const std::string& program) {
     const auto help = test::run_shell(program + " --help", test::binary_dir()).out;
     const std::regex line("\n +(?:-h \\[ )?(-[a-z]|--[a-z][a-z-]*)");
     std::set<std::string> options;
-    for (std::sregex_iterator at(help.begin(), help.end(), line), end; at != end; ++at)
-        options.insert((*at)[1]);
+    for (std::sregex_iterator at(help.begin(), help.end(), line), end; at != end; ++at) options.insert((*at)[1]);
     return options;
 }
 
@@ -73,9 +71,9 @@ TEST(Options, AreEachUsedByATestOfTheirProgram) {
         const auto stage = program.substr(prefix.size());
         for (const auto& option : options_of(program)) {
             ++options;
-            EXPECT_TRUE(std::any_of(
-                texts.begin(), texts.end(),
-                [&](const std::string& text) { return has_word(text, stage) && has_word(text, option); }))
+            EXPECT_TRUE(
+                std::any_of(texts.begin(), texts.end(),
+                            [&](const std::string& text) { return has_word(text, stage) && has_word(text, option); }))
                 << program << " " << option << " is in no golden case, no test and no document's output";
         }
     }

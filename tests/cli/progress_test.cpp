@@ -71,8 +71,7 @@ class Terminal {
     std::string printed() {
         std::string text;
         std::array<char, 4096> part{};
-        for (auto n = ::read(master_, part.data(), part.size()); n > 0;
-             n = ::read(master_, part.data(), part.size())) {
+        for (auto n = ::read(master_, part.data(), part.size()); n > 0; n = ::read(master_, part.data(), part.size())) {
             text.append(part.data(), static_cast<std::size_t>(n));
         }
         return text;
@@ -87,8 +86,7 @@ class Terminal {
 bool has_terminals() {
     const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
     if (master < 0) return false;
-    const bool usable =
-        ::grantpt(master) == 0 && ::unlockpt(master) == 0 && ::access(::ptsname(master), W_OK) == 0;
+    const bool usable = ::grantpt(master) == 0 && ::unlockpt(master) == 0 && ::access(::ptsname(master), W_OK) == 0;
     ::close(master);
     return usable;
 }
@@ -107,8 +105,7 @@ TEST(ProgressBar, DrawsAtMostTenTimesASecond) {
     EXPECT_THAT(printed, HasSubstr(" 51/1000, "));
     EXPECT_THAT(printed, HasSubstr(" logs/s, "));
     int drawn = 0;
-    for (auto at = printed.find("/1000"); at != std::string::npos; at = printed.find("/1000", at + 1))
-        ++drawn;
+    for (auto at = printed.find("/1000"); at != std::string::npos; at = printed.find("/1000", at + 1)) ++drawn;
     EXPECT_LE(drawn, most_per_s * taken.count()) << "of 100 calls";
 }
 

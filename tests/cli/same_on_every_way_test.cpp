@@ -84,8 +84,7 @@ TEST(SameOnEveryWay, FitsTheRealFlights) {
 TEST(SameOnEveryWay, SegmentsEveryLog) {
     const auto folder = test::scratch_dir();
     for (const auto& log : test::all_logs()) {
-        const auto parsed =
-            test::run_shell("flightwatt parse " + test::shell_quoted(log) + " -o a.csv", folder);
+        const auto parsed = test::run_shell("flightwatt parse " + test::shell_quoted(log) + " -o a.csv", folder);
         if (parsed.code != 0) continue;  // it measured no power
         const BothWays ways{" " + test::shell_quoted(log), " a.csv"};
         expect_same("segment", ways, folder);
@@ -117,14 +116,12 @@ std::vector<std::string> changed_after(const std::string& text, double moment_s)
     for (const auto& line : cut.after) all += "rubbish\n" + line.substr(0, line.size() / 2) + "\n";
     changed.push_back(all + "99 ");
     all = cut.before;
-    for (const auto& line : cut.after)
-        all += line.substr(0, line.find(' ')) + " 99" + line.substr(line.find(' '));
+    for (const auto& line : cut.after) all += line.substr(0, line.find(' ')) + " 99" + line.substr(line.find(' '));
     changed.push_back(all);  // another aircraft speaks
     return changed;
 }
 
-void expect_no_hindsight(const std::filesystem::path& log, const std::string& options,
-                         const std::string& moment) {
+void expect_no_hindsight(const std::filesystem::path& log, const std::string& options, const std::string& moment) {
     SCOPED_TRACE(log.string() + " " + moment);
     const auto folder = test::scratch_dir();
     const auto command = "flightwatt predict flight.data " + options + " " + moment;
@@ -153,8 +150,8 @@ TEST(NoHindsight, PredictsTheSameWhateverTheLogSaysLater) {
     for (const auto& log : sample_logs()) logs += " " + test::shell_quoted(log);
     for (const auto* law : {"", "--level-covariate wind_m_per_s"}) {
         const auto model = folder.parent_path() / "no_hindsight_model.toml";
-        const auto fit = test::run_shell(
-            fmt::format("flightwatt fit {}{} -o {}", law, logs, test::shell_quoted(model)), folder);
+        const auto fit =
+            test::run_shell(fmt::format("flightwatt fit {}{} -o {}", law, logs, test::shell_quoted(model)), folder);
         ASSERT_EQ(fit.code, 0) << fit.err;
         const auto options = "--remaining 200 --model " + test::shell_quoted(model);
         expect_no_hindsight(sample_logs()[0], options, "--until-log-time 134.499");
@@ -169,8 +166,7 @@ TEST(NoHindsight, PredictsTheSameOfTheRealFlights) {
     std::string logs;
     for (const auto& log : real_logs()) logs += " " + test::shell_quoted(log);
     const auto model = folder.parent_path() / "no_hindsight_real.toml";
-    const auto fit =
-        test::run_shell(fmt::format("flightwatt fit {} -o {}", logs, test::shell_quoted(model)), folder);
+    const auto fit = test::run_shell(fmt::format("flightwatt fit {} -o {}", logs, test::shell_quoted(model)), folder);
     ASSERT_EQ(fit.code, 0) << fit.err;
     const auto options = "--level airspeed --remaining 300 --model " + test::shell_quoted(model);
     for (const auto& log : real_logs()) {

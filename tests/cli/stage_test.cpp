@@ -51,8 +51,7 @@ StageDefinition definition() {
 }
 
 /// Runs the stage in a process of its own: run_stage closes the standard output.
-Outcome run(std::vector<std::string> arguments, const StageBody& body,
-            const std::filesystem::path& out = {}) {
+Outcome run(std::vector<std::string> arguments, const StageBody& body, const std::filesystem::path& out = {}) {
     const auto folder = test::scratch_dir();
     const auto out_file = out.empty() ? folder / "stdout" : out;
     std::fflush(nullptr);  // or the child would print the rest of this process again
@@ -80,13 +79,12 @@ StageBody failing_with(Error error) {
 }
 
 TEST(RunStage, HandsOverWhatTheUserGave) {
-    const auto result =
-        run({"a", "--count", "7", "-o", "result.csv", "--json", "b"}, [](const StageCall& call) {
-            print(call.program + " " + call.inputs.at(0) + call.inputs.at(1) + " " +
-                  std::to_string(call.get<int>("count")) + " " + call.output.value() +
-                  (call.json ? " json" : "") + (call.maybe<std::string>("name") ? " named" : " nameless"));
-            return ok;
-        });
+    const auto result = run({"a", "--count", "7", "-o", "result.csv", "--json", "b"}, [](const StageCall& call) {
+        print(call.program + " " + call.inputs.at(0) + call.inputs.at(1) + " " +
+              std::to_string(call.get<int>("count")) + " " + call.output.value() + (call.json ? " json" : "") +
+              (call.maybe<std::string>("name") ? " named" : " nameless"));
+        return ok;
+    });
     EXPECT_EQ(result.code, 0);
     EXPECT_EQ(result.out, "flightwatt-trial ab 7 result.csv json nameless");
     EXPECT_EQ(result.err, "");
@@ -111,8 +109,7 @@ TEST(RunStage, HelpsWithoutRunningTheBody) {
     for (const auto* option : {"--help", "-h"}) {
         const auto result = run({option}, failing_with(std::runtime_error("ran")));
         EXPECT_EQ(result.code, 0);
-        EXPECT_THAT(result.out,
-                    StartsWith("usage: flightwatt trial FILE... [options]\n\nTries things.\n\nOptions:\n"));
+        EXPECT_THAT(result.out, StartsWith("usage: flightwatt trial FILE... [options]\n\nTries things.\n\nOptions:\n"));
         EXPECT_THAT(result.out, HasSubstr("--count arg (=3)"));
         EXPECT_EQ(result.err, "");
     }
@@ -179,8 +176,7 @@ TEST(RunStage, FailsWhereTheStandardOutputCannotBeWritten) {
         },
         "/dev/full");
     EXPECT_EQ(small.code, 1);  // found when the buffer is flushed, after the body
-    EXPECT_EQ(small.err,
-              "flightwatt-trial: error: cannot write the standard output: No space left on device\n");
+    EXPECT_EQ(small.err, "flightwatt-trial: error: cannot write the standard output: No space left on device\n");
     const auto large = run(
         {"a"},
         [](const StageCall&) {
@@ -217,8 +213,7 @@ TEST(WriteResult, GoesToTheFileOrTheStandardOutput) {
     std::filesystem::remove(file);
     const auto missing = run({"a", "-o", "/missing/folder/x"}, body);
     EXPECT_EQ(missing.code, 1);
-    EXPECT_EQ(missing.err,
-              "flightwatt-trial: error: cannot write /missing/folder/x: No such file or directory\n");
+    EXPECT_EQ(missing.err, "flightwatt-trial: error: cannot write /missing/folder/x: No such file or directory\n");
 }
 
 }  // namespace

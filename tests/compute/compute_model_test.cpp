@@ -14,8 +14,7 @@ namespace {
 using test::rejected;
 
 PowerProfile line() {
-    return make_power_profile("line.csv", {"fps"},
-                              {{{10.0}, 24.0, {}}, {{5.0}, 20.0, {}}, {{30.0}, 36.0, {}}});
+    return make_power_profile("line.csv", {"fps"}, {{{10.0}, 24.0, {}}, {{5.0}, 20.0, {}}, {{30.0}, 36.0, {}}});
 }
 
 /// power = 1 + 2 a + 30 b + 5 a b: multilinear, so interpolation must give it back everywhere.
@@ -113,13 +112,12 @@ TEST(PowerProfile, RefusesAGridOfNonsenseWithoutBuildingIt) {
 }
 
 TEST(PowerProfile, RefusesDuplicates) {
-    EXPECT_EQ(
-        rejected([] {
-            make_power_profile(
-                "p.csv", {"fps"},
-                {{{1.0}, 3.0, {"p.csv", 2}}, {{2.0}, 3.0, {"p.csv", 3}}, {{1.0}, 3.0, {"p.csv", 4}}});
-        }),
-        "p.csv:4: fps = 1 has a second node, the first is in line 2; keep one row for each configuration");
+    EXPECT_EQ(rejected([] {
+                  make_power_profile(
+                      "p.csv", {"fps"},
+                      {{{1.0}, 3.0, {"p.csv", 2}}, {{2.0}, 3.0, {"p.csv", 3}}, {{1.0}, 3.0, {"p.csv", 4}}});
+              }),
+              "p.csv:4: fps = 1 has a second node, the first is in line 2; keep one row for each configuration");
     EXPECT_EQ(rejected([] { make_power_profile("p.csv", {"fps"}, {}); }),
               "p.csv: has no nodes, expected at least one profiled configuration");
 }

@@ -102,8 +102,7 @@ TEST(ThinPlate, FindsEachNodeFromTheOthersAsIfDoneByHand) {
             auto others_w = power_w;
             others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
             others_w.erase(others_w.begin() + static_cast<std::ptrdiff_t>(k));
-            const double by_hand =
-                interpolate_thin_plate(scale, others, others_w, {known[k]}).front() - power_w[k];
+            const double by_hand = interpolate_thin_plate(scale, others, others_w, {known[k]}).front() - power_w[k];
             EXPECT_NEAR(errors->error_w[k], by_hand, 1e-8) << " node " << k;
         }
     }
@@ -122,8 +121,7 @@ TEST(ThinPlate, ErrorOnTheRealGridIsWhatWasEstimated) {
     FLIGHTWATT_NEEDS_SHARED();
     ProfileNaming naming;
     naming.columns = {"first", "second", "power_w"};
-    const auto profile =
-        read_power_profile(test::shared_dir() / "powprofiler" / "tx2_two_component_power.csv", naming);
+    const auto profile = read_power_profile(test::shared_dir() / "powprofiler" / "tx2_two_component_power.csv", naming);
     const auto points = grid_points(profile);
     for (const std::size_t trials : {9, 13}) {
         Points known;

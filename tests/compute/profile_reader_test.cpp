@@ -17,9 +17,8 @@ ProfileNaming parameters(std::vector<std::string> names) { return {std::move(nam
 ProfileNaming columns(std::vector<std::string> names) { return {{}, std::move(names), asked}; }
 
 TEST(ProfileReader, ReadsOurOwnCsv) {
-    const auto profile = read_power_profile(
-        write_text(scratch_dir() / "p.csv",
-                   "# where it is from\nfps,key_bits,power_w\n1,32,5\n2,32,6\n1,64,7\n2,64,9\n"));
+    const auto profile = read_power_profile(write_text(
+        scratch_dir() / "p.csv", "# where it is from\nfps,key_bits,power_w\n1,32,5\n2,32,6\n1,64,7\n2,64,9\n"));
     EXPECT_EQ(profile.parameters, (std::vector<std::string>{"fps", "key_bits"}));
     EXPECT_EQ(power_w(profile, {1.5, 48.0}), 6.75);
 }
@@ -42,23 +41,21 @@ TEST(ProfileReader, ReadsPowprofilerLayerTwo) {
               "`parameters`");
     EXPECT_NE(rejected([&] { read_power_profile(file); }), "");
     EXPECT_NE(rejected([&] { read_power_profile(file, parameters({"fps", "fps"})); }), "");
-    EXPECT_EQ(
-        rejected(
-            [&] {
-                read_power_profile(file, columns({"a", "b", "power_w", "_"}));
-            },
-            file.parent_path()),
-        "mission.toml:7:1: p.csv has a header; `columns` name those of a file without one; leave them out");
+    EXPECT_EQ(rejected(
+                  [&] {
+                      read_power_profile(file, columns({"a", "b", "power_w", "_"}));
+                  },
+                  file.parent_path()),
+              "mission.toml:7:1: p.csv has a header; `columns` name those of a file without one; leave them out");
 }
 
 TEST(ProfileReader, ReadsFilesWithoutHeader) {
     const auto file = write_text(scratch_dir() / "p.csv", "1,32,5,77\n2,32,6,77\n\n1,64,7,77\n2,64,9,77");
     const auto profile = read_power_profile(file, columns({"fps", "key_bits", "power_w", "_"}));
     EXPECT_EQ(power_w(profile, {1.0, 64.0}), 7.0);
-    EXPECT_EQ(
-        rejected([&] { read_power_profile(file); }, file.parent_path()),
-        "p.csv:1: begins with numbers and not with a header; name the columns with `columns`, for example "
-        "[\"fps\", \"power_w\"]");
+    EXPECT_EQ(rejected([&] { read_power_profile(file); }, file.parent_path()),
+              "p.csv:1: begins with numbers and not with a header; name the columns with `columns`, for example "
+              "[\"fps\", \"power_w\"]");
     EXPECT_EQ(rejected(
                   [&] {
                       read_power_profile(file, columns({"fps", "power_w"}));
@@ -112,8 +109,7 @@ TEST(ProfileReader, KeepsTheEvidenceBehindPower) {
     EXPECT_EQ(profile.power_w, (std::vector<double>{2.0, 4.0}));
     EXPECT_EQ(profile.standard_error_w, (std::vector<double>{0.1, 0.3}));
     EXPECT_EQ(profile.is_measured, (std::vector<bool>{true, false}));
-    EXPECT_EQ(rejected([&] { read_power_profile(write_text(folder / "q.csv", "fps,power_w,key\n1,2,3\n")); },
-                       folder),
+    EXPECT_EQ(rejected([&] { read_power_profile(write_text(folder / "q.csv", "fps,power_w,key\n1,2,3\n")); }, folder),
               "q.csv:1:13: the column 'key' follows power_w; parameters stand before it, after it only what "
               "`flightwatt profile` writes there");
 }
@@ -131,9 +127,8 @@ TEST(ProfileReader, RefusesWhatIsNoProfile) {
     EXPECT_EQ(of("fps,power_w\n"), "p.csv: has no nodes, expected at least one profiled configuration");
     EXPECT_EQ(of("fps,power_w\n1,2\n2,1x\n"), "p.csv:3:3: power_w is not a finite number: '1x'");
     EXPECT_EQ(of("fps,power_w\n1,2\n2\n"), "p.csv:3: 1 cells, expected 2 as in the first line");
-    EXPECT_EQ(
-        of("fps,power_w\n1,2\n1,3\n"),
-        "p.csv:3: fps = 1 has a second node, the first is in line 2; keep one row for each configuration");
+    EXPECT_EQ(of("fps,power_w\n1,2\n1,3\n"),
+              "p.csv:3: fps = 1 has a second node, the first is in line 2; keep one row for each configuration");
     EXPECT_EQ(of("fps,power_w\n1,2\n", parameters({"rate"})),
               "mission.toml:7:1: p.csv names its parameters itself; leave `parameters` out");
     EXPECT_EQ(of("fps,power_w\n1,2\n", {{"a"}, {"b"}, asked}),
@@ -143,9 +138,8 @@ TEST(ProfileReader, RefusesWhatIsNoProfile) {
 
 TEST(ProfileReader, ReadsTheRealTwoComponentGrid) {
     FLIGHTWATT_NEEDS_SHARED();
-    const auto profile =
-        read_power_profile(test::shared_dir() / "powprofiler" / "tx2_two_component_power.csv",
-                           columns({"first", "second", "power_w"}));
+    const auto profile = read_power_profile(test::shared_dir() / "powprofiler" / "tx2_two_component_power.csv",
+                                            columns({"first", "second", "power_w"}));
     EXPECT_EQ(profile.power_w.size(), 25U);
     EXPECT_EQ(power_w(profile, {8.0, 10.0}), 9.78429);
     EXPECT_DOUBLE_EQ(power_w(profile, {3.0, 2.0}), (4.75376 + 6.54918) / 2.0);
@@ -154,10 +148,9 @@ TEST(ProfileReader, ReadsTheRealTwoComponentGrid) {
 TEST(ProfileReader, ReadsTheRealTrackingProfileInAllItsForms) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto shared = test::shared_dir() / "powprofiler";
-    const auto layer2 =
-        read_power_profile(shared / "tracking_m2l_tracking.csv", parameters({"yolo_fps", "nfold_fps"}));
-    const auto plot = read_power_profile(shared / "tracking__m2l_tracking.csv",
-                                         columns({"yolo_fps", "nfold_fps", "power_w", "_"}));
+    const auto layer2 = read_power_profile(shared / "tracking_m2l_tracking.csv", parameters({"yolo_fps", "nfold_fps"}));
+    const auto plot =
+        read_power_profile(shared / "tracking__m2l_tracking.csv", columns({"yolo_fps", "nfold_fps", "power_w", "_"}));
     // The configuration names its recordings without the prefix that they have been kept with.
     const auto folder = scratch_dir();
     for (const auto& entry : std::filesystem::directory_iterator(shared)) {

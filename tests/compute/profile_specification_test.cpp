@@ -14,9 +14,7 @@ using test::rejected;
 using test::write_text;
 using testing::HasSubstr;
 
-ProfileSpecification parse(const std::string& text) {
-    return parse_profile_specification(text, "dir/p.toml");
-}
+ProfileSpecification parse(const std::string& text) { return parse_profile_specification(text, "dir/p.toml"); }
 
 TEST(ProfileSpecification, MultipliesRangesOut) {
     const auto spec = parse(R"(
@@ -55,16 +53,14 @@ components = ["plain", "encryption"]
     EXPECT_EQ(detection.timing.warm_up_s, 1.0);
     ASSERT_EQ(detection.configurations.size(), 6U);
     EXPECT_EQ(detection.configurations[5].qos, (Values{0.3, 640}));
-    EXPECT_EQ(detection.configurations[5].commands,
-              (std::vector<Words>{{"yolo", "--rate=0.3", "640", "{print $1}"}}));
+    EXPECT_EQ(detection.configurations[5].commands, (std::vector<Words>{{"yolo", "--rate=0.3", "640", "{print $1}"}}));
     EXPECT_EQ(spec.components[1].name, "encryption");
     EXPECT_EQ(spec.components[2].name, "plain+encryption");
     EXPECT_EQ(spec.components[2].configurations[0].commands, (std::vector<Words>{{"plain"}, {"enc", "32"}}));
 }
 
 TEST(ProfileSpecification, NamesTheRecordings) {
-    const auto spec =
-        parse("[sampler]\nfile = '{component}/{fps}.csv'\n[components.d]\nqos = { fps = [1, 2.5] }\n");
+    const auto spec = parse("[sampler]\nfile = '{component}/{fps}.csv'\n[components.d]\nqos = { fps = [1, 2.5] }\n");
     EXPECT_EQ(spec.sampler.kind, SamplerKind::recorded);
     EXPECT_EQ(spec.idle_s, 0.0);
     EXPECT_EQ(spec.components[0].configurations[1].recording, "dir/d/2.5.csv");
@@ -73,15 +69,13 @@ TEST(ProfileSpecification, NamesTheRecordings) {
 TEST(ProfileSpecification, EachErrorHasItsPlace) {
     const auto of = [](const std::string& text) { return rejected([&] { parse(text); }, "dir"); };
     const std::string end = "[components.a]\ncommand = ['a']\n";
-    EXPECT_EQ(of("durations_s = 1\n" + end),
-              "p.toml:1:1: unknown key 'durations_s'; did you mean 'duration_s'?");
+    EXPECT_EQ(of("durations_s = 1\n" + end), "p.toml:1:1: unknown key 'durations_s'; did you mean 'duration_s'?");
     EXPECT_EQ(of("duration_s = 0\n" + end), "p.toml:1:1: duration_s = 0, expected more than 0");
     EXPECT_EQ(of("repeats = 0\n" + end), "p.toml:1:1: repeats = 0, expected a whole number, 1 or more");
     EXPECT_EQ(of("repeats = 1.5\n" + end), "p.toml:1:1: repeats = 1.5, expected a whole number");
     EXPECT_EQ(of("duration_s = 9\ntimeout_s = 8\n" + end),
               "p.toml:2:1: timeout_s = 8 is over before warm-up and duration, 9 s");
-    EXPECT_EQ(of("[sampler]\nkind = 'rpal'\n" + end),
-              "p.toml:2:1: there is no sampler 'rpal'; did you mean 'rapl'?");
+    EXPECT_EQ(of("[sampler]\nkind = 'rpal'\n" + end), "p.toml:2:1: there is no sampler 'rpal'; did you mean 'rapl'?");
     EXPECT_EQ(of("[sampler]\nkind = 'rapl'\ncommand = ['x']\n" + end),
               "p.toml:3:1: command belongs to the sampler 'command', not to 'rapl'");
     EXPECT_EQ(of("[components]\n"), "p.toml:1:1: there is nothing to profile");
@@ -110,27 +104,24 @@ TEST(ProfileSpecification, EachErrorHasItsPlace) {
 
 TEST(PowprofilerSpecification, RunsTwoRanges) {
     const auto folder = test::scratch_dir();
-    const auto spec = read_profile_specification(write_text(
-        folder / "c.cfg",
-        "[settings]\nfrequency = 20\n[components]\n[component.mult]\nsrc = /bin/mult\nruntime = 500\n"
-        "range = 256, 1024, pow(2)\nfixed = -v\nrange = 20, 40, 10\n"));
+    const auto spec = read_profile_specification(
+        write_text(folder / "c.cfg",
+                   "[settings]\nfrequency = 20\n[components]\n[component.mult]\nsrc = /bin/mult\nruntime = 500\n"
+                   "range = 256, 1024, pow(2)\nfixed = -v\nrange = 20, 40, 10\n"));
     EXPECT_EQ(spec.sampler.interval_s, 0.05);
     ASSERT_EQ(spec.components.size(), 1U);
     EXPECT_EQ(spec.components[0].parameters, (Words{"qos_1", "qos_2"}));
     EXPECT_EQ(spec.components[0].timing.duration_s, 0.5);
     ASSERT_EQ(spec.components[0].configurations.size(), 9U);
     EXPECT_EQ(spec.components[0].configurations[5].commands[0], (Words{"/bin/mult", "512", "-v", "40"}));
-    const auto shell = read_profile_specification(
-        write_text(folder / "s.cfg", "[component.a]\nsrc = echo\nfixed = 'a b' > f\n"));
+    const auto shell =
+        read_profile_specification(write_text(folder / "s.cfg", "[component.a]\nsrc = echo\nfixed = 'a b' > f\n"));
     EXPECT_EQ(shell.components[0].configurations[0].commands[0], (Words{"/bin/sh", "-c", "echo 'a b' > f"}));
-    EXPECT_EQ(
-        rejected([&] { read_profile_specification(write_text(folder / "e.cfg", "[settings]\n")); }, folder),
-        "e.cfg: has neither [component.NAME] nor [combinations]");
-    EXPECT_EQ(
-        rejected(
-            [&] { read_profile_specification(write_text(folder / "e.cfg", "[combinations]\nx.csv=1\n")); },
-            folder),
-        "e.cfg:2: the recording x.csv does not exist");
+    EXPECT_EQ(rejected([&] { read_profile_specification(write_text(folder / "e.cfg", "[settings]\n")); }, folder),
+              "e.cfg: has neither [component.NAME] nor [combinations]");
+    EXPECT_EQ(rejected([&] { read_profile_specification(write_text(folder / "e.cfg", "[combinations]\nx.csv=1\n")); },
+                       folder),
+              "e.cfg:2: the recording x.csv does not exist");
 }
 
 }  // namespace

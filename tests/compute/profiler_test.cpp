@@ -54,11 +54,10 @@ constexpr const char* meter =
     "command = ['sh', '-c', 'while :; do cat busy 2>/dev/null || echo 2; sleep 0.02; done']\n";
 
 TEST_F(Profiler, WritesLayersThatMissionsRead) {
-    write("p.toml",
-          std::string(meter) +
-              "repeats = 2\n"
-              "[components.load]\ncommand = ['sh', '-c', 'trap \"rm -f busy; exit\" TERM; echo {w} > busy; "
-              "while :; do sleep 0.01; done']\nwarm_up_s = 0.6\nqos = { w = [3, 5] }\n");
+    write("p.toml", std::string(meter) +
+                        "repeats = 2\n"
+                        "[components.load]\ncommand = ['sh', '-c', 'trap \"rm -f busy; exit\" TERM; echo {w} > busy; "
+                        "while :; do sleep 0.01; done']\nwarm_up_s = 0.6\nqos = { w = [3, 5] }\n");
     // TOML's tables end with the next: `repeats` belongs above them.
     auto spec = text("p.toml");
     spec.erase(spec.find("repeats = 2\n"), 12);
@@ -71,8 +70,7 @@ TEST_F(Profiler, WritesLayersThatMissionsRead) {
         EXPECT_NEAR(cell(layer2, i, "total_power_w"), total_w, 1e-6);
         EXPECT_NEAR(cell(layer2, i, "power_w"), total_w - 2.0, 1e-6);
         EXPECT_NEAR(cell(layer2, i, "duration_s"), 0.3, 1e-6);
-        EXPECT_NEAR(cell(layer2, i, "energy_j"), cell(layer2, i, "power_w") * cell(layer2, i, "duration_s"),
-                    1e-5);
+        EXPECT_NEAR(cell(layer2, i, "energy_j"), cell(layer2, i, "power_w") * cell(layer2, i, "duration_s"), 1e-5);
         EXPECT_EQ(cell(layer2, i, "repeats"), 2.0);
     }
     EXPECT_DOUBLE_EQ(power_w(read_power_profile(folder / "out/load.csv"), {4.0}), 2.0);
@@ -101,8 +99,7 @@ TEST_F(Profiler, GoesOnPastThoseThatFail) {
                         " & echo sorry >&2; exit 3']\n[components.hang]\ncommand = ['sleep', '" + marker +
                         "']\n[components.good]\ncommand = ['sleep', '" + marker + "']\n");
     EXPECT_EQ(profile("p.toml"), 4);
-    EXPECT_THAT(text("out/runs.csv"),
-                HasSubstr("crash,,1,failed,\"exit code 3; left 1 process behind, ended\""));
+    EXPECT_THAT(text("out/runs.csv"), HasSubstr("crash,,1,failed,\"exit code 3; left 1 process behind, ended\""));
     EXPECT_EQ(text("out/layer1/crash/repeat_1.txt"), "sorry\n");
     EXPECT_FALSE(std::filesystem::exists(folder / "out/crash.csv"));
     EXPECT_NEAR(power_w(read_power_profile(folder / "out/good.csv"), {}), 2.0, 1e-9);
@@ -112,9 +109,8 @@ TEST_F(Profiler, GoesOnPastThoseThatFail) {
 TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
     const auto marker = test::new_marker();
     // Each start leaves a line in `starts`; the third configuration hangs until it is interrupted.
-    write("p.toml", std::string(meter) +
-                        "[components.a]\ncommand = ['sh', '-c', 'echo {n} >> starts; setsid sleep " + marker +
-                        " & [ -e free ] || [ $(wc -l < starts) -lt 3 ] || sleep " + marker +
+    write("p.toml", std::string(meter) + "[components.a]\ncommand = ['sh', '-c', 'echo {n} >> starts; setsid sleep " +
+                        marker + " & [ -e free ] || [ $(wc -l < starts) -lt 3 ] || sleep " + marker +
                         "; sleep 0.05']\nqos = { n = [1, 2, 3, 4] }\n");
     auto spec = text("p.toml");
     spec.replace(spec.find("duration_s = 0.3\n"), 17, "timeout_s = 20\n");
@@ -129,8 +125,7 @@ TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
     ::kill(child, SIGINT);
     EXPECT_EQ(test::exit_code_of(child), 130);
     EXPECT_EQ(test::processes_with(marker), 0);
-    EXPECT_THAT(text("stderr"),
-                HasSubstr("stopped by SIGINT after 3 of 5 runs; the same command goes on from there"));
+    EXPECT_THAT(text("stderr"), HasSubstr("stopped by SIGINT after 3 of 5 runs; the same command goes on from there"));
     const auto before = text("starts");
     const auto idle = text("out/layer1/idle/repeat_1.csv");
     write("free", "");
@@ -184,8 +179,7 @@ while True:
     const auto layer2 = table("out/load.csv");
     for (std::size_t i = 0; i < layer2.rows.size(); ++i) {
         const auto share = layer2.rows[i].cells[0].text;
-        const auto samples =
-            read_power_trace(folder / ("out/layer1/load/share=" + share + "_repeat_1.csv"), {});
+        const auto samples = read_power_trace(folder / ("out/layer1/load/share=" + share + "_repeat_1.csv"), {});
         // Its own account over the same time from its start on.
         std::ifstream account(folder / ("account." + share));
         std::vector<std::pair<double, double>> used;
@@ -271,8 +265,7 @@ TEST_F(Profiler, TrialsInterpolateTheOthers) {
     ASSERT_EQ(layer2.rows.size(), 12U);
     int measured = 0;
     for (std::size_t i = 0; i < 12; ++i) {
-        EXPECT_NEAR(cell(layer2, i, "power_w"), 3.0 + 2.0 * cell(layer2, i, "x") + 0.5 * cell(layer2, i, "y"),
-                    1e-6);
+        EXPECT_NEAR(cell(layer2, i, "power_w"), 3.0 + 2.0 * cell(layer2, i, "x") + 0.5 * cell(layer2, i, "y"), 1e-6);
         const auto source = layer2.rows[i].cells[column_index(layer2, "source")].text;
         EXPECT_TRUE(source == "measured" || source == "interpolated");
         if (source == "measured") ++measured;

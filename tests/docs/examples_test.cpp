@@ -22,9 +22,9 @@ constexpr const char* small_mission =
 /// A mission that names `file` in place of one of its own.
 std::string mission_with(const std::string& what, const std::string& file) {
     std::string text = small_mission;
-    for (const auto& [name, usual] : {std::pair("MODEL", "fits/mechanical/opterra-table1.toml"),
-                                      std::pair("BATTERY", "fits/battery/paper.toml"),
-                                      std::pair("PROFILE", "fits/compute/tx2-detection.csv")})
+    for (const auto& [name, usual] :
+         {std::pair("MODEL", "fits/mechanical/opterra-table1.toml"), std::pair("BATTERY", "fits/battery/paper.toml"),
+          std::pair("PROFILE", "fits/compute/tx2-detection.csv")})
         text = std::regex_replace(text, std::regex(name), name == what ? file : usual);
     return text;
 }
@@ -83,8 +83,7 @@ TEST(Examples, AreReadByTheirPrograms) {
         for (const auto& example : read_document(source_dir() / "docs" / page).examples) {
             if (example.kind == "model") std::ofstream(folder / "wind-model.toml") << example.text;
             const auto reading = reading_of(example, folder);
-            ASSERT_FALSE(reading.program.empty())
-                << page << ":" << example.line << ": '" << example.kind << "'";
+            ASSERT_FALSE(reading.program.empty()) << page << ":" << example.line << ": '" << example.kind << "'";
             EXPECT_EQ(run_program(reading.program, reading.arguments, folder), 0)
                 << page << ":" << example.line << ": " << read_file(folder / "stderr");
             ++run;

@@ -34,8 +34,7 @@ const std::map<std::string, std::string> sections{
 
 void read_as(const std::string& kind, const std::filesystem::path& file) {
     if (kind == "mission") mission::read_mission(file, {.may_lack_schedule = true, .cruise_s = {}});
-    if (kind == "disturbance")
-        mission::read_disturbances(file, flight::PerPhase<double>{{28.0, 600.0, 60.0}});
+    if (kind == "disturbance") mission::read_disturbances(file, flight::PerPhase<double>{{28.0, 600.0, 60.0}});
     if (kind == "model") mechanical::read_mechanical_model(file);
     if (kind == "series") flight::read_series_csv(file);
     if (kind == "battery") battery::read_battery(file);
@@ -95,9 +94,8 @@ std::vector<DocumentedKey> documented_keys() {
     std::vector<DocumentedKey> keys;
     for (const auto& page : pages()) {
         for (const auto& key : page.keys) {
-            const bool is_toml = std::any_of(sections.begin(), sections.end(), [&](const auto& section) {
-                return section.second == key.section;
-            });
+            const bool is_toml = std::any_of(sections.begin(), sections.end(),
+                                             [&](const auto& section) { return section.second == key.section; });
             if (is_toml && !key.is_column) keys.push_back(key);
         }
     }
@@ -124,18 +122,17 @@ TEST(TomlKeys, OfAllReadersAreDocumented) {
     ASSERT_GT(asked.size(), 200U);
     for (const auto& key : asked) {
         const auto wanted = as_documented(key);
-        EXPECT_TRUE(std::any_of(documented.begin(), documented.end(),
-                                [&](const auto& is) { return describes(is, wanted); }))
-            << wanted.section << " lacks [" << key.table << "] " << key.key << ", which is read from "
-            << key.file;
+        EXPECT_TRUE(
+            std::any_of(documented.begin(), documented.end(), [&](const auto& is) { return describes(is, wanted); }))
+            << wanted.section << " lacks [" << key.table << "] " << key.key << ", which is read from " << key.file;
     }
 }
 
 TEST(TomlKeys, ThatAreDocumentedAreRead) {
     const auto asked = asked_keys(scratch_dir());
     for (const auto& key : documented_keys()) {
-        EXPECT_TRUE(std::any_of(asked.begin(), asked.end(),
-                                [&](const auto& is) { return describes(key, as_documented(is)); }))
+        EXPECT_TRUE(
+            std::any_of(asked.begin(), asked.end(), [&](const auto& is) { return describes(key, as_documented(is)); }))
             << "line " << key.line << ": no reader asks for " << key.key << " of " << key.section;
     }
 }
@@ -166,8 +163,7 @@ std::set<std::string> keys_in_source() {
     const std::regex literal(R"re("([a-z][a-z0-9_]*)")re");
     std::set<std::string> keys;
     const auto add = [&](const std::string& text, const std::regex& pattern) {
-        for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
-            keys.insert((*it)[1]);
+        for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it) keys.insert((*it)[1]);
     };
     for (const auto& entry : std::filesystem::recursive_directory_iterator(source_dir() / "src")) {
         if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;

@@ -58,10 +58,9 @@ void expect_columns(const std::filesystem::path& file, const std::string& sectio
     std::stringstream cells(header);
     std::size_t count = 0;
     for (std::string column; std::getline(cells, column, ','); ++count) {
-        const bool documented =
-            std::any_of(formats().begin(), formats().end(), [&](const DocumentedKey& key) {
-                return key.section == section && (key.key == column || path_matches(key.key, column));
-            });
+        const bool documented = std::any_of(formats().begin(), formats().end(), [&](const DocumentedKey& key) {
+            return key.section == section && (key.key == column || path_matches(key.key, column));
+        });
         EXPECT_TRUE(documented || std::find(also.begin(), also.end(), column) != also.end())
             << file.filename() << ": '" << column << "' is not in docs/formats.md, " << section;
     }
@@ -86,8 +85,7 @@ TEST(WrittenColumns, AreDocumented) {
     expect_columns(folder / "out" / "flights" / "opterra_synthetic_01.series.csv", "Series");
     output_of("fit", logs() + Words{"--curves", "curves.csv", "-o", "model.toml"}, folder);
     expect_columns(folder / "curves.csv", "Curves");
-    output_of("simulate", {phased, "--samples", "10", "--samples-csv", "samples.csv", "-o", "soc.csv"},
-              folder);
+    output_of("simulate", {phased, "--samples", "10", "--samples-csv", "samples.csv", "-o", "soc.csv"}, folder);
     expect_columns(folder / "soc.csv", "State of charge");
     expect_columns(folder / "samples.csv", "Sampled state of charge");
     output_of("profile", {"specification.toml", "-o", "profiles"}, folder);
@@ -99,11 +97,9 @@ TEST(WrittenColumns, AreDocumented) {
 }
 
 /// Calls `found` for each value of a JSON text, with its path: "phases.takeoff.cos_w[]".
-void visit(const nlohmann::json& json, const std::string& path,
-           const std::function<void(const std::string&)>& found) {
+void visit(const nlohmann::json& json, const std::string& path, const std::function<void(const std::string&)>& found) {
     if (json.is_object()) {
-        for (const auto& [key, value] : json.items())
-            visit(value, path.empty() ? key : path + "." + key, found);
+        for (const auto& [key, value] : json.items()) visit(value, path.empty() ? key : path + "." + key, found);
     } else if (json.is_array()) {
         for (const auto& value : json) visit(value, path, found);
     } else {
@@ -125,9 +121,8 @@ bool is_key_of_a_file(const std::string& path, const std::string& documented) {
         if (word != "low" && word != "high") last = word;
     }
     if (!ends_in_key(documented)) return true;
-    return std::any_of(formats().begin(), formats().end(), [&](const DocumentedKey& key) {
-        return key.section != "JSON summaries" && key.key == last;
-    });
+    return std::any_of(formats().begin(), formats().end(),
+                       [&](const DocumentedKey& key) { return key.section != "JSON summaries" && key.key == last; });
 }
 
 void expect_keys(const std::string& json, const std::string& stage, const std::string& section) {
@@ -135,13 +130,12 @@ void expect_keys(const std::string& json, const std::string& stage, const std::s
     visit(nlohmann::json::parse(json), "", [&](const std::string& path) { paths.insert(path); });
     EXPECT_GT(paths.size(), 1U) << stage;
     for (const auto& path : paths) {
-        const bool documented =
-            std::any_of(formats().begin(), formats().end(), [&](const DocumentedKey& key) {
-                const bool here = key.section == section &&
-                                  (stage.empty() || std::find(key.tables.begin(), key.tables.end(), stage) !=
-                                                        key.tables.end());
-                return here && path_matches(key.key, path) && is_key_of_a_file(path, key.key);
-            });
+        const bool documented = std::any_of(formats().begin(), formats().end(), [&](const DocumentedKey& key) {
+            const bool here =
+                key.section == section &&
+                (stage.empty() || std::find(key.tables.begin(), key.tables.end(), stage) != key.tables.end());
+            return here && path_matches(key.key, path) && is_key_of_a_file(path, key.key);
+        });
         EXPECT_TRUE(documented) << stage << ": '" << path << "' is not in docs/formats.md, " << section;
     }
 }
@@ -174,12 +168,10 @@ TEST(WrittenKeys, OfProfilesAreDocumented) {
 TEST(WrittenKeys, OfModelsAreDocumented) {
     const auto folder = scratch_dir();
     expect_summary("fit", {log_file, "--order", "auto", "-o", "chosen.toml"}, folder);
-    expect_summary("fit",
-                   logs() + Words{"--errors", "--loss", "huber", "--level-covariate", "wind_m_per_s", "-o",
-                                  "model.toml"},
-                   folder);
-    expect_summary("predict", {log_file, "--model", "model.toml", "--until", "300", "--remaining", "300"},
-                   folder);
+    expect_summary(
+        "fit", logs() + Words{"--errors", "--loss", "huber", "--level-covariate", "wind_m_per_s", "-o", "model.toml"},
+        folder);
+    expect_summary("predict", {log_file, "--model", "model.toml", "--until", "300", "--remaining", "300"}, folder);
 }
 
 TEST(WrittenKeys, OfMissionsAreDocumented) {

@@ -41,8 +41,7 @@ TEST(EdgeWitness, GivesAVerdictOnEveryEdge) {
                      {.name = "mode", .time_s = {0, 110, 703}, .value = {0, 2, 1}}};
     series.block_names = {{3, "Take-off"}, {4, "Standby"}, {6, "Land Right"}};
     const auto sortie = sortie_at(100, 130, 702, 760);
-    EXPECT_THAT(verdicts(series, sortie),
-                testing::ElementsAre("agrees", "no witness", "agrees", "no witness"));
+    EXPECT_THAT(verdicts(series, sortie), testing::ElementsAre("agrees", "no witness", "agrees", "no witness"));
     const auto edges = explain_edges(series, sortie);
     EXPECT_EQ(edges[0].witnesses.size(), 1u);
     EXPECT_EQ(edges[0].witnesses[0].after_s, -2.0);

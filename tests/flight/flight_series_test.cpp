@@ -36,8 +36,7 @@ std::vector<std::string> ids_of(const std::vector<FlightSeries>& all) {
 }
 
 /// At several times: the series that is cut is the series of the log that ends there, whatever stood behind.
-void expect_no_hindsight(const std::string& text,
-                         const std::optional<telemetry::LogConfiguration>& configuration) {
+void expect_no_hindsight(const std::string& text, const std::optional<telemetry::LogConfiguration>& configuration) {
     const auto whole = test::all_series(text, configuration);
     const auto ids = ids_of(whole);
     double end_s = 0.0;
@@ -75,8 +74,7 @@ TEST(CutSeries, IsTheSeriesOfALogThatEndsThere) {
 
 TEST(CutSeries, CoversTheRealLogs) {
     FLIGHTWATT_NEEDS_SHARED();
-    EXPECT_THAT(test::all_logs(),
-                testing::Contains(test::shared_dir() / "flights" / "20_07_03__12_17_45.data"));
+    EXPECT_THAT(test::all_logs(), testing::Contains(test::shared_dir() / "flights" / "20_07_03__12_17_45.data"));
 }
 
 TEST(CutSeries, ForgetsWhatWasChosenByWhatCameLater) {
@@ -90,8 +88,8 @@ TEST(CutSeries, ForgetsWhatWasChosenByWhatCameLater) {
         text += fmt::format("{}.2 20 GPS 3 36028296 481362654 900 {} 340 -89 2112 0 31 0\n", i, 207000 + i);
         text += fmt::format("{}.4 20 AIRSPEED {}. 0. 0. 0.\n", i, i > 150 ? 12 : 0);
         text += fmt::format("{}.5 20 WIND_INFO 0 0 {}. 1. 0. 0.\n", i, i > 60 ? 3 : 0);
-        text += fmt::format("{}.6 20 ENERGY 11. {}. {} {}.\n", i, 2 + i % 5,
-                            i < 90 ? 500 + i : 11 * (2 + i % 5), 500 + i);
+        text +=
+            fmt::format("{}.6 20 ENERGY 11. {}. {} {}.\n", i, 2 + i % 5, i < 90 ? 500 + i : 11 * (2 + i % 5), 500 + i);
         if (i % 40 == 3) text += fmt::format("rubbish\n{}.7 20 ENERGY 1 2\nno time\n", i);
         if (i % 50 == 9) text += fmt::format("{}.2 20 ENERGY 11. nan 1 2.\n", i - 3);
     }

@@ -37,9 +37,7 @@ void expect_as_flown(const std::filesystem::path& data, const CsvTable& truth) {
         const auto& row = truth.rows[i];
         const auto& [sortie, span] = found[i];
         const auto text = [&](const char* column) { return row.cells[column_index(truth, column)].text; };
-        const auto number = [&](const char* column) {
-            return cell_number(truth, row, column_index(truth, column));
-        };
+        const auto number = [&](const char* column) { return cell_number(truth, row, column_index(truth, column)); };
         EXPECT_EQ(static_cast<double>(sortie), number("sortie"));
         EXPECT_EQ(to_string(span.phase), text("phase"));
         EXPECT_NEAR(span.start.time_s, number("start_s"), 3.0) << text("phase");

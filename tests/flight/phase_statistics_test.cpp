@@ -23,11 +23,9 @@ FlightSeries ramp() {
 TEST(PhaseStatistics, IntegratesLinearlyBetweenSamplesAndEdges) {
     const auto series = ramp();
     // The integral of 2 t from 10.5 to 90.25.
-    EXPECT_NEAR(units::joule_from_wh(integrated_energy_wh(series, 10.5, 90.25)), 90.25 * 90.25 - 10.5 * 10.5,
-                1e-9);
+    EXPECT_NEAR(units::joule_from_wh(integrated_energy_wh(series, 10.5, 90.25)), 90.25 * 90.25 - 10.5 * 10.5, 1e-9);
     const double whole = integrated_energy_wh(series, 0, 100);
-    EXPECT_NEAR(integrated_energy_wh(series, 0, 33.3) + integrated_energy_wh(series, 33.3, 100), whole,
-                1e-12);
+    EXPECT_NEAR(integrated_energy_wh(series, 0, 33.3) + integrated_energy_wh(series, 33.3, 100), whole, 1e-12);
     EXPECT_NEAR(units::joule_from_wh(integrated_energy_wh(series, 20.25, 20.5)), 0.25 * 2 * 20.375, 1e-9);
 }
 
@@ -48,8 +46,7 @@ TEST(PhaseStatistics, AgreesWithTheOnBoardCounterOfTheRealFlights) {
         double cruise_power_w;
     };
     for (const auto& [name, cruise_power_w] :
-         {Flight{"20_07_03__12_17_45", 29.9}, Flight{"20_07_05__10_26_44", 18.9},
-          Flight{"20_07_10__06_53_03", 22.0}}) {
+         {Flight{"20_07_03__12_17_45", 29.9}, Flight{"20_07_05__10_26_44", 18.9}, Flight{"20_07_10__06_53_03", 22.0}}) {
         SCOPED_TRACE(name);
         const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
         const auto phases = segment(series).sorties.at(0).phases;

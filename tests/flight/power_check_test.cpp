@@ -25,8 +25,7 @@ FlightSeries sound_flight() {
     flight.power_w = [](Phase, double tau) { return 25.0 + 5.0 * tau; };
     const auto log = make_synthetic_log(plain_scenario(flight), {}, "x", "", 1);
     return flight_series(
-        parse_telemetry(log.data, "x.data", telemetry::parse_log_configuration(log.log, "x.log"),
-                        flight_messages()),
+        parse_telemetry(log.data, "x.data", telemetry::parse_log_configuration(log.log, "x.log"), flight_messages()),
         "7");
 }
 
@@ -68,8 +67,7 @@ TEST(PowerReport, NamesWhatCannotBe) {
                 }),
                 Contains(HasSubstr("the energy counter ran back by")));
     EXPECT_THAT(faults_after([](test::SampleColumns& s) {
-                    for (auto* channel : {&s.power_w, &s.current_a})
-                        std::fill(channel->begin(), channel->end(), 2.0);
+                    for (auto* channel : {&s.power_w, &s.current_a}) std::fill(channel->begin(), channel->end(), 2.0);
                     s.voltage_v.clear();
                 }),
                 Contains("power does not change in flight"));
@@ -77,8 +75,7 @@ TEST(PowerReport, NamesWhatCannotBe) {
 
 TEST(PowerReport, JudgesAgainstTheCounterInFlightAlone) {
     EXPECT_THAT(faults_after([](test::SampleColumns& s) {
-                    for (std::size_t i = 0; i < s.time_s.size(); i += 50)
-                        s.power_w[i] = s.current_a[i] = 4000.0;
+                    for (std::size_t i = 0; i < s.time_s.size(); i += 50) s.power_w[i] = s.current_a[i] = 4000.0;
                     s.voltage_v.clear();
                 }),
                 Contains(HasSubstr("away from the on-board energy counter")));
@@ -105,8 +102,7 @@ TEST(PowerReport, TakesTheIdleCurrentOutOnlyWhenAsked) {
     ASSERT_EQ(corrected.time_s, measured.time_s);
     for (std::size_t i = 0; i < measured.time_s.size(); ++i) {
         EXPECT_NEAR(corrected.current_a[i], measured.current_a[i] - report.idle->mean_a, 1e-12);
-        EXPECT_NEAR(corrected.power_w[i], measured.power_w[i] - report.idle->mean_a * measured.voltage_v[i],
-                    1e-9);
+        EXPECT_NEAR(corrected.power_w[i], measured.power_w[i] - report.idle->mean_a * measured.voltage_v[i], 1e-9);
     }
     EXPECT_THAT(warnings_of(series), Contains(HasSubstr("was taken out")));
     EXPECT_EQ(power_track(series).source, power_track(before).source);

@@ -86,8 +86,7 @@ TEST(Segmentation, DoesNotDependOnTheUnitOfHeightOrTheHourOfTheLog) {
     const auto after = segment(test::series_of(series), options);
     ASSERT_EQ(after.sorties.size(), 1u);
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR(after.sorties[0].phases[i].start.time_s - 36000.0,
-                    before.sorties[0].phases[i].start.time_s, 0.6);
+        EXPECT_NEAR(after.sorties[0].phases[i].start.time_s - 36000.0, before.sorties[0].phases[i].start.time_s, 0.6);
     }
 }
 
@@ -227,8 +226,7 @@ TEST(Segmentation, WorksThroughGapsAndSpikes) {
     const auto drop = [&](double from, double to) {
         for (std::size_t i = series.time_s.size(); i-- > 0;) {
             if (series.time_s[i] < from || series.time_s[i] > to) continue;
-            for (auto* channel :
-                 {&series.time_s, &series.altitude_m, &series.throttle_percent, &series.power_w}) {
+            for (auto* channel : {&series.time_s, &series.altitude_m, &series.throttle_percent, &series.power_w}) {
                 channel->erase(channel->begin() + static_cast<std::ptrdiff_t>(i));
             }
         }
@@ -251,8 +249,7 @@ TEST(Segmentation, SaysWhatItSawWhereNothingFlew) {
         }
         return std::string("accepted");
     };
-    EXPECT_THAT(refusal({{0, 5, 0}, {100, 5, 0}}),
-                HasSubstr("holds no flight in 99 s; it stood still throughout"));
+    EXPECT_THAT(refusal({{0, 5, 0}, {100, 5, 0}}), HasSubstr("holds no flight in 99 s; it stood still throughout"));
     EXPECT_THAT(refusal({{0, 5, 0}, {50, 5, 0}, {51, 5, 70}, {60, 5, 70}, {61, 5, 0}, {100, 5, 0}}),
                 HasSubstr("run-up, taxi or hop: throttle to 70 %"));
     EXPECT_THAT(refusal({{0, 5, 0}, {50, 5, 0}, {60, 60, 0}, {70, 5, 0}, {100, 5, 0}}),

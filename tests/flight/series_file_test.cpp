@@ -63,8 +63,7 @@ TEST(SeriesFile, KeepsDevicesApart) {
 }
 
 TEST(SeriesFile, IsReadWithoutFrontMatterAndWithEmptyCells) {
-    const auto series =
-        parse_series_csv("# mine\ntime_s,power_w,altitude_m\n1,2,\n2,3,10\n3,,11\n", "out/mine.csv");
+    const auto series = parse_series_csv("# mine\ntime_s,power_w,altitude_m\n1,2,\n2,3,10\n3,,11\n", "out/mine.csv");
     EXPECT_EQ(series.flight, "mine");
     EXPECT_THAT(power_track(series).time_s, ElementsAre(1, 2));
     EXPECT_THAT(chosen_track(series, "altitude_m").time_s, ElementsAre(2, 3));
@@ -78,11 +77,9 @@ TEST(SeriesFile, RefusesANewerFormatAndWhatItDoesNotKnow) {
     };
     const std::string table = "time_s,power_w\n1,2\n2,3\n";
     EXPECT_THAT(refusal("# format = 2\n" + table), HasSubstr("format = 2 is newer than this program"));
-    const std::string front =
-        "# format = 1\n# flight = \"x\"\n# aircraft_id = \"\"\n# aircraft_name = \"\"\n";
+    const std::string front = "# format = 1\n# flight = \"x\"\n# aircraft_id = \"\"\n# aircraft_name = \"\"\n";
     EXPECT_THAT(refusal(front + "# current_origin = \"guessed\"\n" + table), HasSubstr("s.csv:5:"));
-    EXPECT_THAT(refusal(front + "# current_origin = \"unknown\"\n# colour = 1\n" + table),
-                HasSubstr("colour"));
+    EXPECT_THAT(refusal(front + "# current_origin = \"unknown\"\n# colour = 1\n" + table), HasSubstr("colour"));
     EXPECT_EQ(refusal(front + "# current_origin = \"unknown\"\n" + table), "");
 }
 

@@ -29,9 +29,7 @@ std::vector<double> on_power_clock(const FlightSeries& series, const std::string
     return chosen_at(series, name, power_track(series).time_s);
 }
 
-std::string source_of(const FlightSeries& series, const std::string& name) {
-    return chosen_track(series, name).source;
-}
+std::string source_of(const FlightSeries& series, const std::string& name) { return chosen_track(series, name).source; }
 
 TEST(TelemetrySeries, TakesPowerFromEnergyAndEverythingElseOntoItsClock) {
     const auto series = series_of(
@@ -42,8 +40,7 @@ TEST(TelemetrySeries, TakesPowerFromEnergyAndEverythingElseOntoItsClock) {
         "2. 20 ENERGY 60 11. 4. 44. 0.3 3.\n");
     EXPECT_THAT(power_track(series).time_s, ElementsAre(1, 2));
     EXPECT_THAT(on_power_clock(series, "power_w"), ElementsAre(12, 33)) << "duplicates are averaged";
-    EXPECT_THAT(on_power_clock(series, "charge_ah"), ElementsAre(0.1, 0.3))
-        << "of counters the latest counts";
+    EXPECT_THAT(on_power_clock(series, "charge_ah"), ElementsAre(0.1, 0.3)) << "of counters the latest counts";
     EXPECT_THAT(on_power_clock(series, "throttle_percent"), ElementsAre(40, 55));
     EXPECT_THAT(on_power_clock(series, "altitude_m"), ElementsAre(100, 105));
     EXPECT_EQ(source_of(series, "power_w"), "ENERGY.power");
@@ -54,8 +51,7 @@ TEST(TelemetrySeries, FallsBackToVoltageTimesCurrent) {
     const auto energy = series_of("1 20 ENERGY 11. 2. 5 0.\n2 20 ENERGY 11. 3. 6 0.\n");
     EXPECT_THAT(on_power_clock(energy, "power_w"), ElementsAre(22, 33));
     EXPECT_EQ(source_of(energy, "power_w"), "ENERGY.bat * ENERGY.amp");
-    EXPECT_THAT(on_power_clock(energy, "charge_ah"), ElementsAre(0.005, 0.006))
-        << "an energy in mAh is a charge";
+    EXPECT_THAT(on_power_clock(energy, "charge_ah"), ElementsAre(0.005, 0.006)) << "an energy in mAh is a charge";
     EXPECT_TRUE(on_power_clock(energy, "energy_wh").empty());
     const auto bat = series_of("1 20 BAT 4800 110 200 5 0 5 5 7\n2 20 BAT 9600 110 300 5 0 5 5 7\n");
     EXPECT_THAT(on_power_clock(bat, "power_w"), ElementsAre(22, 33));
@@ -73,8 +69,7 @@ TEST(TelemetrySeries, DoesNotTrustAnAssumedPowerThatContradictsVoltageTimesCurre
 
 TEST(TelemetrySeries, FindsOutWhereTheFourFieldEnergyHasItsPower) {
     std::string text;
-    for (int i = 0; i < 20; ++i)
-        text += fmt::format("{} 20 ENERGY 11. {}. {} {}.\n", i, 2 + i, 11 * (2 + i), 500 + i);
+    for (int i = 0; i < 20; ++i) text += fmt::format("{} 20 ENERGY 11. {}. {} {}.\n", i, 2 + i, 11 * (2 + i), 500 + i);
     const auto series = series_of(text);
     EXPECT_EQ(on_power_clock(series, "power_w")[1], 33.0);
     EXPECT_EQ(source_of(series, "power_w"), "ENERGY.power");
@@ -126,8 +121,7 @@ class ReadFlight : public testing::Test {
         std::ofstream(path, std::ios::binary) << text;
         return path;
     }
-    static std::string refusal(const std::filesystem::path& path,
-                               const std::optional<std::string>& id = std::nullopt) {
+    static std::string refusal(const std::filesystem::path& path, const std::optional<std::string>& id = std::nullopt) {
         try {
             read_flight(path, id);
         } catch (const InputError& error) {
@@ -141,15 +135,12 @@ class ReadFlight : public testing::Test {
 std::string flying(int id) {
     std::string text;
     for (int t = 0; t < 20; ++t) {
-        text +=
-            fmt::format("{0} {1} ENERGY 60 12. 1. 12. 0. 0.\n{0} {1} ESTIMATOR {2}. 0.\n", t, id, 100 + t);
+        text += fmt::format("{0} {1} ENERGY 60 12. 1. 12. 0. 0.\n{0} {1} ESTIMATOR {2}. 0.\n", t, id, 100 + t);
     }
     return text;
 }
 
-std::string parked(int id) {
-    return fmt::format("1 {0} ENERGY 0 12. 1. 12. 0. 0.\n1 {0} ESTIMATOR 100. 0.\n", id);
-}
+std::string parked(int id) { return fmt::format("1 {0} ENERGY 0 12. 1. 12. 0. 0.\n1 {0} ESTIMATOR 100. 0.\n", id); }
 
 TEST_F(ReadFlight, AsksWhichAircraftWhereSeveralFlew) {
     const auto two = write("two.data", flying(20) + flying(7));
@@ -166,9 +157,8 @@ TEST_F(ReadFlight, SaysWhatALogWithoutPowerHolds) {
             "holds no measured power of aircraft 20 (assumed ESTIMATOR: 2 fields; assumed ATTITUDE: 3 fields); expected "
             "ENERGY with power, BAT or ENERGY with "
             "current, ESC or POWER_DEVICE; it holds ATTITUDE 1, ESTIMATOR 1"));
-    EXPECT_THAT(
-        refusal(write("b.data", "1 20 ENERGY 1 12. nan nan 0. 0.\n2 20 ENERGY 1 12. nan nan 0. 0.\n")),
-        HasSubstr("ENERGY.power has no two finite values"));
+    EXPECT_THAT(refusal(write("b.data", "1 20 ENERGY 1 12. nan nan 0. 0.\n2 20 ENERGY 1 12. nan nan 0. 0.\n")),
+                HasSubstr("ENERGY.power has no two finite values"));
     EXPECT_THAT(refusal(write("c.data", "1 20 ENERGY 1 12. 0. 0. 0. 0.\n2 20 ENERGY 1 12. 0. 0. 0. 0.\n")),
                 HasSubstr("ENERGY.power is 0 throughout"));
 }
@@ -188,12 +178,10 @@ TEST_F(ReadFlight, RefusesBadSeriesWithTheirPlace) {
     EXPECT_EQ(at("time_s,power_w\n1,2\n2,nan\n"), "/s.csv:3:3: power_w is not a finite number: 'nan'; ");
     EXPECT_EQ(at("time_s,power_w\n1,2\n1,3\n"),
               "/s.csv:3:1: time_s = 1 does not rise from 1; sort the rows by time and keep one of each");
-    EXPECT_THAT(at("time_s,power_kw\n1,2\n"),
-                HasSubstr("has no column 'power_w'; its columns are time_s, power_kw"));
+    EXPECT_THAT(at("time_s,power_kw\n1,2\n"), HasSubstr("has no column 'power_w'; its columns are time_s, power_kw"));
     EXPECT_THAT(at("time_s,power_w,altitud_m\n1,2,3\n"), HasSubstr("did you mean 'altitude_m'?"));
     EXPECT_THAT(at("time_s,power_w\n1,2\n"), HasSubstr("fewer than two samples"));
-    EXPECT_THAT(at("time_s,power_w,power_w\n1,2,3\n2,2,3\n"),
-                HasSubstr("column 'power_w' stands there twice"));
+    EXPECT_THAT(at("time_s,power_w,power_w\n1,2,3\n2,2,3\n"), HasSubstr("column 'power_w' stands there twice"));
 }
 
 TEST_F(ReadFlight, ReadsASeriesThatBeginsWithAByteOrderMark) {

@@ -88,9 +88,9 @@ inline std::optional<telemetry::LogConfiguration> configuration_of(const std::fi
 }
 
 /// The series of every sender of telemetry in a text.
-inline std::vector<flight::FlightSeries> all_series(
-    std::string_view text, const std::optional<telemetry::LogConfiguration>& configuration,
-    const std::vector<std::string>& ids = {}) {
+inline std::vector<flight::FlightSeries> all_series(std::string_view text,
+                                                    const std::optional<telemetry::LogConfiguration>& configuration,
+                                                    const std::vector<std::string>& ids = {}) {
     const auto log = telemetry::parse_telemetry(text, "x.data", configuration, flight::flight_messages());
     std::vector<flight::FlightSeries> all;
     for (const auto& id : ids.empty() ? flight::telemetry_senders(log) : ids) {

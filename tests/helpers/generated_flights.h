@@ -15,8 +15,7 @@ namespace flightwatt::test {
 
 /// A flight recorded off its true curves; with `until_s`, seen in flight so long after its cruise began.
 inline mechanical::MeasuredFlight measured(const std::string& name,
-                                           const flight::PerPhase<mechanical::PhaseModel>& truth,
-                                           std::mt19937& random,
+                                           const flight::PerPhase<mechanical::PhaseModel>& truth, std::mt19937& random,
                                            std::optional<double> until_s = std::nullopt) {
     mechanical::MeasuredFlight flight;
     flight.samples.flight = name;
@@ -28,8 +27,7 @@ inline mechanical::MeasuredFlight measured(const std::string& name,
     if (until_s) {
         flight.flown = mechanical::FlightProgress{};
         flight.flown->until_s = *until_s;
-        flight.flown->cruise_energy_wh =
-            units::wh_from_joule(energy_j(truth[flight::Phase::cruise].fourier, *until_s));
+        flight.flown->cruise_energy_wh = units::wh_from_joule(energy_j(truth[flight::Phase::cruise].fourier, *until_s));
     }
     return flight;
 }

@@ -26,8 +26,8 @@ const std::string stderr_section = "--- stderr";
 const std::string exact_line = "--- compare exactly";
 
 bool is_section(std::string_view line) {
-    return line == command_section || line == exit_section || line == stdout_section ||
-           line == stderr_section || line == exact_line;
+    return line == command_section || line == exit_section || line == stdout_section || line == stderr_section ||
+           line == exact_line;
 }
 
 /// Lines with their line feed.
@@ -141,13 +141,11 @@ std::string line_with_expected_numbers(std::string_view actual_line, std::string
                close(actual[i], expected[i]) && !same_length(actual[i], expected[i]);
     };
     for (std::size_t i = 0; i < actual.size(); ++i) {
-        bool adopt =
-            i < expected.size() && actual[i].number && expected[i].number && close(actual[i], expected[i]);
+        bool adopt = i < expected.size() && actual[i].number && expected[i].number && close(actual[i], expected[i]);
         if (i < expected.size() && actual[i].blank && expected[i].blank) {
             for (const auto beside : {i + 1, i == 0 ? actual.size() : i - 1}) {
-                adopt =
-                    adopt || (longer(beside) && actual[i].text.size() + actual[beside].text.size() ==
-                                                    expected[i].text.size() + expected[beside].text.size());
+                adopt = adopt || (longer(beside) && actual[i].text.size() + actual[beside].text.size() ==
+                                                        expected[i].text.size() + expected[beside].text.size());
             }
         }
         text += adopt ? expected[i].text : actual[i].text;
@@ -177,8 +175,7 @@ GoldenCase read_golden_case(const std::filesystem::path& path) {
         ++number;
         const std::string line(raw.substr(0, raw.find('\n')));
         if (!is_section(line)) {
-            if (body == nullptr)
-                throw InputError({path.string(), number, 1}, "expected '" + command_section + "'");
+            if (body == nullptr) throw InputError({path.string(), number, 1}, "expected '" + command_section + "'");
             body->append(raw);
             continue;
         }
@@ -189,8 +186,7 @@ GoldenCase read_golden_case(const std::filesystem::path& path) {
         if (line == stdout_section) body = &golden.expected.stdout_text;
         if (line == stderr_section) body = &golden.expected.stderr_text;
     }
-    if (golden.command.empty())
-        throw InputError({path.string(), number, 1}, "has no '" + command_section + "'");
+    if (golden.command.empty()) throw InputError({path.string(), number, 1}, "has no '" + command_section + "'");
     auto& code = golden.expected.exit_code;
     if (!code.empty() && code.back() == '\n') code.pop_back();
     return golden;
@@ -210,8 +206,8 @@ std::string with_expected_numbers(std::string_view actual, std::string_view expe
     const auto expected_lines = lines_of(expected);
     std::string text;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        text += i < expected_lines.size() ? line_with_expected_numbers(lines[i], expected_lines[i])
-                                          : std::string(lines[i]);
+        text +=
+            i < expected_lines.size() ? line_with_expected_numbers(lines[i], expected_lines[i]) : std::string(lines[i]);
     }
     return text;
 }

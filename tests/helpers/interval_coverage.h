@@ -14,8 +14,7 @@
 namespace flightwatt::test {
 
 /// Adds noise to a recorded flight: normal, with that correlation between samples 1.1 s apart.
-inline void add_noise(mechanical::PhaseSamples& samples, double noise_w, double autocorrelation,
-                      std::mt19937& random) {
+inline void add_noise(mechanical::PhaseSamples& samples, double noise_w, double autocorrelation, std::mt19937& random) {
     std::normal_distribution<double> normal(0.0, 1.0);
     double state = normal(random);
     for (std::size_t i = 0; i < samples.tau.size(); ++i) {
@@ -59,8 +58,7 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
         std::vector<mechanical::PhaseSamples> flights;
         for (std::size_t i = 0; i < made.together; ++i) {
             const double duration_s = truth.duration_s * (0.92 + 0.16 * uniform(random));
-            flights.push_back(
-                record(truth, {duration_s, 1.1, 0.0, 0.15}, random, "flight" + std::to_string(i + 1)));
+            flights.push_back(record(truth, {duration_s, 1.1, 0.0, 0.15}, random, "flight" + std::to_string(i + 1)));
             add_noise(flights.back(), made.noise_w, made.autocorrelation, random);
             for (double& power : flights.back().power_w) {
                 if (uniform(random) < made.outliers) power += 20.0 * made.noise_w;

@@ -41,8 +41,8 @@ inline mechanical::PhaseSamples record(const mechanical::PhaseModel& phase, cons
 }
 
 /// Flights of the published phase, 8 % longer or shorter, at 1.1 s with 15 % of the samples lost.
-inline std::vector<mechanical::PhaseSamples> record_flights(flight::Phase phase, std::size_t count,
-                                                            double noise_w, unsigned seed) {
+inline std::vector<mechanical::PhaseSamples> record_flights(flight::Phase phase, std::size_t count, double noise_w,
+                                                            unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> stretch(0.92, 1.08);
     const auto model = published_model().phases[phase];
@@ -55,8 +55,7 @@ inline std::vector<mechanical::PhaseSamples> record_flights(flight::Phase phase,
 }
 
 /// A cruise of 600 s that has so many periods.
-inline mechanical::PhaseModel cruise_of(double periods, std::vector<double> cos_w,
-                                        std::vector<double> sin_w) {
+inline mechanical::PhaseModel cruise_of(double periods, std::vector<double> cos_w, std::vector<double> sin_w) {
     mechanical::PhaseModel phase;
     phase.duration_s = 600.0;
     phase.fourier = {periods * 2.0 * std::numbers::pi / 600.0, 27.22, std::move(cos_w), std::move(sin_w)};

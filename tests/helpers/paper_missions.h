@@ -20,8 +20,7 @@ inline mission::Mission paper_mission(const std::string& name) {
 
 /// One that is yet to be planned.
 inline mission::PlanningProblem paper_problem(const std::string& name) {
-    return std::get<mission::PlanningProblem>(
-        mission::read_mission(paper_mission_path(name), {true, std::nullopt}));
+    return std::get<mission::PlanningProblem>(mission::read_mission(paper_mission_path(name), {true, std::nullopt}));
 }
 
 }  // namespace flightwatt::test

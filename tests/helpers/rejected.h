@@ -21,8 +21,7 @@ std::string rejected(const Attempt& attempt, const std::filesystem::path& folder
         if (!error.hint().empty()) text += "; " + error.hint();
     }
     const auto prefix = folder.string() + "/";
-    while (!folder.empty() && text.find(prefix) != std::string::npos)
-        text.erase(text.find(prefix), prefix.size());
+    while (!folder.empty() && text.find(prefix) != std::string::npos) text.erase(text.find(prefix), prefix.size());
     return text;
 }
 

@@ -43,10 +43,8 @@ inline flight::FlightSeries series_of(SampleColumns columns, const std::string& 
     if (columns.power_w.empty()) columns.power_w.assign(columns.time_s.size(), 0.0);
     for (const auto& [column, values] : named_columns()) {
         if ((columns.*values).empty()) continue;
-        series.tracks.push_back({.name = column,
-                                 .source = flight::plain_source,
-                                 .time_s = columns.time_s,
-                                 .value = columns.*values});
+        series.tracks.push_back(
+            {.name = column, .source = flight::plain_source, .time_s = columns.time_s, .value = columns.*values});
     }
     return series;
 }

@@ -16,8 +16,7 @@ inline std::filesystem::path sample(int number, const std::string& ending = ".da
 }
 
 /// Copies a sample log and its .log into `folder`, under another name if one is given.
-inline std::filesystem::path copy_sample(int number, const std::filesystem::path& folder,
-                                         std::string name = "") {
+inline std::filesystem::path copy_sample(int number, const std::filesystem::path& folder, std::string name = "") {
     if (name.empty()) name = sample(number).stem().string();
     std::filesystem::create_directories(folder);
     const auto overwrite = std::filesystem::copy_options::overwrite_existing;
@@ -38,8 +37,8 @@ inline std::map<std::string, std::string> contents(const std::filesystem::path& 
 }
 
 /// A batch over `input` into `out`, with the catalogue that flightwatt batch writes.
-inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input,
-                                             const std::filesystem::path& out, unsigned jobs = 2) {
+inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input, const std::filesystem::path& out,
+                                             unsigned jobs = 2) {
     batch::BatchOptions options;
     options.out = out;
     options.jobs = jobs;

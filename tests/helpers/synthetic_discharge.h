@@ -45,8 +45,7 @@ inline SampleColumns discharge_columns(const battery::Battery& battery, const Sy
     double lost_until_s = 0.0;
     const auto rounded = [](double value, double to) { return std::round(value / to) * to; };
     for (double time_s = 0.0; time_s < settings.duration_s; time_s += step_s) {
-        gust_a = gust_a * gust_decay +
-                 settings.gusts_a * std::sqrt(1.0 - gust_decay * gust_decay) * normal(random);
+        gust_a = gust_a * gust_decay + settings.gusts_a * std::sqrt(1.0 - gust_decay * gust_decay) * normal(random);
         const double left_s = settings.duration_s - time_s;
         double current_a = 0.03;
         if (time_s > 40.0 && time_s < 43.0) current_a = 4.0;
@@ -56,8 +55,7 @@ inline SampleColumns discharge_columns(const battery::Battery& battery, const Sy
             due_s += settings.interval_s;
             if (uniform(random) < 0.005) lost_until_s = time_s + 15.0;
             if (time_s > lost_until_s && uniform(random) > settings.lost_fraction) {
-                const double soc =
-                    100.0 - 100.0 * (settings.initial_charge_ah + charge_ah) / battery.capacity_ah;
+                const double soc = 100.0 - 100.0 * (settings.initial_charge_ah + charge_ah) / battery.capacity_ah;
                 const double voltage_v = terminal_voltage_v(battery, {soc, rc_v}, current_a);
                 series.time_s.push_back(time_s);
                 series.voltage_v.push_back(
@@ -75,8 +73,8 @@ inline SampleColumns discharge_columns(const battery::Battery& battery, const Sy
 }
 
 /// The same as a series "synthetic_SEED".
-inline flight::FlightSeries synthetic_discharge(const battery::Battery& battery,
-                                                const SyntheticDischarge& settings, std::uint64_t seed) {
+inline flight::FlightSeries synthetic_discharge(const battery::Battery& battery, const SyntheticDischarge& settings,
+                                                std::uint64_t seed) {
     return series_of(discharge_columns(battery, settings, seed), "synthetic_" + std::to_string(seed));
 }
 
@@ -87,8 +85,8 @@ inline battery::Battery known_pack() {
     for (int i = 0; i <= 50; ++i) {
         const double s = i / 50.0;
         circuit.open_circuit.soc_percent.push_back(100.0 * s);
-        circuit.open_circuit.voltage_v.push_back(
-            3.0 * (3.62 + 0.20 * s + 0.30 * s * s * s - 0.35 * std::exp(-s / 0.05)));
+        circuit.open_circuit.voltage_v.push_back(3.0 *
+                                                 (3.62 + 0.20 * s + 0.30 * s * s * s - 0.35 * std::exp(-s / 0.05)));
     }
     circuit.rc_resistance_ohm = 0.05;
     circuit.rc_time_constant_s = 35.0;

@@ -58,8 +58,7 @@ std::vector<FlightSamples> recorded() {
         for (const auto phase : flight::all_phases) {
             auto curve = test::published_model().phases[phase];
             if (phase == flight::Phase::cruise) curve.fourier.a0_w += step;
-            flight.phases[phase] =
-                test::record(curve, {curve.duration_s, 1.1, 0.1, 0.1}, random, flight.flight);
+            flight.phases[phase] = test::record(curve, {curve.duration_s, 1.1, 0.1, 0.1}, random, flight.flight);
         }
         flight.phases[flight::Phase::cruise]->covariates[Covariate::height] = 100.0 + 10.0 * step;
         recorded.push_back(flight);

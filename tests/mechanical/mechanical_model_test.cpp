@@ -27,8 +27,7 @@ double rms_from_figure_w(const FourierModel& model, const std::string& file) {
 
 TEST(MechanicalModel, IsTheSeriesOfEquationOne) {
     const FourierModel model{0.5, 10.0, {1.0, 2.0}, {3.0, 4.0}};
-    const double expected =
-        10.0 + std::cos(1.0) + 3.0 * std::sin(1.0) + 2.0 * std::cos(2.0) + 4.0 * std::sin(2.0);
+    const double expected = 10.0 + std::cos(1.0) + 3.0 * std::sin(1.0) + 2.0 * std::cos(2.0) + 4.0 * std::sin(2.0);
     EXPECT_DOUBLE_EQ(power_w(model, 2.0), expected);
     EXPECT_DOUBLE_EQ(power_w(model, 0.0), 13.0);
 }
@@ -48,8 +47,7 @@ TEST(MechanicalModel, EnergyIsTheIntegralOfPower) {
             std::tie(published.phases[phase].fourier, published.phases[phase].duration_s);
         constexpr int steps = 20000;  // Simpson's rule
         double integral = power_w(fourier, 0.0) + power_w(fourier, duration_s);
-        for (int i = 1; i < steps; ++i)
-            integral += (i % 2 == 1 ? 4.0 : 2.0) * power_w(fourier, duration_s * i / steps);
+        for (int i = 1; i < steps; ++i) integral += (i % 2 == 1 ? 4.0 : 2.0) * power_w(fourier, duration_s * i / steps);
         integral *= duration_s / steps / 3.0;
         EXPECT_NEAR(energy_j(fourier, duration_s), integral, 1e-9 * integral) << to_string(phase);
     }
@@ -71,8 +69,7 @@ TEST(MechanicalModel, AStretchedPhaseEndsWhereTheModelEnds) {
     const auto phase = test::published_model().phases[flight::Phase::landing];
     const auto stretched = flown_model(phase, 2.0 * phase.duration_s, PhaseClock::stretched);
     EXPECT_NEAR(power_w(stretched, 2.0 * phase.duration_s), power_w(phase.fourier, phase.duration_s), 1e-12);
-    EXPECT_NEAR(energy_j(stretched, 2.0 * phase.duration_s), 2.0 * energy_j(phase.fourier, phase.duration_s),
-                1e-9);
+    EXPECT_NEAR(energy_j(stretched, 2.0 * phase.duration_s), 2.0 * energy_j(phase.fourier, phase.duration_s), 1e-9);
     const auto absolute = flown_model(phase, 2.0 * phase.duration_s, PhaseClock::absolute);
     EXPECT_EQ(absolute.omega_rad_per_s, phase.fourier.omega_rad_per_s);
 }

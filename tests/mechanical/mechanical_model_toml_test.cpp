@@ -150,17 +150,13 @@ TEST(MechanicalModelToml, RefusesNumbersThatMakeNoSense) {
                 HasSubstr("expected more than 0"));
     EXPECT_THAT(refusal_of("a0_w = 27.0", "a0_w = nan").what(), HasSubstr("expected a finite number"));
     EXPECT_THAT(refusal_of("a0_w = 27.0", "a0_w = \"27\"").what(), HasSubstr("expected a finite number"));
-    EXPECT_THAT(refusal_of("samples = 12\n", "samples = 12.5\n").what(),
-                HasSubstr("expected a whole number"));
+    EXPECT_THAT(refusal_of("samples = 12\n", "samples = 12.5\n").what(), HasSubstr("expected a whole number"));
     EXPECT_THAT(refusal_of("samples = 12\n", "samples = -12\n").what(),
                 HasSubstr("samples = -12, expected a whole number, 0 or more"));
-    EXPECT_THAT(refusal_of("weight = 1.0", "weight = 1.5").what(),
-                HasSubstr("weight = 1.5, expected 0 to 1"));
-    EXPECT_THAT(refusal_of("rms_w = 0.5", "rms_w = -0.5").what(),
-                HasSubstr("rms_w = -0.5, expected 0 or more"));
+    EXPECT_THAT(refusal_of("weight = 1.0", "weight = 1.5").what(), HasSubstr("weight = 1.5, expected 0 to 1"));
+    EXPECT_THAT(refusal_of("rms_w = 0.5", "rms_w = -0.5").what(), HasSubstr("rms_w = -0.5, expected 0 or more"));
     EXPECT_THAT(refusal_of("\"none\"", "\"never\"").what(), HasSubstr("expected none, low or high"));
-    EXPECT_THAT(refusal_of("high_rad = 30.0", "high_rad = 2.0").what(),
-                HasSubstr("high_rad = 2, expected 3 or more"));
+    EXPECT_THAT(refusal_of("high_rad = 30.0", "high_rad = 2.0").what(), HasSubstr("high_rad = 2, expected 3 or more"));
 }
 
 TEST(MechanicalModelToml, RefusesANewerFormat) {

@@ -57,8 +57,7 @@ TEST(ModelErrors, AreReadBackFromTheModelFile) {
     const auto text = to_toml(fit.model);
     const auto again = read_mechanical_model(written(text));
     EXPECT_EQ(to_toml(again), text);
-    EXPECT_EQ(again.phases[flight::Phase::cruise].errors->cos_w,
-              fit.model.phases[flight::Phase::cruise].errors->cos_w);
+    EXPECT_EQ(again.phases[flight::Phase::cruise].errors->cos_w, fit.model.phases[flight::Phase::cruise].errors->cos_w);
     EXPECT_EQ(again.phases[flight::Phase::landing].spread->high_w,
               fit.model.phases[flight::Phase::landing].spread->high_w);
 }
@@ -76,13 +75,11 @@ TEST(ModelErrors, AFileWithImpossibleErrorsIsRefused) {
         }
         return "read without complaint";
     };
-    EXPECT_THAT(refusal([](auto& phase) { phase.errors->a0_w = -1.0; }),
-                HasSubstr("a0_w = -1, expected 0 or more"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.errors->a0_w = -1.0; }), HasSubstr("a0_w = -1, expected 0 or more"));
     EXPECT_THAT(refusal([](auto& phase) { phase.errors->cos_w.pop_back(); }),
                 HasSubstr("cos_w has 2 numbers, expected 3"));
     EXPECT_THAT(refusal([](auto& phase) { phase.errors->sin_w[1] = -0.5; }), HasSubstr("negative"));
-    EXPECT_THAT(refusal([](auto& phase) { phase.errors->r2 = 1.5; }),
-                HasSubstr("r2 = 1.5, expected at most 1"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.errors->r2 = 1.5; }), HasSubstr("r2 = 1.5, expected at most 1"));
     EXPECT_THAT(refusal([](auto& phase) { phase.spread->high_w.pop_back(); }), HasSubstr("as many of each"));
     EXPECT_THAT(refusal([](auto& phase) { std::swap(phase.spread->low_w, phase.spread->high_w); }),
                 HasSubstr("is below low_w's"));
@@ -101,9 +98,7 @@ TEST(ModelErrors, CurvesAreATableOfBothBands) {
     ASSERT_EQ(table.columns.size(), 12U);
     ASSERT_GE(table.rows.size(), 603U);
     for (const auto& row : table.rows) {
-        const auto number = [&](std::string_view name) {
-            return cell_number(table, row, column_index(table, name));
-        };
+        const auto number = [&](std::string_view name) { return cell_number(table, row, column_index(table, name)); };
         EXPECT_LE(number("low_95_w"), number("power_w"));
         EXPECT_GE(number("high_95_w"), number("power_w"));
         EXPECT_LE(number("flights_low_w"), number("power_w") + 1e-4);
@@ -115,8 +110,8 @@ TEST(ModelErrors, CurvesAreATableOfBothBands) {
 
 TEST(TableOne, CanHaveIntervals) {
     auto model = test::published_model();
-    model.phases[flight::Phase::cruise].errors = PhaseErrors{
-        1e-5, 0.05, {0.01, 0.02, 0.03}, {0.04, 0.05, 0.06}, 0.02, 1e9, false, 0.9, 2.0, 0.1, 400.0};
+    model.phases[flight::Phase::cruise].errors =
+        PhaseErrors{1e-5, 0.05, {0.01, 0.02, 0.03}, {0.04, 0.05, 0.06}, 0.02, 1e9, false, 0.9, 2.0, 0.1, 400.0};
     const auto table = table_one(model, TableIntervals::present);
     ASSERT_EQ(table.header.size(), 7U);
     EXPECT_EQ(table.header[4], "cruise +-");
@@ -156,9 +151,8 @@ $\xi$ & $0.1525$ & $0.1799$ & $0.1296$ \\
 }
 
 TEST(TableOneLatex, LeavesNothingThatTexReadsOtherwise) {
-    const auto text =
-        to_latex({{"coefficient", "take-off", "take-off +-"},
-                  {{"a0", "1.5e-05", "0.012"}, {"a0 difference [%]", "-", "-"}, {"x_y", "&", "#"}}});
+    const auto text = to_latex({{"coefficient", "take-off", "take-off +-"},
+                                {{"a0", "1.5e-05", "0.012"}, {"a0 difference [%]", "-", "-"}, {"x_y", "&", "#"}}});
     EXPECT_THAT(text, HasSubstr(R"($a_{0}$ & $1.5 \times 10^{-5}$ & $\pm 0.012$ \\)"));
     EXPECT_THAT(text, HasSubstr(R"(a0 difference [\%] & -- & -- \\)"));
     EXPECT_THAT(text, HasSubstr(R"(x\_y & \& & \# \\)"));
@@ -166,9 +160,8 @@ TEST(TableOneLatex, LeavesNothingThatTexReadsOtherwise) {
 }
 
 TEST(TableOneLatex, ScalesATableThatIsWiderThanAPage) {
-    const auto wide =
-        to_latex({{"coefficient", "a published", "a regenerated", "b published", "b regenerated"},
-                  {{"a0", "1", "2", "3", "4"}}});
+    const auto wide = to_latex({{"coefficient", "a published", "a regenerated", "b published", "b regenerated"},
+                                {{"a0", "1", "2", "3", "4"}}});
     EXPECT_THAT(wide, testing::StartsWith("% needs \\usepackage{graphicx}\n\\begin{table}"));
     EXPECT_THAT(wide, testing::HasSubstr("\\resizebox{\\linewidth}{!}{%\n\\begin{tabular}{lrrrr}"));
     EXPECT_THAT(wide, testing::HasSubstr(" & \\shortstack[r]{a\\\\published} & "));

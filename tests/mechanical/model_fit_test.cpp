@@ -44,15 +44,14 @@ TEST(ModelFit, RegeneratesThePublishedModel) {
     const auto published = test::published_model();
     for (unsigned seed = 1; seed <= 10; ++seed) {
         const auto model = fit_model(made_up_flights(6, 0.2, seed)).model;
-        EXPECT_LE(curve_rms_difference_w(model.phases[flight::Phase::takeoff],
-                                         published.phases[flight::Phase::takeoff]),
+        EXPECT_LE(
+            curve_rms_difference_w(model.phases[flight::Phase::takeoff], published.phases[flight::Phase::takeoff]),
+            0.10);
+        EXPECT_LE(curve_rms_difference_w(model.phases[flight::Phase::cruise], published.phases[flight::Phase::cruise]),
                   0.10);
-        EXPECT_LE(curve_rms_difference_w(model.phases[flight::Phase::cruise],
-                                         published.phases[flight::Phase::cruise]),
-                  0.10);
-        EXPECT_LE(curve_rms_difference_w(model.phases[flight::Phase::landing],
-                                         published.phases[flight::Phase::landing]),
-                  0.30);
+        EXPECT_LE(
+            curve_rms_difference_w(model.phases[flight::Phase::landing], published.phases[flight::Phase::landing]),
+            0.30);
         // Noise of 0.2 W leaves the level of a series of less than a period open in the shorter phases.
         EXPECT_NEAR(model.phases[flight::Phase::cruise].fourier.a0_w,
                     published.phases[flight::Phase::cruise].fourier.a0_w, 0.27);
@@ -147,8 +146,7 @@ TEST(ModelFit, WeightsByHandReachTheAverage) {
                        {{"flight1", {}, 1.0}, {"flight2", {}, 0.0}, {"flight2", flight::Phase::cruise, 3.0}}};
     const auto model = fit_model(flights, options).model;
     EXPECT_EQ(model.weighting, "by hand");
-    EXPECT_EQ(model.phases[flight::Phase::takeoff].duration_s,
-              flights[0].phases[flight::Phase::takeoff]->duration_s);
+    EXPECT_EQ(model.phases[flight::Phase::takeoff].duration_s, flights[0].phases[flight::Phase::takeoff]->duration_s);
     EXPECT_EQ(model.flights[1].phases[flight::Phase::cruise]->weight, 0.75);
     options.weights.by_hand.push_back({"flight3", {}, 1.0});
     EXPECT_THAT(message_of<UsageError>(flights, options), HasSubstr("'flight3'"));
@@ -193,12 +191,11 @@ TEST(DownWeightedSamples, AreTheOutliersFirst) {
 
 TEST(DownWeightedSamples, CountLessThanHalfAndRise) {
     const auto flights = with_outliers();
-    const auto found =
-        down_weighted_samples(flights, fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber}));
+    const auto found = down_weighted_samples(flights, fit_phase(flight::Phase::cruise, flights, {.loss = Loss::huber}));
     ASSERT_FALSE(found.empty());
     EXPECT_LT(found.back().weight, 0.5);
-    EXPECT_TRUE(std::is_sorted(found.begin(), found.end(),
-                               [](const auto& a, const auto& b) { return a.weight < b.weight; }));
+    EXPECT_TRUE(
+        std::is_sorted(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.weight < b.weight; }));
 }
 
 TEST(DownWeightedSamples, AreNoneOfAPlainFit) {

@@ -19,8 +19,7 @@ std::vector<PhaseSamples> flights_of_order(std::size_t order, std::size_t count,
     std::mt19937 random(seed);
     std::vector<PhaseSamples> flights;
     for (std::size_t i = 0; i < count; ++i) {
-        flights.push_back(
-            test::record(phase, {600.0, 2.0, 0.1, 0.1}, random, "flight" + std::to_string(i + 1)));
+        flights.push_back(test::record(phase, {600.0, 2.0, 0.1, 0.1}, random, "flight" + std::to_string(i + 1)));
     }
     return flights;
 }
@@ -64,8 +63,7 @@ TEST(OrderChoice, PassesOverOrdersThatTheSamplesAreTooFewFor) {
             flight.power_w.push_back(20.0 + i % 3);
         }
     }
-    const auto choice =
-        choose_order(flight::Phase::landing, flights, {.low_rad = std::numbers::pi / 2.0}, {});
+    const auto choice = choose_order(flight::Phase::landing, flights, {.low_rad = std::numbers::pi / 2.0}, {});
     EXPECT_TRUE(choice.errors[0].rms_w);
     EXPECT_FALSE(choice.errors[6].rms_w);
     EXPECT_NE(choice.errors[6].reason.find("9 samples"), std::string::npos) << choice.errors[6].reason;

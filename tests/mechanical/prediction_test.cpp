@@ -38,8 +38,7 @@ TEST(Prediction, BeforeFlightOfTheRestMissesOnlyTheFlownPart) {
     const auto cruise = forecast({4, 2.0, 1.0, 50.0});
     const auto whole = predict_before_flight(cruise, 600.0);
     const auto rest = predict_rest_before_flight(cruise, 200.0, 400.0);
-    EXPECT_NEAR(whole.energy_wh - rest.energy_wh, units::wh_from_joule(energy_j(cruise.model.fourier, 200.0)),
-                1e-9);
+    EXPECT_NEAR(whole.energy_wh - rest.energy_wh, units::wh_from_joule(energy_j(cruise.model.fourier, 200.0)), 1e-9);
 }
 
 TEST(Prediction, KeepsTheModelWhereFlightsAreAllAlike) {
@@ -53,11 +52,10 @@ TEST(Prediction, TakesTheFlightsOwnLevelWhereFlightsDifferAndDoNotDrift) {
     const auto cruise = forecast({4, 5.0, 1e-3, 1.0});
     const auto rest = predict_rest(cruise, flown(300.0, 40.0), 300.0, LevelSource::curve);
     EXPECT_NEAR(rest.gain, 1.0, 1e-6);
-    EXPECT_NEAR(
-        rest.remaining_mean_w - 40.0,
-        2.0 * units::joule_from_wh(predict_rest_before_flight(cruise, 300.0, 300.0).energy_wh) / 600.0 -
-            rest.expected_w,
-        1e-3);
+    EXPECT_NEAR(rest.remaining_mean_w - 40.0,
+                2.0 * units::joule_from_wh(predict_rest_before_flight(cruise, 300.0, 300.0).energy_wh) / 600.0 -
+                    rest.expected_w,
+                1e-3);
 }
 
 TEST(Prediction, ShrinksByTheVariances) {
@@ -95,8 +93,7 @@ TEST(Prediction, HoldsOneLevelWhereAsked) {
     const double mean_w = energy_j(cruise.model.fourier, 600.0) / 600.0;
     EXPECT_NEAR(rest.expected_w, mean_w, 1e-9);
     // The curve, if it is right after all, differs by so much in the two halves.
-    const double shape_wh =
-        units::wh_from_joule(2.0 * (mean_w * 300.0 - energy_j(cruise.model.fourier, 300.0)));
+    const double shape_wh = units::wh_from_joule(2.0 * (mean_w * 300.0 - energy_j(cruise.model.fourier, 300.0)));
     EXPECT_NEAR(rest.energy.variance_wh2, shape_wh * shape_wh, 1e-4 * shape_wh * shape_wh);
 }
 
@@ -104,8 +101,7 @@ TEST(Prediction, FollowsTheAirspeedWhereAsked) {
     auto cruise = forecast({4, 5.0, 1e-3, 1.0});
     auto flight = flown(300.0, 20.0);
     EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::airspeed), NoAnswerError);
-    cruise.model.airspeed_law =
-        LevelLaw{Covariate::airspeed_cubed, 3, 2000.0, 100.0, 1900.0, 2100.0, 20.0, 1.0, 0.0};
+    cruise.model.airspeed_law = LevelLaw{Covariate::airspeed_cubed, 3, 2000.0, 100.0, 1900.0, 2100.0, 20.0, 1.0, 0.0};
     EXPECT_THROW(predict_rest(cruise, flight, 900.0, LevelSource::airspeed), NoAnswerError);
     flight.airspeed_cubed_m3_per_s3 = 2500.0;
     const auto rest = predict_rest(cruise, flight, 900.0, LevelSource::airspeed);
@@ -134,8 +130,7 @@ TEST(Prediction, SaysWhenTheModelHasNoSpread) {
 }
 
 TEST(Prediction, OfNothingLeftIsNothing) {
-    const auto rest =
-        predict_rest(forecast({4, 2.0, 1.0, 50.0}), flown(300.0, 40.0), 0.0, LevelSource::curve);
+    const auto rest = predict_rest(forecast({4, 2.0, 1.0, 50.0}), flown(300.0, 40.0), 0.0, LevelSource::curve);
     EXPECT_DOUBLE_EQ(rest.energy.energy_wh, 0.0);
     EXPECT_DOUBLE_EQ(rest.energy.variance_wh2, 0.0);
 }

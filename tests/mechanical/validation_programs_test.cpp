@@ -57,8 +57,7 @@ TEST(Validate, PrintsJson) {
             const auto& score = json.at(part).at(model);
             EXPECT_GT(score.at("mean_absolute_error_wh"), 0.0);
             EXPECT_EQ(score.at("mean_absolute_error_percent").is_null(), std::string(part) == "landing");
-            EXPECT_LE(std::abs(score.at("bias_wh").get<double>()),
-                      score.at("mean_absolute_error_wh").get<double>());
+            EXPECT_LE(std::abs(score.at("bias_wh").get<double>()), score.at("mean_absolute_error_wh").get<double>());
             EXPECT_LE(score.at("coverage_95"), 1.0);
         }
     }
@@ -114,8 +113,7 @@ void write_cut_log(const std::filesystem::path& from, const std::filesystem::pat
                                std::filesystem::path(to).replace_extension(".log"));
 }
 
-void expect_same_when_cut(const std::filesystem::path& log, const std::string& fit_files,
-                          const std::string& until_s) {
+void expect_same_when_cut(const std::filesystem::path& log, const std::string& fit_files, const std::string& until_s) {
     const auto folder = test::scratch_dir();
     ASSERT_EQ(run(folder, "fit -o model.toml" + fit_files).code, 0);
     const auto options = "--json --model model.toml --remaining 200 --until " + until_s;
@@ -141,21 +139,17 @@ TEST(Predict, IsTheSameWhereARealLogEndsAtTheMoment) {
 
 TEST(Predict, ForeseesASampleFlight) {
     const auto folder = test::scratch_dir();
-    ASSERT_EQ(
-        run(folder, "fit -o model.toml" + sample("02") + sample("03") + sample("04") + sample("05")).code, 0);
+    ASSERT_EQ(run(folder, "fit -o model.toml" + sample("02") + sample("03") + sample("04") + sample("05")).code, 0);
     // It lifts off at 64.5 s and begins to land at 661.9 s, after 4.54 Wh; 5.017 Wh in all.
-    const auto result =
-        run(folder, "predict --json --model model.toml --until 400 --remaining 197.4" + sample("01"));
+    const auto result = run(folder, "predict --json --model model.toml --until 400 --remaining 197.4" + sample("01"));
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_NEAR(Json::parse(result.out)["total_energy_wh"], 5.017, 0.1);
 }
 
 TEST(Predict, RefusesWhatCannotBePredicted) {
     const auto folder = test::scratch_dir();
-    const auto published =
-        "'" + (test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml").string() + "'";
-    const auto without =
-        run(folder, "predict --model " + published + " --until 300 --remaining 9" + sample("01"));
+    const auto published = "'" + (test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml").string() + "'";
+    const auto without = run(folder, "predict --model " + published + " --until 300 --remaining 9" + sample("01"));
     EXPECT_EQ(without.code, 3);
     EXPECT_THAT(without.err, HasSubstr("[cruise] has no spread"));
     ASSERT_EQ(run(folder, "fit -o model.toml" + samples()).code, 0);

@@ -34,8 +34,7 @@ TEST(Validation, PredictsFlightsThatAreAllAlikeExactly) {
         EXPECT_EQ(score.flights, 3u);
         EXPECT_LT(score.mean_absolute_error_percent.value(), 0.5) << model;
     }
-    EXPECT_FALSE(
-        score_of(validated, "fourier", flight::Phase::landing)->mean_absolute_error_percent.has_value());
+    EXPECT_FALSE(score_of(validated, "fourier", flight::Phase::landing)->mean_absolute_error_percent.has_value());
 }
 
 /// A truth that the flight's own data must not leak into: the others' mean is what is predicted.
@@ -92,12 +91,8 @@ TEST(Validation, UsesTheAirspeedWhereItWasMeasured) {
         cruise.airspeed_cubed_m3_per_s3 = 100.0 * mean_w;
     }
     const auto validated = leave_one_out(flights);
-    EXPECT_LT(
-        score_of(validated, "airspeed_cubed", flight::Phase::cruise)->mean_absolute_error_percent.value(),
-        0.5);
-    EXPECT_GT(
-        score_of(validated, "constant_mean", flight::Phase::cruise)->mean_absolute_error_percent.value(),
-        5.0);
+    EXPECT_LT(score_of(validated, "airspeed_cubed", flight::Phase::cruise)->mean_absolute_error_percent.value(), 0.5);
+    EXPECT_GT(score_of(validated, "constant_mean", flight::Phase::cruise)->mean_absolute_error_percent.value(), 5.0);
 }
 
 /// How often a model's 95 % interval covers the truth of independent generated flights, over many fits.

@@ -113,10 +113,8 @@ TEST(DisturbanceFile, RefusesWhatMakesNoSense) {
     EXPECT_EQ(refused("capacity_factor = 0.9\nfrom = 10"),
               "d.toml:3:1: `from` stands with `capacity_factor`: a pack is weaker from the start on; make "
               "two entries of it, or remove one");
-    EXPECT_NE(refused("phase = \"cruise\"").find("d.toml:1:1: this entry changes nothing"),
-              std::string::npos);
-    EXPECT_NE(refused("compute_w = 1\n[[disturbance]]\nformat = 2").find("unknown key 'format'"),
-              std::string::npos);
+    EXPECT_NE(refused("phase = \"cruise\"").find("d.toml:1:1: this entry changes nothing"), std::string::npos);
+    EXPECT_NE(refused("compute_w = 1\n[[disturbance]]\nformat = 2").find("unknown key 'format'"), std::string::npos);
     const auto folder = scratch_dir();
     const auto path = write_text(folder / "empty.toml", "");
     EXPECT_NE(rejected([&] { read_disturbances(path, durations); }, folder).find("there are no disturbances"),

@@ -77,8 +77,7 @@ TEST(LargestPayload, HasNoAnswerWhereTheMissionDoesNotLandAsItIs) {
 /// The paper's mission that is to be planned, with another reserve, for any cruise.
 MissionOfCruise paper_plan(double reserve_soc_percent) {
     return [=](double cruise_s) {
-        auto problem =
-            std::get<PlanningProblem>(read_mission(test::paper_mission_path("plan"), {true, cruise_s}));
+        auto problem = std::get<PlanningProblem>(read_mission(test::paper_mission_path("plan"), {true, cruise_s}));
         problem.reserve_soc_percent = reserve_soc_percent;
         return problem;
     };
@@ -93,8 +92,7 @@ TEST(InfeasibilityReport, NamesWhatWouldDo) {
     EXPECT_NEAR(report.short_percent, 9.0 - 7.4306, 1e-4);
     EXPECT_NEAR(report.short_wh, report.short_percent / 100.0 * 3.416 * 3.2, 1e-9);
 
-    ASSERT_TRUE(report.cruise_s && report.fixed_spare_percent && report.reserve_soc_percent &&
-                report.capacity_ah);
+    ASSERT_TRUE(report.cruise_s && report.fixed_spare_percent && report.reserve_soc_percent && report.capacity_ah);
     EXPECT_TRUE(plan_mission(std::get<PlanningProblem>(mission_of(*report.cruise_s))).plan.feasible);
     EXPECT_FALSE(plan_mission(std::get<PlanningProblem>(mission_of(*report.cruise_s + 0.1))).plan.feasible);
     auto other = mission;

@@ -40,8 +40,7 @@ std::filesystem::path mission_folder() {
     auto folder = scratch_dir();
     write_text(folder / "detection.csv", "fps,power_w\n10,20\n30,40\n");
     write_text(folder / "encryption.csv", "200,100\n32,1\n64,3\n");
-    std::filesystem::copy(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml",
-                          folder / "opterra.toml");
+    std::filesystem::copy(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml", folder / "opterra.toml");
     return folder;
 }
 
@@ -85,9 +84,9 @@ TEST(MissionFile, HasDefaults) {
 
 TEST(MissionFile, ReadsWhatTheBatteryIsHeldTo) {
     const auto folder = mission_folder();
-    const auto mission = scheduled(
-        with("initial_soc", "capacity_ah = 2.5\ncutoff_voltage_v = 9\nreserve_soc_percent = 20\ninitial_soc"),
-        folder / "m.toml");
+    const auto mission =
+        scheduled(with("initial_soc", "capacity_ah = 2.5\ncutoff_voltage_v = 9\nreserve_soc_percent = 20\ninitial_soc"),
+                  folder / "m.toml");
     EXPECT_EQ(mission.battery.capacity_ah, 2.5);
     EXPECT_EQ(mission.cutoff_voltage_v, 9.0);
     EXPECT_EQ(mission.reserve_soc_percent, 20.0);
@@ -126,8 +125,7 @@ TEST(MissionFile, ReadsModelsRelativeToTheMissionFile) {
     const auto folder = mission_folder();
     std::filesystem::create_directory(folder / "missions");
     write_text(folder / "pack.toml", "voltage_v = 7.5\nresistance_ohm = 0\ncapacity_ah = 1\n");
-    write_text(folder / "missions" / "m.toml",
-               "mechanical = \"../opterra.toml\"\nbattery = \"../pack.toml\"\n");
+    write_text(folder / "missions" / "m.toml", "mechanical = \"../opterra.toml\"\nbattery = \"../pack.toml\"\n");
     EXPECT_EQ(setup_of(read_mission(folder / "missions" / "m.toml")).battery.voltage_v, 7.5);
 }
 
@@ -172,8 +170,7 @@ const BadMission bad_missions[] = {
      "m.toml:2:1: mechanical: there is no file opterra2.toml; paths are relative to the mission file"},
     {"battery = {", "battery = \"pack.toml\" #",
      "m.toml:4:1: battery: there is no file pack.toml; paths are relative to the mission file"},
-    {"voltage_v = 10", "voltage_v = -10",
-     "m.toml:4:13: voltage_v = -10, expected more than 0 and at most 1000000"},
+    {"voltage_v = 10", "voltage_v = -10", "m.toml:4:13: voltage_v = -10, expected more than 0 and at most 1000000"},
     {"\"detection.csv\"", "\"detektion.csv\"",
      "m.toml:8:1: profile: there is no file detektion.csv; paths are relative to the mission file"},
     {"parameters = [\"key_bits\"]\n", "",
@@ -190,8 +187,7 @@ const BadMission bad_missions[] = {
      "m.toml:5:1: capacity_ah = 0, expected more than 0 and at most 1000000"},
     {"initial_soc", "reserve_soc_percent = 101\ninitial_soc",
      "m.toml:5:1: reserve_soc_percent = 101, expected 0 to 100"},
-    {"initial_soc", "cutoff_voltage_v = -1\ninitial_soc",
-     "m.toml:5:1: cutoff_voltage_v = -1, expected 0 to 1000000"},
+    {"initial_soc", "cutoff_voltage_v = -1\ninitial_soc", "m.toml:5:1: cutoff_voltage_v = -1, expected 0 to 1000000"},
     {"initial_soc", "format = 2\ninitial_soc",
      "m.toml:5:1: format = 2 is newer than this program, which reads formats up to 1; use a newer FlightWatt, "
      "or write the file with this one"},
@@ -212,22 +208,18 @@ const BadMission bad_missions[] = {
      "within it, or "
      "profile the component there"},
     {"fps = 30", "fpm = 30", "m.toml:16:23: detection has no parameter 'fpm'; did you mean 'fps'?"},
-    {"fps = 30", "quality = 30",
-     "m.toml:16:23: detection has no parameter 'quality'; its parameters are fps"},
+    {"fps = 30", "quality = 30", "m.toml:16:23: detection has no parameter 'quality'; its parameters are fps"},
     {"fps = 30", "", "m.toml:16:21: has no key 'fps'"},
-    {"fps = 30", "fps = 30, size = 608",
-     "m.toml:16:33: detection has no parameter 'size'; its parameters are fps"},
+    {"fps = 30", "fps = 30, size = 608", "m.toml:16:33: detection has no parameter 'size'; its parameters are fps"},
     {"fps = 30", "fps = \"30\"", "m.toml:16:29: 'fps' is a TOML string, expected a finite number"},
     {"detection = { fps = 30 }", "detektion = { fps = 30 }",
      "m.toml:16:9: there is no component 'detektion'; did you mean 'detection'?"},
     {"detection = { fps = 30 }", "tracking = { fps = 30 }",
      "m.toml:16:9: there is no component 'tracking'; the components are detection, encryption"},
-    {"detection = { fps = 30 }", "detection = 30",
-     "m.toml:16:21: 'detection' is a TOML integer, expected a table"},
+    {"detection = { fps = 30 }", "detection = 30", "m.toml:16:21: 'detection' is a TOML integer, expected a table"},
     {"run = { detection = { fps = 10 } }\n", "", "m.toml:18:1: has no key 'run'"},
     // When.
-    {"\"cruise\"", "\"cruize\"",
-     "m.toml:14:1: there is no phase 'cruize'; the phases are takeoff, cruise and landing"},
+    {"\"cruise\"", "\"cruize\"", "m.toml:14:1: there is no phase 'cruize'; the phases are takeoff, cruise and landing"},
     {"phase = \"cruise\"\nmiddle = 120\n", "",
      "m.toml:13:1: this entry does not say when; give it a phase, or `otherwise = true` for whatever the "
      "others leave"},
@@ -328,9 +320,7 @@ TEST(MissionFile, SetsTheCruiseLevelByTheStatedConditions) {
     const auto plain = scheduled(with("\"none\"", "\"law.toml\""), folder / "m.toml");
     EXPECT_FALSE(plain.cruise_level);
     EXPECT_EQ(plain.mechanical->phases[flight::Phase::cruise].fourier.a0_w,
-              mechanical::read_mechanical_model(folder / "opterra.toml")
-                  .phases[flight::Phase::cruise]
-                  .fourier.a0_w);
+              mechanical::read_mechanical_model(folder / "opterra.toml").phases[flight::Phase::cruise].fourier.a0_w);
 }
 
 TEST(MissionFile, RefusesConditionsThatNothingSupports) {

@@ -5,8 +5,7 @@
 namespace flightwatt::mission {
 namespace {
 
-MissionSummary outcome(const std::string& name, std::optional<double> soc,
-                       std::optional<double> depleted = {}) {
+MissionSummary outcome(const std::string& name, std::optional<double> soc, std::optional<double> depleted = {}) {
     MissionSummary summary;
     summary.mission = name;
     summary.final_soc_percent = soc;
@@ -19,14 +18,13 @@ MissionSummary outcome(const std::string& name, std::optional<double> soc,
 }
 
 TEST(Comparison, RanksByChargeThenByHowLongItLasts) {
-    const auto ranking = ranked({outcome("fails", {}), outcome("early", 0.0, 100.0), outcome("little", 2.0),
-                                 outcome("late", 0.0, 600.0), outcome("just", 0.0), outcome("much", 50.0),
-                                 outcome("fails too", {})});
+    const auto ranking =
+        ranked({outcome("fails", {}), outcome("early", 0.0, 100.0), outcome("little", 2.0), outcome("late", 0.0, 600.0),
+                outcome("just", 0.0), outcome("much", 50.0), outcome("fails too", {})});
     std::vector<std::string> names;
     names.reserve(ranking.size());
     for (const auto& summary : ranking) names.push_back(summary.mission);
-    EXPECT_EQ(names,
-              (std::vector<std::string>{"much", "little", "just", "late", "early", "fails", "fails too"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"much", "little", "just", "late", "early", "fails", "fails too"}));
 }
 
 TEST(Comparison, CutOffRanksBelowWhateverLasts) {

@@ -12,8 +12,7 @@ Mission short_detection() {
     Mission mission;
     mission.duration_s[flight::Phase::cruise] = 600.0;
     mission.utilities = {Utility{0, 1.0, UtilityShape::linear, {}, {}}};
-    mission.schedule = {{flight::Phase::cruise, 0.0, 200.0, {{0, {30.0}}}},
-                        {flight::Phase::cruise, 200.0, 600.0, {}}};
+    mission.schedule = {{flight::Phase::cruise, 0.0, 200.0, {{0, {30.0}}}}, {flight::Phase::cruise, 200.0, 600.0, {}}};
     return mission;
 }
 

@@ -37,8 +37,7 @@ double rms_to_figure(const std::string& mission, const std::string& figure) {
     for (const auto& row : table.rows) {
         const double published = cell_number(table, row, column_index(table, "soc_percent"));
         if (published <= 0.0) break;
-        squares +=
-            std::pow(soc_at(curve, cell_number(table, row, column_index(table, "time_s"))) - published, 2);
+        squares += std::pow(soc_at(curve, cell_number(table, row, column_index(table, "time_s"))) - published, 2);
         ++count;
     }
     EXPECT_GT(count, 60) << figure;
@@ -81,9 +80,8 @@ TEST(Paper, RanksTheSchedules) {
     }
     std::vector<std::string> names;
     for (const auto& summary : ranked(summaries)) names.push_back(summary.mission);
-    EXPECT_EQ(names,
-              (std::vector<std::string>{"mechanical-only", "invariant-5.8fps-32bit", "adaptive",
-                                        "invariant-10fps-240bit", "phased", "invariant-32fps-448bit"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"mechanical-only", "invariant-5.8fps-32bit", "adaptive",
+                                               "invariant-10fps-240bit", "phased", "invariant-32fps-448bit"}));
 }
 
 TEST(Paper, MeetsTheCurvesOfFigure3) {
@@ -108,9 +106,7 @@ TEST(Paper, MeetsEveryCellOfFigure4) {
     };
     double worst = 0.0;
     for (const auto& row : table.rows) {
-        const auto value = [&](std::string_view name) {
-            return cell_number(table, row, column_index(table, name));
-        };
+        const auto value = [&](std::string_view name) { return cell_number(table, row, column_index(table, name)); };
         double mean = 0.0;
         for (const auto* fps : {"fps_low", "fps_high"}) {
             for (const auto* key : {"key_bits_low", "key_bits_high"}) {

@@ -34,16 +34,14 @@ double best_simulated(const PlanningProblem& mission) {
     for (;;) {
         std::vector<ScheduleSegment> schedule;
         for (std::size_t i = 0; i < slots.size(); ++i) {
-            schedule.push_back(
-                {slots[i], slots[i].fixed.value_or(planner.depletions.configurations[choices[i]])});
+            schedule.push_back({slots[i], slots[i].fixed.value_or(planner.depletions.configurations[choices[i]])});
         }
         const auto summary = simulate(mission, schedule, {1e3, 1.0}).summary;
         if (summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent) {
             best = std::max(best, *summary.utility);
         }
         std::size_t i = 0;
-        while (i < choices.size() && (slots[i].fixed || ++choices[i] == planner.free_choices))
-            choices[i++] = 0;
+        while (i < choices.size() && (slots[i].fixed || ++choices[i] == planner.free_choices)) choices[i++] = 0;
         if (i == choices.size()) return best;
     }
 }
@@ -95,8 +93,7 @@ TEST(Plan, IsTheBestOfAllSimulatedSchedules) {
         mission.plan.choices[0].levels = {{5.8, 12.0 + 20.0 * uniform(random)}};
         mission.plan.choices[1].levels = {{32.0}};
         mission.battery = {"", 3.6, i % 2 == 0 ? 0.0 : 0.01, 3.4};
-        const double least =
-            simulate(with_minimum_energy_schedule(mission)).summary.final_soc_percent.value();
+        const double least = simulate(with_minimum_energy_schedule(mission)).summary.final_soc_percent.value();
         mission.reserve_soc_percent = uniform(random) * least;
         const auto plan = plan_mission(mission);
         const double best = best_simulated(mission);
@@ -121,8 +118,7 @@ TEST(Plan, KeepsTheDwellTime) {
     for (std::size_t i = 0; i < schedule.size();) {
         double lasts_s = 0.0;
         const auto& run = schedule[i].run;
-        for (; i < schedule.size() && schedule[i].run == run; ++i)
-            lasts_s += schedule[i].end_s - schedule[i].start_s;
+        for (; i < schedule.size() && schedule[i].run == run; ++i) lasts_s += schedule[i].end_s - schedule[i].start_s;
         EXPECT_GE(lasts_s, 70.0 - 1e-9);
     }
 }
@@ -134,8 +130,8 @@ TEST(Plan, MayBeMadeAnewInFlight) {
     // Half way, with what the plan itself has left by then, the rest is as good.
     const auto flown = plan_mission(mission).flown;
     const auto curve = simulate(flown, {300.0, 0.1}).curve;
-    const auto at = std::find_if(curve.rows.begin(), curve.rows.end(),
-                                 [](const auto& row) { return row.time_s == 300.0; });
+    const auto at =
+        std::find_if(curve.rows.begin(), curve.rows.end(), [](const auto& row) { return row.time_s == 300.0; });
     ASSERT_NE(at, curve.rows.end());
     const auto begin = std::chrono::steady_clock::now();
     const auto rest = plan_rest(mission, planner, {300.0, at->soc_percent, {}, 0.0}, 2.0);
@@ -154,8 +150,7 @@ TEST(Plan, MayBeMadeAnewInFlight) {
     }
     EXPECT_NEAR(utility_before + rest.utility * 388.0, whole.utility * 688.0, 1e-4 * whole.utility * 688.0);
     // With less, it does less; with too little, it does the least.
-    EXPECT_LT(plan_rest(mission, planner, {300.0, at->soc_percent - 1.0, {}, 0.0}, 2.0).utility,
-              rest.utility);
+    EXPECT_LT(plan_rest(mission, planner, {300.0, at->soc_percent - 1.0, {}, 0.0}, 2.0).utility, rest.utility);
     const auto lost = plan_rest(mission, planner, {300.0, 20.0, {}, 0.0}, 2.0);
     EXPECT_FALSE(lost.feasible);
     EXPECT_EQ(lost.schedule.back().run.front().qos.front(), 5.8);
@@ -220,8 +215,7 @@ TEST(Plan, IsWrittenAsAMission) {
     mission.plan.choices[1].may_be_off = true;
     const auto plan = plan_mission(mission);
     const auto folder = test::scratch_dir();
-    const auto text =
-        planned_mission_toml(read_file(path), path, plan.flown.compute, plan.flown.schedule, folder);
+    const auto text = planned_mission_toml(read_file(path), path, plan.flown.compute, plan.flown.schedule, folder);
     const auto again = std::get<Mission>(parse_mission(text, folder / "planned.toml"));
     EXPECT_EQ(again.name, "plan");
     EXPECT_EQ(again.reserve_soc_percent, paper_problem("plan").reserve_soc_percent);

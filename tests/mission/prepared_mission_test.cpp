@@ -12,8 +12,7 @@ TEST(PreparedMission, KeepsAScheduleThatIsGiven) {
     const auto prepared = prepare(mission);
     EXPECT_EQ(prepared.schedule, mission.schedule);
     EXPECT_EQ(prepared.origin, ScheduleOrigin::given);
-    EXPECT_EQ(fly(prepared).simulation.summary.final_soc_percent,
-              simulate(mission).summary.final_soc_percent);
+    EXPECT_EQ(fly(prepared).simulation.summary.final_soc_percent, simulate(mission).summary.final_soc_percent);
 }
 
 TEST(PreparedMission, HasAPlanWhereNoneIsGiven) {

@@ -22,8 +22,8 @@ TEST(Schedule, JoinsNeighboursThatRunTheSame) {
 
 TEST(Schedule, KeepsItsPartsOfAPhaseFlownLonger) {
     const auto longer = rescale_to_flown_durations(
-        {{flight::Phase::cruise, 0.0, 150.0, slow}, {flight::Phase::cruise, 150.0, 600.0, fast}},
-        {{28.0, 600.0, 60.0}}, {{28.0, 900.1, 60.0}});
+        {{flight::Phase::cruise, 0.0, 150.0, slow}, {flight::Phase::cruise, 150.0, 600.0, fast}}, {{28.0, 600.0, 60.0}},
+        {{28.0, 900.1, 60.0}});
     EXPECT_DOUBLE_EQ(longer[0].end_s, 225.025);
     EXPECT_EQ(longer[1].start_s, longer[0].end_s);
     EXPECT_EQ(longer[1].end_s, 900.1) << "exactly the end of the phase";

@@ -21,8 +21,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /// Runs a program of ours in the test's own folder.
-test::ProgramResult run(const std::filesystem::path& folder, const std::string& program,
-                        const std::string& arguments) {
+test::ProgramResult run(const std::filesystem::path& folder, const std::string& program, const std::string& arguments) {
     return test::run_shell("flightwatt-" + program + " " + arguments, folder);
 }
 
@@ -47,10 +46,9 @@ TEST(Simulate, PrintsTheCurveAndASummaryLine) {
     write_mission(folder, "m", lasting);
     const auto result = run(folder, "simulate", "m.toml --step 1800");
     EXPECT_EQ(result.code, 0);
-    EXPECT_EQ(
-        result.out,
-        "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v\n"
-        "0,cruise,0,25,25,2.5,100,10\n1800,cruise,0,25,25,2.5,87.5,10\n3600,cruise,0,25,25,2.5,75,10\n");
+    EXPECT_EQ(result.out,
+              "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v\n"
+              "0,cruise,0,25,25,2.5,100,10\n1800,cruise,0,25,25,2.5,87.5,10\n3600,cruise,0,25,25,2.5,75,10\n");
     EXPECT_EQ(result.err,
               "flightwatt-simulate: m: 75.00 % left after 3600.0 s; 25.000 Wh, 0.000 mechanical and 25.000 "
               "computing\n");
@@ -75,10 +73,9 @@ TEST(Simulate, PrintsJson) {
     const auto json = nlohmann::ordered_json::parse(result.out);
     std::vector<std::string> keys;
     for (const auto& [key, value] : json.items()) keys.push_back(key);
-    EXPECT_THAT(
-        keys, testing::ElementsAre("mission", "final_soc_percent", "energy_wh", "mechanical_energy_wh",
-                                   "compute_energy_wh", "delivered_energy_wh", "duration_s", "depleted_at_s",
-                                   "cut_off_at_s", "feasible", "reserve_soc_percent", "keeps_reserve"));
+    EXPECT_THAT(keys, testing::ElementsAre("mission", "final_soc_percent", "energy_wh", "mechanical_energy_wh",
+                                           "compute_energy_wh", "delivered_energy_wh", "duration_s", "depleted_at_s",
+                                           "cut_off_at_s", "feasible", "reserve_soc_percent", "keeps_reserve"));
     EXPECT_EQ(json["mission"], "m");
     EXPECT_NEAR(json["final_soc_percent"].get<double>(), 75.0, 1e-9);
     EXPECT_EQ(json["compute_energy_wh"], 25.0);
@@ -166,10 +163,9 @@ TEST(Compare, RanksWhatCannotBeDeliveredLast) {
     write_mission(folder, "small", small);
     const auto result = run(folder, "compare", "weak.toml small.toml --json");
     EXPECT_EQ(result.code, 4);
-    EXPECT_EQ(
-        result.err,
-        "flightwatt-compare: warning: weak: the battery cannot deliver 25 W at 0 s: its limit U^2 / (4 R) "
-        "is 12.5 W\n");
+    EXPECT_EQ(result.err,
+              "flightwatt-compare: warning: weak: the battery cannot deliver 25 W at 0 s: its limit U^2 / (4 R) "
+              "is 12.5 W\n");
     const auto json = nlohmann::json::parse(result.out);
     EXPECT_EQ(json[0]["mission"], "small");
     EXPECT_EQ(json[1]["mission"], "weak");
@@ -185,9 +181,8 @@ TEST(Compare, StopsAtABadMission) {
     const auto result = run(folder, "compare", "good.toml bad.toml");
     EXPECT_EQ(result.code, 3);
     EXPECT_EQ(result.out, "");
-    EXPECT_EQ(
-        result.err,
-        "flightwatt-compare: bad.toml:3:13: error: voltage_v = 0, expected more than 0 and at most 1000000\n");
+    EXPECT_EQ(result.err,
+              "flightwatt-compare: bad.toml:3:13: error: voltage_v = 0, expected more than 0 and at most 1000000\n");
 }
 
 TEST(Compare, ReproducesThePaper) {
@@ -197,9 +192,9 @@ TEST(Compare, ReproducesThePaper) {
     EXPECT_EQ(result.code, 0);
     std::vector<std::string> names;
     for (const auto& summary : nlohmann::json::parse(result.out)) names.push_back(summary["mission"]);
-    EXPECT_THAT(names, testing::ElementsAre("computing-only", "mechanical-only", "invariant-5.8fps-32bit",
-                                            "adaptive", "plan", "invariant-10fps-240bit",
-                                            "adaptive-replanned", "phased", "invariant-32fps-448bit"));
+    EXPECT_THAT(names, testing::ElementsAre("computing-only", "mechanical-only", "invariant-5.8fps-32bit", "adaptive",
+                                            "plan", "invariant-10fps-240bit", "adaptive-replanned", "phased",
+                                            "invariant-32fps-448bit"));
 }
 
 }  // namespace

@@ -18,8 +18,7 @@ Mission constant(double power, double battery_wh) {
     mission.name = "constant";
     mission.duration_s[flight::Phase::cruise] = 3600.0;
     mission.battery = {"", 10.0, 0.0, battery_wh / 10.0};
-    mission.compute.components.push_back(
-        {"load", compute::make_power_profile("load.csv", {}, {{{}, power, {}}})});
+    mission.compute.components.push_back({"load", compute::make_power_profile("load.csv", {}, {{{}, power, {}}})});
     mission.schedule = {{flight::Phase::cruise, 0.0, 3600.0, {{0, {}}}}};
     return mission;
 }
@@ -50,8 +49,7 @@ TEST(Simulation, MeetsTheClosedFormOfConstantPower) {
 TEST(Simulation, MeetsTheClosedFormWithResistance) {
     const battery::Battery pack{"", 11.1, 0.08, 2.0};
     const auto summary = simulate(flight(150.0, 200.0, pack)).summary;
-    EXPECT_NEAR(*summary.final_soc_percent, 100.0 - 100.0 * internal_current_a(pack, 150.0) * 200.0 / 7200.0,
-                1e-9);
+    EXPECT_NEAR(*summary.final_soc_percent, 100.0 - 100.0 * internal_current_a(pack, 150.0) * 200.0 / 7200.0, 1e-9);
 }
 
 TEST(Simulation, HasARowAtEveryStepAndTwoAtEveryJump) {
@@ -133,10 +131,9 @@ TEST(Simulation, StopsAtEmpty) {
             EXPECT_EQ(row.current_a, 2.5);
         }
     }
-    const auto at_empty =
-        std::count_if(curve.rows.begin(), curve.rows.end(), [&, t = *summary.depleted_at_s](const auto& row) {
-            return row.time_s == t && row.soc_percent == 0.0;
-        });
+    const auto at_empty = std::count_if(
+        curve.rows.begin(), curve.rows.end(),
+        [&, t = *summary.depleted_at_s](const auto& row) { return row.time_s == t && row.soc_percent == 0.0; });
     EXPECT_EQ(at_empty, 2);  // with its current, and without
     EXPECT_EQ(curve.rows.back().time_s, 3600.0);
 }
@@ -280,10 +277,9 @@ TEST(Simulation, DescribesItsOutcome) {
 }
 
 TEST(Simulation, WritesCsv) {
-    EXPECT_EQ(
-        to_csv(simulate(constant(25.0, 100.0), {1800.0, 0.1}).curve),
-        "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v\n"
-        "0,cruise,0,25,25,2.5,100,10\n1800,cruise,0,25,25,2.5,87.5,10\n3600,cruise,0,25,25,2.5,75,10\n");
+    EXPECT_EQ(to_csv(simulate(constant(25.0, 100.0), {1800.0, 0.1}).curve),
+              "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v\n"
+              "0,cruise,0,25,25,2.5,100,10\n1800,cruise,0,25,25,2.5,87.5,10\n3600,cruise,0,25,25,2.5,75,10\n");
 }
 
 TEST(Simulation, RefusesStepsThatMakeNoSense) {

@@ -36,8 +36,7 @@ TEST(BatchContent, HoldsTheFlightsAndTheFitThatTheBatchStored) {
 
 TEST(BatchContent, HasNoFitWhereTheBatchCouldNotFit) {
     const auto folder = test::scratch_dir();
-    const auto run =
-        test::run_shell("echo nothing > broken.data; flightwatt batch broken.data -o out", folder);
+    const auto run = test::run_shell("echo nothing > broken.data; flightwatt batch broken.data -o out", folder);
     EXPECT_NE(run.code, 0);
     const auto content = read_batch_content(folder / "out");
     EXPECT_FALSE(content.fit);

@@ -77,8 +77,8 @@ TEST(BatterySection, SaysWhyThereIsNone) {
     EXPECT_FALSE(battery.identified);
     const auto section = battery_section(battery);
     EXPECT_TRUE(section.figures.empty());
-    for (const auto* reason : {"was not identified", "computed from throttle", "has no voltage",
-                               "is &lt;faulty&gt;", "no flight in it"}) {
+    for (const auto* reason :
+         {"was not identified", "computed from throttle", "has no voltage", "is &lt;faulty&gt;", "no flight in it"}) {
         EXPECT_THAT(section.html, HasSubstr(reason));
     }
 }

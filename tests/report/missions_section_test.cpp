@@ -35,8 +35,7 @@ TEST(QosMap, IsThePapersGridAndEndsWhereTheMissionsEnd) {
     for (const auto* name : {"invariant-10fps-240bit", "invariant-5.8fps-32bit", "invariant-32fps-448bit"}) {
         const auto mission = paper_mission(name);
         const auto& run = mission.schedule.front().run;
-        EXPECT_NEAR(at(run[0].qos[0], run[1].qos[0]), *simulate(mission).summary.final_soc_percent, 1e-4)
-            << name;
+        EXPECT_NEAR(at(run[0].qos[0], run[1].qos[0]), *simulate(mission).summary.final_soc_percent, 1e-4) << name;
     }
 }
 
@@ -52,8 +51,8 @@ TEST(MissionSections, HaveEachModelAndSoftwareOnce) {
     for (const auto& section : sections) {
         for (const auto& figure : section.figures) figures.push_back(figure.id);
     }
-    EXPECT_THAT(figures, testing::ElementsAre("mission-model-1-curves", "profile-1", "schedules-soc",
-                                              "quality-1", "quality-2"));
+    EXPECT_THAT(figures,
+                testing::ElementsAre("mission-model-1-curves", "profile-1", "schedules-soc", "quality-1", "quality-2"));
 }
 
 TEST(MissionSections, ShowWhereTheBatteryCannotDeliver) {
@@ -61,8 +60,7 @@ TEST(MissionSections, ShowWhereTheBatteryCannotDeliver) {
     weak.battery.resistance_ohm = 1.0;
     const auto sections = mission_sections(simulate_for_report({weak}), {});
     bool said = false;
-    for (const auto& section : sections)
-        said = said || section.html.find("cannot deliver") != std::string::npos;
+    for (const auto& section : sections) said = said || section.html.find("cannot deliver") != std::string::npos;
     EXPECT_TRUE(said);
 }
 
@@ -80,9 +78,7 @@ TEST(PublishedFigures, StandBesideOurs) {
     EXPECT_THAT(captions, HasSubstr("RMS difference over 108 cells 0.04 points"));
 }
 
-TEST(PublishedFigures, NameWhatIsMissing) {
-    EXPECT_THROW(read_published_figures(test::scratch_dir()), InputError);
-}
+TEST(PublishedFigures, NameWhatIsMissing) { EXPECT_THROW(read_published_figures(test::scratch_dir()), InputError); }
 
 mission::AnyMission paper(const std::string& name) {
     return mission::read_mission(test::paper_mission_path(name), {true, std::nullopt});
@@ -93,8 +89,8 @@ TEST(PlanSection, IsEmptyWhereNothingWasPlanned) {
 }
 
 TEST(PlanSection, ShowsThePlanBesideMissionsOfItsKind) {
-    const auto missions = simulate_for_report(
-        {paper("plan"), paper("phased"), paper("computing-only"), paper("mechanical-only")});
+    const auto missions =
+        simulate_for_report({paper("plan"), paper("phased"), paper("computing-only"), paper("mechanical-only")});
     ASSERT_TRUE(missions[0].planned);
     EXPECT_TRUE(missions[0].planned->feasible);
     EXPECT_FALSE(missions[1].planned);

@@ -48,9 +48,9 @@ TEST(ReadWebFiles, JoinsLibrariesAndScripts) {
     for (const auto* file : {"page.css", "theme.json", "fit_width.js", "page.js"}) {
         write_file_atomically(folder / file, std::string(file) + "\n");
     }
-    EXPECT_THAT(test::rejected([&] { read_web_files(folder); }),
-                testing::AllOf(testing::HasSubstr("vega.min.js"),
-                               testing::HasSubstr("run scripts/install_dependencies")));
+    EXPECT_THAT(
+        test::rejected([&] { read_web_files(folder); }),
+        testing::AllOf(testing::HasSubstr("vega.min.js"), testing::HasSubstr("run scripts/install_dependencies")));
     for (const std::string library : {"vega", "vega-lite", "vega-embed"}) {
         const auto build = folder / "node_modules" / library / "build";
         make_directories(build);

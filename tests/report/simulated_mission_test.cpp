@@ -32,8 +32,7 @@ TEST(SimulateForReport, HasAsManyRowsAsAScreenShows) {
 
 TEST(Describe, NamesWhatRuns) {
     const auto mission = test::paper_mission("invariant-10fps-240bit");
-    EXPECT_EQ(describe(mission.compute, mission.schedule.front().run),
-              "detection fps 10, encryption key_bits 240");
+    EXPECT_EQ(describe(mission.compute, mission.schedule.front().run), "detection fps 10, encryption key_bits 240");
     EXPECT_EQ(describe(mission.compute, {}), "nothing");
 }
 

@@ -16,16 +16,14 @@ namespace {
 using test::published_model;
 
 /// One phase of all flights.
-std::vector<mechanical::PhaseModel> phase_of(
-    const std::vector<flight::PerPhase<mechanical::PhaseModel>>& flights, flight::Phase phase) {
+std::vector<mechanical::PhaseModel> phase_of(const std::vector<flight::PerPhase<mechanical::PhaseModel>>& flights,
+                                             flight::Phase phase) {
     std::vector<mechanical::PhaseModel> result;
     for (const auto& flight : flights) result.push_back(flight[phase]);
     return result;
 }
 
-double at(const mechanical::PhaseModel& flight, double tau) {
-    return power_w(flight.fourier, tau * flight.duration_s);
-}
+double at(const mechanical::PhaseModel& flight, double tau) { return power_w(flight.fourier, tau * flight.duration_s); }
 
 void expect_mean(const std::vector<mechanical::PhaseModel>& flights, const mechanical::PhaseModel& model,
                  double tolerance) {
@@ -136,9 +134,8 @@ TEST(DrawFlights, SpreadsDurationsEvenly) {
     const auto flights = draw_flights(model, 400, 1);
     for (const auto phase : flight::all_phases) {
         const auto drawn = phase_of(flights, phase);
-        const auto [shortest, longest] =
-            std::minmax_element(drawn.begin(), drawn.end(),
-                                [](const auto& a, const auto& b) { return a.duration_s < b.duration_s; });
+        const auto [shortest, longest] = std::minmax_element(
+            drawn.begin(), drawn.end(), [](const auto& a, const auto& b) { return a.duration_s < b.duration_s; });
         EXPECT_GE(shortest->duration_s, 0.94 * model.phases[phase].duration_s);
         EXPECT_LE(shortest->duration_s, 0.95 * model.phases[phase].duration_s);
         EXPECT_LE(longest->duration_s, 1.06 * model.phases[phase].duration_s);

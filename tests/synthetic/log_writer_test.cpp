@@ -32,9 +32,8 @@ TEST(LogXml, IsReadAsItWasWritten) {
     document.data_file = "x.data";
     document.aircraft = {
         "7", "Opt<e>\"ra\" & Co", 15.0, {{3, "Takeoff"}, {4, "Survey"}}, telemetry::CurrentOrigin::sensor};
-    document.telemetry = {
-        {"ENERGY", {{"power", "float", "W", "", {}}, {"energy", "uint16", "mAh", "", {}}}, ".log"},
-        {"PONG", {}, ".log"}};
+    document.telemetry = {{"ENERGY", {{"power", "float", "W", "", {}}, {"energy", "uint16", "mAh", "", {}}}, ".log"},
+                          {"PONG", {}, ".log"}};
     const auto text = to_log_xml(document);
     EXPECT_NE(text.find("<!--made by a test-->"), std::string::npos);
     const auto configuration = telemetry::parse_log_configuration(text, "x.log");

@@ -26,8 +26,7 @@ flight::FlightSeries read_back(const SyntheticLog& log) {
 TEST(SyntheticLog, IsReadAndSegmentedAsItWasFlown) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const auto flight = flight_at(27.0);
-        const auto series =
-            read_back(make_synthetic_log(plain_scenario(flight), {}, "x", "Made by a test.", seed));
+        const auto series = read_back(make_synthetic_log(plain_scenario(flight), {}, "x", "Made by a test.", seed));
         EXPECT_TRUE(warnings_of(series).empty());
         const auto phases = segment(series);
         ASSERT_EQ(phases.sorties.size(), 1u) << "seed " << seed;
@@ -69,8 +68,7 @@ TEST(SyntheticLog, HazardsDoNotFoolTheSegmentation) {
                 for (std::size_t p = 0; p < spans.size(); ++p) {
                     EXPECT_NEAR(spans[p].start.time_s, truth[s][p].first, 3.0) << to_string(spans[p].phase);
                     EXPECT_NEAR(spans[p].end.time_s, truth[s][p].second, 3.0) << to_string(spans[p].phase);
-                    const bool cut =
-                        truth[s][p].first == scenario.begin_s || truth[s][p].second == scenario.end_s;
+                    const bool cut = truth[s][p].first == scenario.begin_s || truth[s][p].second == scenario.end_s;
                     EXPECT_EQ(spans[p].complete, !cut) << to_string(spans[p].phase);
                 }
             }
@@ -86,8 +84,7 @@ TEST(SyntheticLog, MeasuresThePowerThatWasFlown) {
     const auto series = read_back(make_synthetic_log(plain_scenario(flight), sensors, "x", "", 1));
     const auto power = power_track(series);
     for (std::size_t i = 0; i < power.time_s.size(); ++i) {
-        if (power.time_s[i] < flight.lift_off_s || power.time_s[i] > flight.end_s(flight::Phase::landing))
-            continue;
+        if (power.time_s[i] < flight.lift_off_s || power.time_s[i] > flight.end_s(flight::Phase::landing)) continue;
         EXPECT_NEAR(power.value[i], 27.0, 0.04);
     }
 }
@@ -106,10 +103,8 @@ TEST(SyntheticLog, SaysThatItIsSyntheticAndRepeatsItself) {
     const auto log = make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 5);
     EXPECT_NE(log.data.substr(0, log.data.find('\n')).find("SYNTHETIC"), std::string::npos);
     EXPECT_NE(log.log.find("SYNTHETIC"), std::string::npos);
-    EXPECT_EQ(make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 5).data,
-              log.data);
-    EXPECT_NE(make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 6).data,
-              log.data);
+    EXPECT_EQ(make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 5).data, log.data);
+    EXPECT_NE(make_synthetic_log(plain_scenario(flight_at(27.0)), {}, "x", "Made by a test.", 6).data, log.data);
 }
 
 }  // namespace

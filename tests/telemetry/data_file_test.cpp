@@ -54,16 +54,14 @@ TEST_F(RefusedFile, IsNone) {
 
 TEST_F(RefusedFile, HoldsNothing) {
     write("empty.data", "");
-    EXPECT_EQ(reading("empty.data"),
-              "empty.data: is empty, expected telemetry lines: TIME SENDER NAME FIELD ...");
+    EXPECT_EQ(reading("empty.data"), "empty.data: is empty, expected telemetry lines: TIME SENDER NAME FIELD ...");
     ASSERT_EQ(test::run_shell("gzip -c empty.data > packed.data", folder).code, 0);
     EXPECT_EQ(reading("packed.data"), "packed.data: is empty once decompressed");
 }
 
 TEST_F(RefusedFile, IsPackedInAWayThatCannotBeRead) {
     write("packed.data", "PK\x03\x04zip");
-    EXPECT_EQ(reading("packed.data"),
-              "packed.data: is a ZIP archive; unpack it, or compress with gzip, xz or zstd");
+    EXPECT_EQ(reading("packed.data"), "packed.data: is a ZIP archive; unpack it, or compress with gzip, xz or zstd");
     write("broken.data", std::string("\x1F\x8B\x08\0\0broken", 11));
     EXPECT_THAT(reading("broken.data"), StartsWith("broken.data: cannot be decompressed: "));
 }
@@ -96,8 +94,7 @@ class ZstdFrames : public RefusedFile {
 };
 
 TEST_F(ZstdFrames, AreWholeAtTheirEndsAlone) {
-    for (const auto* command :
-         {"zstd -c x", "zstd --no-check -c x", "cat x | zstd -19 -c", "head -c 10 x | zstd -c"}) {
+    for (const auto* command : {"zstd -c x", "zstd --no-check -c x", "cat x | zstd -19 -c", "head -c 10 x | zstd -c"}) {
         const auto packed = packed_by(command);
         EXPECT_EQ(reading_of(packed), "") << command;
         for (std::size_t size = 4; size < packed.size(); size += 1 + packed.size() / 500) {

@@ -9,8 +9,7 @@ namespace {
 
 using units::Quantity;
 
-void expect_conversion(const std::string& message, const FieldDefinition& field, Quantity quantity,
-                       double factor) {
+void expect_conversion(const std::string& message, const FieldDefinition& field, Quantity quantity, double factor) {
     const auto conversion = conversion_of(message, field);
     EXPECT_EQ(conversion.quantity, quantity) << message << "." << field.name;
     EXPECT_DOUBLE_EQ(conversion.factor, factor) << message << "." << field.name;
@@ -45,9 +44,8 @@ TEST(FieldIndex, IsOfTheNameAlone) {
 
 /// Layouts are told apart by their numbers of fields, so no two of one message may have the same.
 TEST(BuiltinDefinitions, OfAMessageDifferInTheirNumbersOfFields) {
-    for (const auto* message :
-         {"ENERGY", "BAT", "ESC", "POWER_DEVICE", "ESTIMATOR", "GPS", "GPS_INT", "AIR_DATA", "WIND_INFO",
-          "ROTORCRAFT_FP", "TAKEOFF", "PPRZ_MODE", "NAVIGATION", "NAVIGATION_REF"}) {
+    for (const auto* message : {"ENERGY", "BAT", "ESC", "POWER_DEVICE", "ESTIMATOR", "GPS", "GPS_INT", "AIR_DATA",
+                                "WIND_INFO", "ROTORCRAFT_FP", "TAKEOFF", "PPRZ_MODE", "NAVIGATION", "NAVIGATION_REF"}) {
         const auto& layouts = builtin_definitions(message);
         ASSERT_FALSE(layouts.empty()) << message;
         std::set<std::size_t> sizes;
@@ -55,8 +53,7 @@ TEST(BuiltinDefinitions, OfAMessageDifferInTheirNumbersOfFields) {
             EXPECT_EQ(layout.name, message);
             EXPECT_TRUE(sizes.insert(layout.fields.size()).second) << message << ", " << layout.origin;
             std::set<std::string> names;
-            for (const auto& field : layout.fields)
-                EXPECT_TRUE(names.insert(field.name).second) << field.name;
+            for (const auto& field : layout.fields) EXPECT_TRUE(names.insert(field.name).second) << field.name;
         }
     }
     EXPECT_TRUE(builtin_definitions("PONG").empty());

@@ -66,10 +66,10 @@ TEST(TelemetryLog, CountsWhatItCannotUseByReasonAndFirstLine) {
         "4.5 20 ENERGY 69 11.5 3. 34.x 0.1 0.2\n"
         "5.5 20 LOGGER_STATUS 1 0 0 , FLIGHT_RECORDER\\fr_0219.LOG\n"
         "6.5 20 ENERGY 69 11.5");
-    EXPECT_THAT(reasons(log), ElementsAre("not a message (TIME SENDER NAME ...) x1 from 2",
-                                          "ENERGY: the time is not a number x1 from 3",
-                                          "ENERGY.power: not a finite number x2 from 4",
-                                          "ENERGY: another number of fields than is known x2 from 5"));
+    EXPECT_THAT(reasons(log),
+                ElementsAre("not a message (TIME SENDER NAME ...) x1 from 2",
+                            "ENERGY: the time is not a number x1 from 3", "ENERGY.power: not a finite number x2 from 4",
+                            "ENERGY: another number of fields than is known x2 from 5"));
     const auto& power = log.senders[0].table("ENERGY")->column("power")->values;
     ASSERT_EQ(power.size(), 3u);
     EXPECT_TRUE(std::isnan(power[1])) << "the row stays, for its other fields";
@@ -85,8 +85,7 @@ TEST(TelemetryLog, SaysThatTheLastLineIsCutOff) {
 }
 
 TEST(TelemetryLog, KeepsSendersApartAndReadsWindowsLineEnds) {
-    const auto log =
-        parse("1 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\r\n1 7 ENERGY 0 12. 0. 0. 0. 0.\r\n2 20 PONG \r\n");
+    const auto log = parse("1 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\r\n1 7 ENERGY 0 12. 0. 0. 0. 0.\r\n2 20 PONG \r\n");
     ASSERT_EQ(log.senders.size(), 2u);
     EXPECT_EQ(log.senders[1].id, "7");
     EXPECT_THAT(log.senders[1].table("ENERGY")->column("power")->values, ElementsAre(0.0));
@@ -99,8 +98,7 @@ TEST(TelemetryLog, KeepsSendersInTheOrderOfTheirFirstLine) {
     text += "100 20 PONG \n101 3 ENERGY 69 11.5 3. 34.5 0.1 0.2\n";
     const auto log = parse_telemetry(
         text, "x.data",
-        LogConfiguration{
-            {}, {{"ENERGY", builtin_definitions("ENERGY")[1]}, {"PONG", {"PONG", {}, ".log"}}}, {}},
+        LogConfiguration{{}, {{"ENERGY", builtin_definitions("ENERGY")[1]}, {"PONG", {"PONG", {}, ".log"}}}, {}},
         energy);
     ASSERT_EQ(log.senders.size(), 3u);
     EXPECT_EQ(log.senders[0].id, "7");
@@ -109,8 +107,7 @@ TEST(TelemetryLog, KeepsSendersInTheOrderOfTheirFirstLine) {
 }
 
 TEST(TelemetryLog, SurvivesEveryCutAndEveryChangedByte) {
-    const std::string text =
-        "1.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n2 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n3 20 PONG \n";
+    const std::string text = "1.5 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n2 20 ENERGY 69 11.5 3. 34.5 0.1 0.2\n3 20 PONG \n";
     for (std::size_t cut = 0; cut <= text.size(); ++cut) {
         const std::vector<char> exact(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(cut));
         EXPECT_NO_THROW(parse({exact.data(), exact.size()})) << cut;

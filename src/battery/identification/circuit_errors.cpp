@@ -71,8 +71,7 @@ Eigen::VectorXd jackknife(const Eigen::MatrixXd& columns, const Eigen::VectorXd&
     const auto width = columns.cols();
     // A knot that one block alone has seen cannot be estimated without it: then it stays where it is.
     constexpr double ridge = 1e-9;
-    const Eigen::MatrixXd gram =
-        columns.transpose() * columns + ridge * Eigen::MatrixXd::Identity(width, width);
+    const Eigen::MatrixXd gram = columns.transpose() * columns + ridge * Eigen::MatrixXd::Identity(width, width);
     const auto all = gram.ldlt();
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(width);
     Eigen::VectorXd rounding = Eigen::VectorXd::Zero(width);
@@ -126,10 +125,8 @@ CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const Circu
     for (Eigen::Index i = 0; i < columns.cols(); ++i) columns.col(i) /= length[i];
     const auto in_time = blocks_of_time(records, errors.block_s);
     errors.blocks = in_time.size();
-    const double degrees_of_freedom =
-        static_cast<double>(errors.blocks) - static_cast<double>(columns.cols());
-    Eigen::VectorXd half_width =
-        jackknife(columns, fit.residual_v, in_time) * student_t_half_width(degrees_of_freedom);
+    const double degrees_of_freedom = static_cast<double>(errors.blocks) - static_cast<double>(columns.cols());
+    Eigen::VectorXd half_width = jackknife(columns, fit.residual_v, in_time) * student_t_half_width(degrees_of_freedom);
     if (records.size() >= enough_records) {
         const double t = student_t_half_width(static_cast<double>(records.size()) - 1.0);
         half_width = half_width.cwiseMax(jackknife(columns, fit.residual_v, blocks_of_records(records)) * t);
@@ -139,9 +136,7 @@ CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const Circu
     const auto knots = static_cast<Eigen::Index>(fit.knots_ah.size());
     for (Eigen::Index i = 0; i < knots; ++i)
         errors.open_circuit_standard_error_v.push_back(half_width[i] / normal_half_width());
-    const auto around = [](double value, double half) {
-        return Interval{std::max(0.0, value - half), value + half};
-    };
+    const auto around = [](double value, double half) { return Interval{std::max(0.0, value - half), value + half}; };
     errors.resistance_ohm = around(fit.resistance_ohm, half_width[knots]);
     if (fit.rc_resistance_ohm > 0.0) {
         errors.rc_resistance_ohm = around(fit.rc_resistance_ohm, half_width[knots + 1]);

@@ -53,9 +53,8 @@ Eigen::MatrixXd linear_columns(std::span<const AlignedRecord> records, const std
 }
 
 Eigen::VectorXd settled(std::span<const AlignedRecord> records, double time_constant_s) {
-    return gathered(records, [&](const AlignedRecord& aligned) {
-        return settled_current_a(*aligned.record, time_constant_s);
-    });
+    return gathered(records,
+                    [&](const AlignedRecord& aligned) { return settled_current_a(*aligned.record, time_constant_s); });
 }
 
 /// The time constants to search, as logarithms.
@@ -74,8 +73,7 @@ std::pair<double, double> time_constant_range(std::span<const AlignedRecord> rec
 /// Least squares once the linear columns are projected out.
 class Projection {
   public:
-    Projection(std::span<const AlignedRecord> records, const Eigen::MatrixXd& columns,
-               const Eigen::VectorXd& voltage_v)
+    Projection(std::span<const AlignedRecord> records, const Eigen::MatrixXd& columns, const Eigen::VectorXd& voltage_v)
         : records_(records) {
         const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
         basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
@@ -115,8 +113,8 @@ double best_time_constant(const Projection& projection, std::pair<double, double
     if (best <= 1e-9 * projection.left()) return -std::numeric_limits<double>::infinity();
     constexpr int half_the_digits = std::numeric_limits<double>::digits / 2;
     return boost::math::tools::brent_find_minima([&](double x) { return -projection.explained(x); },
-                                                 std::max(range.first, at - step),
-                                                 std::min(range.second, at + step), half_the_digits)
+                                                 std::max(range.first, at - step), std::min(range.second, at + step),
+                                                 half_the_digits)
         .first;
 }
 
@@ -160,9 +158,9 @@ Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, cons
     const double tau_s = fit.rc_time_constant_s;
     columns.col(width) = -settled(records, tau_s);
     constexpr double step = 1e-4;
-    columns.col(width + 1) =
-        -fit.rc_resistance_ohm *
-        (settled(records, tau_s * std::exp(step)) - settled(records, tau_s * std::exp(-step))) / (2.0 * step);
+    columns.col(width + 1) = -fit.rc_resistance_ohm *
+                             (settled(records, tau_s * std::exp(step)) - settled(records, tau_s * std::exp(-step))) /
+                             (2.0 * step);
     return columns;
 }
 

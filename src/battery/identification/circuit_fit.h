@@ -23,7 +23,7 @@ struct CircuitFit {
     double resistance_ohm = 0.0;
     double rc_resistance_ohm = 0.0;   ///< 0: no RC pair explains anything
     double rc_time_constant_s = 0.0;  ///< 0 without an RC pair
-    Eigen::VectorXd residual_v;  ///< measured less fitted; the used samples of the records, in their order
+    Eigen::VectorXd residual_v;       ///< measured less fitted; the used samples of the records, in their order
     double rms_v = 0.0;
 };
 

@@ -36,16 +36,13 @@ void require_channels(const flight::FlightSeries& series, const DischargeRecord&
     if (record.voltage_v.empty()) refuse("has no voltage", needed);
     if (record.current_a.empty()) refuse("has no current", needed);
     if (record.time_s.size() < least_samples) {
-        refuse(fmt::format("has {} samples, expected at least {}", record.time_s.size(), least_samples),
-               needed);
+        refuse(fmt::format("has {} samples, expected at least {}", record.time_s.size(), least_samples), needed);
     }
-    for (const auto& [name, values] :
-         {std::pair{"voltage", &record.voltage_v}, {"current", &record.current_a}}) {
+    for (const auto& [name, values] : {std::pair{"voltage", &record.voltage_v}, {"current", &record.current_a}}) {
         const auto [low, high] = std::minmax_element(values->begin(), values->end());
         if (*low == *high) refuse(fmt::format("its {} is {} throughout", name, *low), needed);
     }
-    if (*std::ranges::min_element(record.voltage_v) <= 0.0)
-        refuse("its voltage is not positive throughout", needed);
+    if (*std::ranges::min_element(record.voltage_v) <= 0.0) refuse("its voltage is not positive throughout", needed);
 }
 
 /// Charge drawn by the trapezoids of the current [Ah].
@@ -53,8 +50,7 @@ std::vector<double> integrated_charge_ah(const DischargeRecord& record) {
     std::vector<double> charge(record.time_s.size(), 0.0);
     for (std::size_t i = 1; i < charge.size(); ++i) {
         const double mean_a = (record.current_a[i - 1] + record.current_a[i]) / 2.0;
-        charge[i] =
-            charge[i - 1] + units::ah_from_coulomb(mean_a * (record.time_s[i] - record.time_s[i - 1]));
+        charge[i] = charge[i - 1] + units::ah_from_coulomb(mean_a * (record.time_s[i] - record.time_s[i - 1]));
     }
     return charge;
 }
@@ -96,11 +92,9 @@ void add_charge(const std::vector<double>& counter_ah, DischargeRecord& record) 
 /// Not used are bursts of current that the motor did not draw.
 void mark_used(const std::vector<double>& throttle_percent, DischargeRecord& record) {
     record.used.assign(record.time_s.size(), true);
-    if (throttle_percent.empty() || *std::ranges::max_element(throttle_percent) < flight_throttle_percent)
-        return;
+    if (throttle_percent.empty() || *std::ranges::max_element(throttle_percent) < flight_throttle_percent) return;
     for (std::size_t i = 0; i < throttle_percent.size(); ++i) {
-        record.used[i] =
-            throttle_percent[i] > idle_throttle_percent || std::abs(record.current_a[i]) <= idle_current_a;
+        record.used[i] = throttle_percent[i] > idle_throttle_percent || std::abs(record.current_a[i]) <= idle_current_a;
     }
 }
 
@@ -119,9 +113,8 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     std::size_t end = 0;
     while (end < record.current_a.size() && record.current_a[end] < load_a) ++end;
     if (end == 0 || end == record.current_a.size()) {
-        const auto* const reason =
-            end == 0 ? "its log does not begin at rest, so that its initial charge is unknown"
-                     : "nothing loads the battery";
+        const auto* const reason = end == 0 ? "its log does not begin at rest, so that its initial charge is unknown"
+                                            : "nothing loads the battery";
         throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason),
                          "a log that begins before take-off is needed");
     }

@@ -49,26 +49,25 @@ Capacity capacity_of(const CircuitFit& fit, int cells, std::optional<double> giv
     const double drawn_ah = fit.knots_ah.back();
     if (given_ah) {
         if (*given_ah < drawn_ah) {
-            throw UsageError(
-                fmt::format("--capacity is {} Ah, and a flight drew {:.3f} Ah", *given_ah, drawn_ah));
+            throw UsageError(fmt::format("--capacity is {} Ah, and a flight drew {:.3f} Ah", *given_ah, drawn_ah));
         }
         return {*given_ah, CapacityOrigin::given, std::nullopt};
     }
     const double last_v = fit.open_circuit_v.back() / cells;
     if (last_v <= empty_cell_v) return {drawn_ah, CapacityOrigin::flown, std::nullopt};
     if (units::percent_per_whole - lipo_chart_soc_percent(last_v) < least_part_percent) {
-        throw NoAnswerError(fmt::format(
-            "the flights drew {:.3f} Ah, down to {:.3f} V a cell: too little to tell the capacity; give it "
-            "with --capacity",
-            drawn_ah, last_v));
+        throw NoAnswerError(
+            fmt::format("the flights drew {:.3f} Ah, down to {:.3f} V a cell: too little to tell the capacity; give it "
+                        "with --capacity",
+                        drawn_ah, last_v));
     }
     return {chart_capacity_ah(drawn_ah, last_v), CapacityOrigin::chart,
             Interval{chart_capacity_ah(drawn_ah, last_v - lipo_chart_uncertainty_v),
                      chart_capacity_ah(drawn_ah, last_v + lipo_chart_uncertainty_v)}};
 }
 
-ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v,
-                             double capacity_ah, int cells) {
+ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
+                             int cells) {
     const auto soc_at = [&](double charge_ah) {
         return std::max(0.0, units::percent_per_whole - units::percent_of(charge_ah, capacity_ah));
     };
@@ -83,8 +82,7 @@ ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& s
         const double below_v = lipo_chart_voltage_v(known_to) - lipo_chart_voltage_v(percent);
         soc.push_back(percent);
         volts.push_back(std::max(last_v - cells * below_v, last_v / 2.0));
-        extended.standard_error_v.push_back(
-            std::hypot(standard_error_v.back(), cells * lipo_chart_uncertainty_v));
+        extended.standard_error_v.push_back(std::hypot(standard_error_v.back(), cells * lipo_chart_uncertainty_v));
     }
     for (std::size_t i = fit.knots_ah.size(); i-- > 0;) {
         soc.push_back(soc_at(fit.knots_ah[i]));

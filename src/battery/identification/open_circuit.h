@@ -52,7 +52,7 @@ struct ExtendedCurve {
     double known_down_to_percent = 0.0;
 };
 
-ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v,
-                             double capacity_ah, int cells);
+ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
+                             int cells);
 
 }  // namespace flightwatt::battery

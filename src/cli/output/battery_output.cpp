@@ -39,10 +39,9 @@ TextTable flights_table(const battery::BatteryIdentification& identified,
     }
     for (std::size_t i = 0; i < identified.flights.size(); ++i) {
         const auto& flight = identified.flights[i];
-        table.rows.push_back({flight.flight, fixed(flight.resting_voltage_v, 3),
-                              fixed(flight.initial_charge_ah, 3), fixed(flight.drawn_ah, 3),
-                              fmt::format("{}", flight.samples), fmt::format("{}", flight.unused),
-                              fixed(units::mv_from_v(flight.voltage_rms_v), 1)});
+        table.rows.push_back({flight.flight, fixed(flight.resting_voltage_v, 3), fixed(flight.initial_charge_ah, 3),
+                              fixed(flight.drawn_ah, 3), fmt::format("{}", flight.samples),
+                              fmt::format("{}", flight.unused), fixed(units::mv_from_v(flight.voltage_rms_v), 1)});
         if (left_out.empty()) continue;
         table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].voltage_rms_v), 1));
         table.rows.back().push_back(fixed(left_out[i].beyond_percent, 0));
@@ -56,13 +55,11 @@ std::string provenance(const battery::BatteryIdentification& identified) {
     text += fmt::format(".\n# {}; {} cells.\n", describe(identified.capacity), identified.cells);
     text += fmt::format("# Flights follow the open-circuit voltage down to {:.1f} % ({:.3f} Ah drawn)",
                         identified.known_down_to_percent, identified.fit.knots_ah.back());
-    text +=
-        identified.known_down_to_percent > 0.0
-            ? "; below, it goes on in\n# parallel to the usual chart of LiPo cells, 30 mV a cell unsure.\n"
-            : ".\n";
+    text += identified.known_down_to_percent > 0.0
+                ? "; below, it goes on in\n# parallel to the usual chart of LiPo cells, 30 mV a cell unsure.\n"
+                : ".\n";
     text += fmt::format("# Voltages are met within {:.1f} mV RMS; intervals rest on {} blocks of {:.0f} s.\n",
-                        units::mv_from_v(identified.fit.rms_v), identified.errors.blocks,
-                        identified.errors.block_s);
+                        units::mv_from_v(identified.fit.rms_v), identified.errors.blocks, identified.errors.block_s);
     return text;
 }
 

@@ -16,14 +16,13 @@ namespace {
 mechanical::HandWeight parse_hand_weight(const std::string& text) {
     const auto equals = text.rfind('=');
     const auto value = equals == std::string::npos ? std::nullopt : parse_number(text.substr(equals + 1));
-    if (!value)
-        throw UsageError(fmt::format("--weight {}: expected FLIGHT=NUMBER or FLIGHT:PHASE=NUMBER", text));
+    if (!value) throw UsageError(fmt::format("--weight {}: expected FLIGHT=NUMBER or FLIGHT:PHASE=NUMBER", text));
     mechanical::HandWeight weight{text.substr(0, equals), std::nullopt, *value};
     if (const auto colon = weight.flight.rfind(':'); colon != std::string::npos) {
         weight.phase = flight::phase_from(weight.flight.substr(colon + 1));
         if (!weight.phase) {
-            throw UsageError(fmt::format("--weight {}: no phase '{}', expected takeoff, cruise or landing",
-                                         text, weight.flight.substr(colon + 1)));
+            throw UsageError(fmt::format("--weight {}: no phase '{}', expected takeoff, cruise or landing", text,
+                                         weight.flight.substr(colon + 1)));
         }
         weight.flight.resize(colon);
     }

@@ -11,8 +11,7 @@ namespace flightwatt::cli {
 enum class AutoOrder { refused, accepted };
 
 /// The options of a fit, which several stages share.
-void add_fit_options(boost::program_options::options_description& options,
-                     AutoOrder automatic = AutoOrder::refused);
+void add_fit_options(boost::program_options::options_description& options, AutoOrder automatic = AutoOrder::refused);
 
 /// --order as a number; std::nullopt for "auto" where that is accepted. Throws UsageError for another text.
 std::optional<int> read_order(const StageCall& call, AutoOrder automatic);

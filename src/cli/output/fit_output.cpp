@@ -19,8 +19,7 @@ nlohmann::ordered_json interval_json(double value, double half_width) {
 nlohmann::ordered_json to_json(const mechanical::PhaseModel& phase, const mechanical::PhaseErrors& errors) {
     using Json = nlohmann::ordered_json;
     const double wide = student_t_half_width(errors.degrees_of_freedom);
-    const auto intervals = [&](const std::vector<double>& values,
-                               const std::vector<double>& standard_errors) {
+    const auto intervals = [&](const std::vector<double>& values, const std::vector<double>& standard_errors) {
         Json list = Json::array();
         for (std::size_t i = 0; i < values.size(); ++i) {
             list.push_back(interval_json(values[i], wide * standard_errors[i]));
@@ -72,8 +71,7 @@ std::optional<mechanical::MechanicalModel> read_published(const StageCall& call)
 }
 
 TextTable table_of(const mechanical::MechanicalModel& model,
-                   const std::optional<mechanical::MechanicalModel>& published,
-                   mechanical::TableIntervals intervals) {
+                   const std::optional<mechanical::MechanicalModel>& published, mechanical::TableIntervals intervals) {
     return published ? table_one_beside(*published, model, intervals) : table_one(model, intervals);
 }
 
@@ -88,10 +86,8 @@ std::string table_text(const TextTable& table, const std::filesystem::path& file
 
 nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
     using Json = nlohmann::ordered_json;
-    Json json{{"name", model.name},
-              {"weighting", model.weighting},
-              {"phases", Json::object()},
-              {"flights", Json::array()}};
+    Json json{
+        {"name", model.name}, {"weighting", model.weighting}, {"phases", Json::object()}, {"flights", Json::array()}};
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         auto& entry = json["phases"][std::string(to_string(phase))];
@@ -131,12 +127,11 @@ void warn_of_bounds(const StageCall& call, const mechanical::MechanicalModel& mo
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         if (!fitted.range || fitted.range->at_bound == mechanical::FrequencyBound::none) continue;
-        warn(call,
-             fmt::format("{}: omega * duration stands at its {} bound, {:.3f} rad: the frequency is not "
-                         "determined by the data, the curve is",
-                         to_string(phase), to_string(fitted.range->at_bound),
-                         fitted.range->at_bound == mechanical::FrequencyBound::low ? fitted.range->low_rad
-                                                                                   : fitted.range->high_rad));
+        warn(call, fmt::format("{}: omega * duration stands at its {} bound, {:.3f} rad: the frequency is not "
+                               "determined by the data, the curve is",
+                               to_string(phase), to_string(fitted.range->at_bound),
+                               fitted.range->at_bound == mechanical::FrequencyBound::low ? fitted.range->low_rad
+                                                                                         : fitted.range->high_rad));
     }
 }
 
@@ -167,8 +162,7 @@ void add_loss_json(nlohmann::ordered_json& json, const mechanical::ModelFit& fit
     }
 }
 
-void add_order_json(nlohmann::ordered_json& json, flight::Phase phase,
-                    const mechanical::OrderChoice& choice) {
+void add_order_json(nlohmann::ordered_json& json, flight::Phase phase, const mechanical::OrderChoice& choice) {
     using Json = nlohmann::ordered_json;
     Json errors = Json::array();
     for (const auto& error : choice.errors) {
@@ -191,9 +185,8 @@ void note_order(const StageCall& call, flight::Phase phase, const mechanical::Or
         const auto shown = error.rms_w ? fmt::format("{:.4g}", *error.rms_w) : "-";
         curve += fmt::format("{}{}: {}", curve.empty() ? "" : ", ", error.order, shown);
     }
-    note(call, fmt::format("{}: order {} (least error: {}); RMS error [W] by order, {}, {} folds: {}",
-                           to_string(phase), choice.order, choice.best, to_string(choice.held_back),
-                           choice.folds, curve));
+    note(call, fmt::format("{}: order {} (least error: {}); RMS error [W] by order, {}, {} folds: {}", to_string(phase),
+                           choice.order, choice.best, to_string(choice.held_back), choice.folds, curve));
     for (const auto& error : choice.errors) {
         if (!error.rms_w) note(call, fmt::format("order {}: {}", error.order, error.reason));
     }
@@ -216,9 +209,8 @@ void note_down_weighted(const StageCall& call, const mechanical::ModelFit& fit) 
         const auto samples = down_weighted_samples(fit.samples[phase], fit.fits[phase]);
         std::string list;
         for (std::size_t i = 0; i < std::min(shown, samples.size()); ++i) {
-            list += fmt::format("{}{} at {:.1f} s ({:+.3g} W, weight {:.2g})", i == 0 ? ": " : ", ",
-                                samples[i].flight, samples[i].log_time_s, samples[i].residual_w,
-                                samples[i].weight);
+            list += fmt::format("{}{} at {:.1f} s ({:+.3g} W, weight {:.2g})", i == 0 ? ": " : ", ", samples[i].flight,
+                                samples[i].log_time_s, samples[i].residual_w, samples[i].weight);
         }
         note(call, fmt::format("{}: {} of {} samples count less than half (loss {}, noise {:.3g} W){}",
                                to_string(phase), samples.size(), fit.fits[phase].samples,

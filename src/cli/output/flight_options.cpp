@@ -50,14 +50,12 @@ void add_flight_options(po::options_description& options) {
         "an aircraft that keeps its height so long [s] with its motor idling is at rest");
     add("hold", number("S", defaults.hold_s, "30"),
         "a height that grows by less than a tenth of the flight's in this time [s] is held");
-    add("idle-throttle", number("P", defaults.idle_throttle_percent, "5"),
-        "up to this throttle [%] the motor idles");
+    add("idle-throttle", number("P", defaults.idle_throttle_percent, "5"), "up to this throttle [%] the motor idles");
     add("cruise-fraction", number("X", defaults.cruise_fraction, "0.9"),
         "take-off ends and landing begins at this fraction of the height held");
     add("ground-fraction", number("X", defaults.ground_fraction, "0.025"),
         "below this fraction of the flight's height it is on the ground");
-    add("flight-height", number("M", defaults.flight_height_m, "10"),
-        "what stays below this height [m] is no flight");
+    add("flight-height", number("M", defaults.flight_height_m, "10"), "what stays below this height [m] is no flight");
     options.add(group);
 }
 
@@ -83,8 +81,7 @@ void warn_of(const StageCall& call, const std::string& file, const flight::Loade
     for (const auto& warning : flight.warnings) warn(call, fmt::format("{}: {}", file, warning));
 }
 
-flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
-                                 const flight::LoadOptions& options) {
+flight::LoadedFlight load_flight(const StageCall& call, const std::string& file, const flight::LoadOptions& options) {
     auto loaded = flight::load_flight(std::filesystem::path(file), options);
     refuse_unknown_flights(options, {loaded.series.flight});
     if (options.excluded.contains(loaded.series.flight)) {

@@ -19,8 +19,7 @@ flight::LoadOptions read_flight_options(const StageCall& call);
 void warn_of(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight);
 
 /// load_flight, with its warnings.
-flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
-                                 const flight::LoadOptions& options);
+flight::LoadedFlight load_flight(const StageCall& call, const std::string& file, const flight::LoadOptions& options);
 
 /// Loads the flights of all inputs, one at a time. Throws UsageError for a flight that is given twice (it
 /// would be counted twice, and predict itself), and for --exclude and --keep of a flight that is not there.

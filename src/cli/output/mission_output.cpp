@@ -22,8 +22,7 @@ void add_to_json(const mission::SampledFlights& flights, nlohmann::ordered_json&
     json["final_soc_sd_percent"] = flights.final_soc_sd_percent;
     auto& quantiles = json["final_soc_quantiles_percent"];
     for (std::size_t i = 0; i < mission::shown_quantiles_percent.size(); ++i)
-        quantiles[std::to_string(mission::shown_quantiles_percent[i])] =
-            flights.final_soc_quantiles_percent[i];
+        quantiles[std::to_string(mission::shown_quantiles_percent[i])] = flights.final_soc_quantiles_percent[i];
     json["drawn"] = flights.drawn;
     json["not_drawn"] = flights.not_drawn;
 }
@@ -32,8 +31,7 @@ void add_to_json(const mission::SampledFlights& flights, nlohmann::ordered_json&
 
 void add_sampling_options(StageDefinition& stage) {
     auto add = stage.options.add_options();
-    add("samples", value("N"),
-        "draw N flights from what the models (or [uncertainty]) say of how they differ");
+    add("samples", value("N"), "draw N flights from what the models (or [uncertainty]) say of how they differ");
     add("seed", value("S"), "of --samples; 1 if not given");
 }
 
@@ -52,8 +50,7 @@ std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, 
     return options;
 }
 
-std::vector<mission::Disturbance> read_disturb_option(const StageCall& call,
-                                                      const mission::MissionSetup& mission) {
+std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, const mission::MissionSetup& mission) {
     const auto file = call.maybe<std::string>("disturb");
     return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
 }

@@ -24,8 +24,7 @@ void add_sampling_options(StageDefinition& stage);
 std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, bool with_bands);
 
 /// What --disturb says of a mission.
-std::vector<mission::Disturbance> read_disturb_option(const StageCall& call,
-                                                      const mission::MissionSetup& mission);
+std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, const mission::MissionSetup& mission);
 
 /// The summary as simulate and compare print it; null stands for "never".
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary);

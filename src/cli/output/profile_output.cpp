@@ -7,12 +7,12 @@
 namespace flightwatt::cli {
 namespace {
 
-std::string component_table(const compute::ComponentEstimate& component,
-                            const compute::ProfileOutcome& outcome, bool above_idle) {
+std::string component_table(const compute::ComponentEstimate& component, const compute::ProfileOutcome& outcome,
+                            bool above_idle) {
     TextTable table;
     table.header = component.parameters;
-    table.header.insert(table.header.end(), {"power_w", "standard_error_w", "duration_s", "energy_j",
-                                             "samples", "repeats", "source"});
+    table.header.insert(table.header.end(),
+                        {"power_w", "standard_error_w", "duration_s", "energy_j", "samples", "repeats", "source"});
     for (const auto& node : component.nodes) {
         const auto reported = reported_power(node.total, outcome.idle, above_idle);
         std::vector<std::string> row;
@@ -35,8 +35,8 @@ nlohmann::ordered_json to_json(const compute::PowerEstimate& estimate) {
             {"samples", estimate.samples},       {"repeats", estimate.repeats}};
 }
 
-nlohmann::ordered_json to_json(const compute::ComponentEstimate& component,
-                               const compute::ProfileOutcome& outcome, bool above_idle) {
+nlohmann::ordered_json to_json(const compute::ComponentEstimate& component, const compute::ProfileOutcome& outcome,
+                               bool above_idle) {
     nlohmann::ordered_json json{{"name", component.name}, {"parameters", component.parameters}};
     json["nodes"] = nlohmann::ordered_json::array();
     for (const auto& node : component.nodes) {
@@ -75,9 +75,9 @@ nlohmann::ordered_json to_json(const compute::LeaveOneOut& error) {
 std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle) {
     std::string text;
     if (outcome.idle) {
-        text += fmt::format("idle: {:.4f} W, standard error {} W, {} samples in {:.2f} s\n",
-                            outcome.idle->power_w, compute::number_or(outcome.idle->standard_error_w, 4, "-"),
-                            outcome.idle->samples, outcome.idle->duration_s);
+        text += fmt::format("idle: {:.4f} W, standard error {} W, {} samples in {:.2f} s\n", outcome.idle->power_w,
+                            compute::number_or(outcome.idle->standard_error_w, 4, "-"), outcome.idle->samples,
+                            outcome.idle->duration_s);
     }
     text += fmt::format("sampling interval: mean {:.4f} s, standard deviation {:.4f} s, longest {:.4f} s\n",
                         outcome.jitter.mean_s, outcome.jitter.sd_s, outcome.jitter.max_s);
@@ -93,8 +93,8 @@ std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle
                 error.largest_w);
         }
         for (const auto& run : component.failures) {
-            text += fmt::format("{} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status),
-                                run.note);
+            text +=
+                fmt::format("{} repeat {} {}: {}\n", run.configuration, run.repeat, to_string(run.status), run.note);
         }
     }
     return text;
@@ -116,13 +116,11 @@ nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool abov
 std::string interpolation_text(const std::string& file, std::size_t nodes,
                                const std::vector<compute::LeaveOneOut>& errors) {
     TextTable table;
-    table.header = {
-        "each node from the others", "nodes", "mean |error| W", "mean |error| %", "RMS W", "largest W"};
+    table.header = {"each node from the others", "nodes", "mean |error| W", "mean |error| %", "RMS W", "largest W"};
     for (const auto& error : errors) {
         table.rows.push_back({error.method, fmt::format("{} of {}", error.nodes, nodes),
-                              fixed(error.mean_absolute_w, 4),
-                              compute::number_or(error.mean_absolute_percent, 2, "-"), fixed(error.rms_w, 4),
-                              fixed(error.largest_w, 4)});
+                              fixed(error.mean_absolute_w, 4), compute::number_or(error.mean_absolute_percent, 2, "-"),
+                              fixed(error.rms_w, 4), fixed(error.largest_w, 4)});
     }
     return file + "\n" + to_text(table);
 }

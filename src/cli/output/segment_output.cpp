@@ -83,8 +83,7 @@ Json to_json(const flight::PowerReport& report) {
 
 /// How far the power record can be trusted, a line each.
 std::string power_text(const flight::FlightSeries& series, const flight::PowerReport& power) {
-    std::string text =
-        fmt::format("power: {}, current {}\n", power_track(series).source, to_string(power.origin));
+    std::string text = fmt::format("power: {}, current {}\n", power_track(series).source, to_string(power.origin));
     if (power.idle) {
         text += fmt::format("idle current on the ground: {:.4f} A, standard deviation {:.4f} A, {} samples\n",
                             power.idle->mean_a, power.idle->deviation_a, power.idle->samples);
@@ -109,8 +108,8 @@ std::string power_text(const flight::FlightSeries& series, const flight::PowerRe
 std::string witness_text(const flight::ExplainedEdge& edge) {
     std::string text;
     const auto add = [&](const flight::EdgeWitness& event, const char* how) {
-        text += fmt::format("{}{}{} at {:.1f} s ({:+.1f} s)", text.empty() ? "" : "; ", how, event.what,
-                            event.time_s, event.after_s);
+        text += fmt::format("{}{}{} at {:.1f} s ({:+.1f} s)", text.empty() ? "" : "; ", how, event.what, event.time_s,
+                            event.after_s);
     };
     for (const auto& witness : edge.witnesses) add(witness, "");
     for (const auto& event : edge.nearby) add(event, "nearby: ");
@@ -119,15 +118,14 @@ std::string witness_text(const flight::ExplainedEdge& edge) {
 
 TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
     TextTable table{
-        {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "verdict", "witnesses"},
-        {}};
+        {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "verdict", "witnesses"}, {}};
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
         for (const auto& explained : explain_edges(series, phases.sorties[s])) {
             const auto& edge = explained.edge;
             table.rows.push_back({fmt::format("{}", s + 1), std::string(to_string(explained.kind)),
-                                  fixed(edge.time_s, 1), fixed(edge.altitude_m, 1),
-                                  fixed(explained.height_percent, 1), fixed(edge.throttle_percent, 0),
-                                  fixed(edge.gap_s, 1), explained.verdict, witness_text(explained)});
+                                  fixed(edge.time_s, 1), fixed(edge.altitude_m, 1), fixed(explained.height_percent, 1),
+                                  fixed(edge.throttle_percent, 0), fixed(edge.gap_s, 1), explained.verdict,
+                                  witness_text(explained)});
         }
     }
     return table;
@@ -137,14 +135,13 @@ std::string explanation(const flight::FlightSeries& series, const flight::Flight
                         const flight::PowerReport& power) {
     std::string text = to_text(edges_table(series, phases));
     for (const auto& other : phases.ground_events) {
-        text +=
-            fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
+        text += fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
     }
     return text + power_text(series, power);
 }
 
-Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases,
-             const flight::PowerReport& power, const std::vector<std::string>& warnings) {
+Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases, const flight::PowerReport& power,
+             const std::vector<std::string>& warnings) {
     Json sorties = Json::array();
     for (const auto& sortie : phases.sorties) sorties.push_back(to_json(series, sortie));
     Json others = Json::array();

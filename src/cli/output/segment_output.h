@@ -30,7 +30,6 @@ nlohmann::ordered_json to_json(const flight::FlightSeries& series, const flight:
                                const flight::PowerReport& power, const std::vector<std::string>& warnings);
 
 /// Altitude over the log, and below it where the phases are.
-std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series,
-                             const flight::FlightPhases& phases);
+std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series, const flight::FlightPhases& phases);
 
 }  // namespace flightwatt::cli

@@ -24,9 +24,8 @@ std::vector<ValidatedPart> validated_parts() {
     return parts;
 }
 
-std::string comparison(const std::string& part, const std::string& challenger,
-                       const mechanical::ModelScore& ours, const std::string& baseline,
-                       const mechanical::ModelScore& theirs) {
+std::string comparison(const std::string& part, const std::string& challenger, const mechanical::ModelScore& ours,
+                       const std::string& baseline, const mechanical::ModelScore& theirs) {
     const bool better = ours.mean_absolute_error_wh < theirs.mean_absolute_error_wh;
     return fmt::format("{}: {} {} {}: {:.3f} Wh against {:.3f} Wh\n", part, challenger,
                        better ? "beats" : "does not beat", baseline, ours.mean_absolute_error_wh,
@@ -45,8 +44,7 @@ std::string verdicts_on(const std::vector<mechanical::Covariate>& covariates,
                               : fmt::format("cruise: {} is not known of all flights\n", model);
     }
     if (!covariates.empty() && flights.size() <= 3) {
-        text +=
-            "a line through 2 flights or fewer fits any covariate: what beats the mean here may be chance\n";
+        text += "a line through 2 flights or fewer fits any covariate: what beats the mean here may be chance\n";
     }
     return text;
 }
@@ -54,8 +52,8 @@ std::string verdicts_on(const std::vector<mechanical::Covariate>& covariates,
 }  // namespace
 
 TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights) {
-    TextTable table{{"flight", "phase", "model", "measured Wh", "counter Wh", "predicted Wh", "error Wh",
-                     "error %", "95 % low", "95 % high"},
+    TextTable table{{"flight", "phase", "model", "measured Wh", "counter Wh", "predicted Wh", "error Wh", "error %",
+                     "95 % low", "95 % high"},
                     {}};
     for (const auto& flight : flights) {
         for (const auto& part : validated_parts()) {
@@ -81,8 +79,7 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
 
 TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) {
     TextTable table{
-        {"phase", "model", "flights", "mean |error| Wh", "mean |error| %", "bias Wh", "95 % interval covers"},
-        {}};
+        {"phase", "model", "flights", "mean |error| Wh", "mean |error| %", "bias Wh", "95 % interval covers"}, {}};
     for (const auto& part : validated_parts()) {
         for (const auto& model : model_names(flights)) {
             const auto score = score_of(flights, model, part.phase);
@@ -90,8 +87,7 @@ TextTable scores_table(const std::vector<mechanical::ValidatedFlight>& flights) 
             table.rows.push_back(
                 {part.name, model, fmt::format("{}", score->flights), fixed(score->mean_absolute_error_wh, 3),
                  fixed(score->mean_absolute_error_percent, 1), fmt::format("{:+.3f}", score->bias_wh),
-                 score->coverage_95 ? fmt::format("{:.0f} %", units::percent_of(*score->coverage_95, 1.0))
-                                    : "-"});
+                 score->coverage_95 ? fmt::format("{:.0f} %", units::percent_of(*score->coverage_95, 1.0)) : "-"});
         }
     }
     return table;
@@ -118,8 +114,8 @@ std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flig
     text += verdicts_on(covariates, flights);
     constexpr std::size_t few = 20;
     if (flights.size() < few) {
-        text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n",
-                            flights.size(), units::percent_of(1.0, static_cast<double>(flights.size())));
+        text += fmt::format("coverage over {} flights means little: each counts for {:.0f} points\n", flights.size(),
+                            units::percent_of(1.0, static_cast<double>(flights.size())));
     }
     return text;
 }

@@ -69,9 +69,9 @@ void read_combination(const Property& property, const Location& where, const std
     }
     auto values = numbers_in(property.value, where);
     if (!config.combinations.empty() && config.combinations.front().qos.size() != values.size()) {
-        throw InputError(where, fmt::format("{} values, expected {} as in line {}", values.size(),
-                                            config.combinations.front().qos.size(),
-                                            config.combinations.front().where.line));
+        throw InputError(where,
+                         fmt::format("{} values, expected {} as in line {}", values.size(),
+                                     config.combinations.front().qos.size(), config.combinations.front().where.line));
     }
     config.combinations.push_back({folder / property.name, std::move(values), where});
 }
@@ -115,10 +115,9 @@ constexpr std::string_view component_section = "[component.";  // what its name 
 
 std::string_view begin_section(std::string_view line, const Location& where, PowprofilerConfig& config) {
     if (line == "[settings]" || line == "[components]" || line == "[combinations]") return line;
-    const auto name =
-        line.size() > component_section.size() + 1 && line.starts_with(component_section)
-            ? trimmed(line.substr(component_section.size(), line.size() - component_section.size() - 1))
-            : std::string_view();
+    const auto name = line.size() > component_section.size() + 1 && line.starts_with(component_section)
+                          ? trimmed(line.substr(component_section.size(), line.size() - component_section.size() - 1))
+                          : std::string_view();
     if (name.empty()) {
         throw InputError(where, fmt::format("unknown section {}", line),
                          "known are [settings], [components], [component.NAME] and [combinations]");
@@ -150,8 +149,7 @@ PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path) {
         } else if (section.empty()) {
             throw InputError(where, fmt::format("'{}' stands before any [section]", line));
         } else {
-            throw InputError(where,
-                             fmt::format("'{}' stands in {}, before any [component.NAME]", line, section));
+            throw InputError(where, fmt::format("'{}' stands in {}, before any [component.NAME]", line, section));
         }
     }
     for (const auto& component : config.components) {

@@ -74,8 +74,8 @@ ProfileSpecification read_powprofiler_specification(const std::filesystem::path&
     specification.sampler.interval_is_given = true;
     if (!config.combinations.empty()) {
         if (!config.components.empty()) {
-            throw InputError(config.components.front().where,
-                             "the file has [combinations] and components to run", "keep them in two files");
+            throw InputError(config.components.front().where, "the file has [combinations] and components to run",
+                             "keep them in two files");
         }
         specification.sampler.kind = SamplerKind::recorded;
         specification.idle_s = 0.0;

@@ -26,8 +26,7 @@ std::string to_string(const EndedCommand& ended);
 /// processes or files.
 class SupervisedProcesses {
   public:
-    SupervisedProcesses(const std::vector<std::vector<std::string>>& commands,
-                        const SupervisionOptions& options);
+    SupervisedProcesses(const std::vector<std::vector<std::string>>& commands, const SupervisionOptions& options);
     ~SupervisedProcesses();
     SupervisedProcesses(const SupervisedProcesses&) = delete;
     SupervisedProcesses& operator=(const SupervisedProcesses&) = delete;

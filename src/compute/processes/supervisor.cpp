@@ -63,8 +63,7 @@ constexpr int cannot_execute = 127;               // what a shell exits with the
 constexpr std::chrono::seconds kill_patience(5);  // after SIGKILL only the kernel can delay an end
 
 void tell(int events, Event event) {
-    event.time_ns =
-        std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+    event.time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
     // Nobody listens any more if the profiler is gone; the ending goes on all the same.
     [[maybe_unused]] const auto ignored = ::write(events, &event, sizeof event);
 }
@@ -154,8 +153,8 @@ class Supervisor {
 
 }  // namespace
 
-void supervise(const std::vector<std::vector<std::string>>& commands, const SupervisionOptions& options,
-               int events, ::pid_t parent) {
+void supervise(const std::vector<std::vector<std::string>>& commands, const SupervisionOptions& options, int events,
+               ::pid_t parent) {
     ::setpgid(0, 0);  // Ctrl-C on the terminal is the profiler's to answer
     sigset_t awaited;
     sigemptyset(&awaited);

@@ -35,7 +35,7 @@ struct Event {
 
 /// Starts the commands, adopts what they fork, tells of each that ends, and on SIGTERM, or when `parent` is
 /// gone, ends all of them. To be called in a forked process.
-[[noreturn]] void supervise(const std::vector<std::vector<std::string>>& commands,
-                            const SupervisionOptions& options, int events, ::pid_t parent);
+[[noreturn]] void supervise(const std::vector<std::vector<std::string>>& commands, const SupervisionOptions& options,
+                            int events, ::pid_t parent);
 
 }  // namespace flightwatt::compute

@@ -52,8 +52,7 @@ class OutputFile {
 
 class Watch {
   public:
-    Watch(Clock::time_point start, SupervisedProcesses* processes, const ProfileTiming& timing,
-          const RunFrame& frame)
+    Watch(Clock::time_point start, SupervisedProcesses* processes, const ProfileTiming& timing, const RunFrame& frame)
         : processes_(processes), timing_(timing), frame_(frame), start_(start), next_(start_) {
         frame_.sampler->read();  // what came before the start is not of this run
     }
@@ -70,8 +69,7 @@ class Watch {
 
   private:
     Clock::time_point limit() const {
-        return start_ +
-               ticks(timing_.duration_s ? timing_.warm_up_s + *timing_.duration_s : timing_.timeout_s);
+        return start_ + ticks(timing_.duration_s ? timing_.warm_up_s + *timing_.duration_s : timing_.timeout_s);
     }
 
     Clock::time_point end() const { return std::min(over_at_.value_or(limit()), limit()); }
@@ -145,8 +143,7 @@ void note(ComponentRun& run, const std::string& text) { run.note += (run.note.em
 
 void note_ending(const EndReport& report, bool ended_by_itself, ComponentRun& run) {
     if (ended_by_itself && report.others > 0) {
-        note(run,
-             fmt::format("left {} process{} behind, ended", report.others, report.others == 1 ? "" : "es"));
+        note(run, fmt::format("left {} process{} behind, ended", report.others, report.others == 1 ? "" : "es"));
     }
     if (report.killed) note(run, "did not answer SIGTERM, killed");
     if (report.left > 0) note(run, fmt::format("{} processes cannot be ended", report.left));
@@ -168,8 +165,7 @@ ComponentRun run_component(const std::vector<std::vector<std::string>>& commands
     const auto start = Clock::now();  // before, or a late start of ours would make theirs look short
     SupervisedProcesses processes(commands, {output.file(), output.file(), patience});
     auto run = Watch(start, &processes, timing, frame).run();
-    const bool by_itself =
-        run.status != RunStatus::timed_out && (run.status != RunStatus::ok || !timing.duration_s);
+    const bool by_itself = run.status != RunStatus::timed_out && (run.status != RunStatus::ok || !timing.duration_s);
     note_ending(processes.end(), by_itself, run);
     return run;
 }

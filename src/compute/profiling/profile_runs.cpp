@@ -25,8 +25,7 @@ std::string fingerprint_of(const SamplerSettings& sampler, const ProfileTiming& 
     const auto add = [&](const std::string& text) { fingerprint.add(text); };
     add(std::string(to_string(sampler.kind)));
     add(sampler.sysfs.string());
-    add(fmt::format("{} {} {}", sampler.interval_s, fmt::join(sampler.rails, "\n"),
-                    fmt::join(sampler.command, "\n")));
+    add(fmt::format("{} {} {}", sampler.interval_s, fmt::join(sampler.rails, "\n"), fmt::join(sampler.command, "\n")));
     add(fmt::format("{} {} {}", timing.duration_s.value_or(-1.0), timing.warm_up_s, timing.timeout_s));
     for (const auto& command : configuration.commands) add(fmt::format("{}", fmt::join(command, "\n")));
     add(configuration.recording.string());
@@ -36,8 +35,8 @@ std::string fingerprint_of(const SamplerSettings& sampler, const ProfileTiming& 
 
 std::string layer1_name(const std::string& component, std::string configuration, std::size_t repeat) {
     std::ranges::replace(configuration, ' ', '_');
-    return fmt::format("layer1/{}/{}{}repeat_{}.csv", component, configuration,
-                       configuration.empty() ? "" : "_", repeat);
+    return fmt::format("layer1/{}/{}{}repeat_{}.csv", component, configuration, configuration.empty() ? "" : "_",
+                       repeat);
 }
 
 ProfileRun idle_run(const ProfileSpecification& specification) {
@@ -52,8 +51,7 @@ ProfileRun idle_run(const ProfileSpecification& specification) {
     return run;
 }
 
-std::string key_of(const std::string& component, const std::string& configuration,
-                   const std::string& repeat) {
+std::string key_of(const std::string& component, const std::string& configuration, const std::string& repeat) {
     return fmt::format("{}\n{}\n{}", component, configuration, repeat);
 }
 
@@ -76,8 +74,7 @@ std::map<std::string, Record> read_records(const std::filesystem::path& folder) 
 /// Whether the run could be taken over from its record and its layer 1.
 bool recall(ProfileRun& run, Record& record, const std::filesystem::path& folder) {
     const auto duration_s = parse_number(record["duration_s"]);
-    if (record["fingerprint"] != run.fingerprint || record["status"] != to_string(RunStatus::ok) ||
-        !duration_s) {
+    if (record["fingerprint"] != run.fingerprint || record["status"] != to_string(RunStatus::ok) || !duration_s) {
         return false;
     }
     run.trace = read_power_trace(folder / run.layer1, std::nullopt);
@@ -156,14 +153,14 @@ void write_layer1(const ProfileRun& run, const std::filesystem::path& folder) {
         return;
     }
     write_file_atomically(
-        path, to_csv(run.trace, {fmt::format("{} {} repeat {}: time since its start, after the warm-up",
-                                             run.component, run.configuration, run.repeat)}));
+        path, to_csv(run.trace, {fmt::format("{} {} repeat {}: time since its start, after the warm-up", run.component,
+                                             run.configuration, run.repeat)}));
 }
 
 void write_runs(const std::vector<ProfileRun>& runs, const std::filesystem::path& folder) {
-    CsvWriter csv({"component", "configuration", "repeat", "status", "note", "samples", "duration_s",
-                   "power_w", "standard_error_w", "energy_j", "interval_mean_s", "interval_sd_s",
-                   "interval_max_s", "layer1", "fingerprint"});
+    CsvWriter csv({"component", "configuration", "repeat", "status", "note", "samples", "duration_s", "power_w",
+                   "standard_error_w", "energy_j", "interval_mean_s", "interval_sd_s", "interval_max_s", "layer1",
+                   "fingerprint"});
     for (const auto& run : runs) {
         if (run.is_done) add_row(csv, run);
     }

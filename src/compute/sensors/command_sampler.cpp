@@ -19,8 +19,7 @@ using Clock = std::chrono::steady_clock;
 
 class Meter {
   public:
-    explicit Meter(const SamplerSettings& settings)
-        : command_(settings.command), interval_s_(settings.interval_s) {
+    explicit Meter(const SamplerSettings& settings) : command_(settings.command), interval_s_(settings.interval_s) {
         start();
     }
     ~Meter() { stop(); }
@@ -70,9 +69,9 @@ class Meter {
 
     void require_success(const EndedCommand& ended) const {
         if (ended.start_error == 0 && ended.wait_status == 0 && lines_ > 0) return;
-        throw NoAnswerError(fmt::format("the sampler '{}' {}{}", name(),
-                                        ended.start_error == 0 ? "ended: " : "", to_string(ended)) +
-                            (lines_ == 0 ? ", without a reading" : ""));
+        throw NoAnswerError(
+            fmt::format("the sampler '{}' {}{}", name(), ended.start_error == 0 ? "ended: " : "", to_string(ended)) +
+            (lines_ == 0 ? ", without a reading" : ""));
     }
 
     void take_output(std::vector<PowerReading>& readings) {
@@ -95,9 +94,8 @@ class Meter {
             line.erase(line.find_last_not_of(" \t\r") + 1);
             const auto power_w = parse_number(line);
             if (!power_w) {
-                throw InputError(
-                    {name(), lines_ + 1},
-                    fmt::format("the sampler printed '{}', expected watts, a number a line", line));
+                throw InputError({name(), lines_ + 1},
+                                 fmt::format("the sampler printed '{}', expected watts, a number a line", line));
             }
             ++lines_;
             readings.push_back({Clock::now(), *power_w});

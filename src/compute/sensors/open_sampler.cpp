@@ -27,8 +27,7 @@ struct Sensor {
 
     bool is_asked_for(SamplerKind asked) const {
         const bool is_ina3221 = kind == SamplerKind::ina3221_iio || kind == SamplerKind::ina3221_hwmon;
-        return asked == SamplerKind::automatic || asked == kind ||
-               (asked == SamplerKind::ina3221 && is_ina3221);
+        return asked == SamplerKind::automatic || asked == kind || (asked == SamplerKind::ina3221 && is_ina3221);
     }
 };
 
@@ -86,8 +85,7 @@ std::vector<PowerReading> read_counters(CounterState& state) {
     if (!state.energy_uj.empty() && time_s > 0.0) {
         PowerReading reading{time, 0.0};
         for (std::size_t i = 0; i < now_uj.size(); ++i) {
-            reading.power_w +=
-                power_of_counter_w(state.energy_uj[i], now_uj[i], state.counters[i].range_uj, time_s);
+            reading.power_w += power_of_counter_w(state.energy_uj[i], now_uj[i], state.counters[i].range_uj, time_s);
         }
         readings.push_back(reading);
     }

@@ -60,9 +60,7 @@ std::vector<path> sysfs_entries(const path& folder, std::string_view prefix = ""
 /// Takes a folder that exists, once: sysfs shows the same device at several places.
 void add_device(std::vector<path>& devices, const path& folder) {
     std::error_code none;
-    const auto is_same = [&](const path& device) {
-        return std::filesystem::equivalent(device, folder, none);
-    };
+    const auto is_same = [&](const path& device) { return std::filesystem::equivalent(device, folder, none); };
     if (!std::filesystem::exists(folder, none) || std::ranges::any_of(devices, is_same)) return;
     devices.push_back(folder);
 }
@@ -83,8 +81,8 @@ void add_iio_channels(const path& folder, std::vector<PowerRail>& rails) {
         const auto voltage = folder / fmt::format("in_voltage{}_input", i);
         const auto current = folder / fmt::format("in_current{}_input", i);
         if (sysfs_number(power)) {
-            rails.push_back({name, power.string(),
-                             [power] { return units::watt_from_milliwatt(require_sysfs_number(power)); }});
+            rails.push_back(
+                {name, power.string(), [power] { return units::watt_from_milliwatt(require_sysfs_number(power)); }});
         } else if (sysfs_number(voltage) && sysfs_number(current)) {
             rails.push_back(product_rail(name, voltage, current));
         }
@@ -105,14 +103,12 @@ void add_hwmon_channels(const path& folder, std::vector<PowerRail>& rails) {
 
 }  // namespace
 
-std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names,
-                                        const std::vector<std::string>& wanted) {
+std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, const std::vector<std::string>& wanted) {
     std::vector<std::size_t> chosen;
     for (const auto& name : wanted) {
         const auto found = std::ranges::find(names, name);
         if (found == names.end()) {
-            throw NoAnswerError(
-                fmt::format("there is no rail '{}'; there are {}", name, fmt::join(names, ", ")));
+            throw NoAnswerError(fmt::format("there is no rail '{}'; there are {}", name, fmt::join(names, ", ")));
         }
         chosen.push_back(static_cast<std::size_t>(found - names.begin()));
     }
@@ -169,14 +165,12 @@ std::vector<PowerRail> power_supply_rails(const path& sysfs) {
         const auto current = supply / "current_now";
         // Drivers differ in the sign of a discharge.
         if (sysfs_number(power)) {
-            rails.push_back({name, power.string(), [power] {
-                                 return units::watt_from_microwatt(std::abs(require_sysfs_number(power)));
-                             }});
+            rails.push_back({name, power.string(),
+                             [power] { return units::watt_from_microwatt(std::abs(require_sysfs_number(power))); }});
         } else if (sysfs_number(voltage) && sysfs_number(current)) {
             rails.push_back({name, voltage.string() + " x current_now", [voltage, current] {
                                  return units::volt_from_microvolt(require_sysfs_number(voltage)) *
-                                        std::abs(
-                                            units::ampere_from_microampere(require_sysfs_number(current)));
+                                        std::abs(units::ampere_from_microampere(require_sysfs_number(current)));
                              }});
         }
     }

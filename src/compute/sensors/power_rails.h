@@ -26,8 +26,7 @@ struct EnergyCounter {
 /// Which of the rails (by name) add up to the power of the board: those `wanted`; else the one that is known
 /// to carry everything (VDD_IN, POM_5V_IN, ...); else all but those that are fed by another rail. Returns
 /// indices. Throws NoAnswerError for one wanted that is not there, listing those that are.
-std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names,
-                                        const std::vector<std::string>& wanted);
+std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, const std::vector<std::string>& wanted);
 
 /// TI INA3221 through NVIDIA's IIO driver (Jetson Nano, TX2, Xavier under L4T up to 32):
 /// bus/i2c/drivers/ina3221x/1-0040/iio:device0 (or iio_device) and bus/iio/devices/iio:device0, with

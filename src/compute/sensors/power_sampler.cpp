@@ -24,14 +24,13 @@ SamplerKind kind_of(const TomlTable& table) {
     if (const auto kind = sampler_kind_from(*name)) return *kind;
     const std::vector<std::string> names(kind_names.begin(), kind_names.end() - 1);
     const auto near = nearest_word(*name, names);
-    throw InputError(table.where("kind"), fmt::format("there is no sampler '{}'", *name),
-                     near.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
-                                  : fmt::format("did you mean '{}'?", near));
+    throw InputError(
+        table.where("kind"), fmt::format("there is no sampler '{}'", *name),
+        near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near));
 }
 
 /// A setting of another kind of sampler would do nothing.
-void refuse_foreign_key(const TomlTable& table, std::string_view key, SamplerKind kind,
-                        SamplerKind its_kind) {
+void refuse_foreign_key(const TomlTable& table, std::string_view key, SamplerKind kind, SamplerKind its_kind) {
     if (!table.has(key) || kind == its_kind) return;
     throw InputError(table.where(key), fmt::format("{} belongs to the sampler '{}', not to '{}'", key,
                                                    to_string(its_kind), to_string(kind)));

@@ -42,8 +42,7 @@ double total_w(const std::string& line, const Location& where) {
     double total_mw = 0.0;
     for (const auto rail : rails_of_total(names, {})) total_mw += power_mw[rail];
     if (!names.empty()) return units::watt_from_milliwatt(total_mw);
-    throw InputError(where, "has no rail with its power, 'VDD_IN 4936mW/4936mW'",
-                     "keep tegrastats' lines whole");
+    throw InputError(where, "has no rail with its power, 'VDD_IN 4936mW/4936mW'", "keep tegrastats' lines whole");
 }
 
 /// A line has a rail with power now and on average, "VDD_IN 4936mW/4936mW" or, from older boards,
@@ -52,8 +51,7 @@ bool is_tegrastats(const std::string& line) { return std::regex_search(line, rai
 
 /// The rail that carries everything, or the sum of those that add up (rails_of_total). Times are those of the date
 /// column, "11-21-2022 13:41:31", from the first line on, whole seconds; with `interval_s`, lines are that apart.
-PowerTrace trace_of_tegrastats(const std::string& text, const std::string& file,
-                               std::optional<double> interval_s) {
+PowerTrace trace_of_tegrastats(const std::string& text, const std::string& file, std::optional<double> interval_s) {
     PowerTrace trace;
     std::optional<double> first_date_s;
     std::istringstream lines(text);
@@ -87,8 +85,7 @@ PowerTrace trace_of_csv(const CsvTable& table) {
     for (const auto& row : table.rows) {
         const double time_s = cell_number(table, row, time);
         if (!trace.time_s.empty() && time_s <= trace.time_s.back()) {
-            throw InputError({table.file, row.line},
-                             fmt::format("time_s = {} follows {}", time_s, trace.time_s.back()),
+            throw InputError({table.file, row.line}, fmt::format("time_s = {} follows {}", time_s, trace.time_s.back()),
                              "the time stamps of a recording rise");
         }
         trace.time_s.push_back(time_s);

@@ -34,8 +34,7 @@ std::vector<double> without_spikes(const std::vector<double>& values) {
 /// What counts as idle: some airframes never report less than a trimmed or armed idle. Where the speed tells
 /// rest from flight too, the least throttle of the log is taken for that.
 double idle_throttle_percent(const FlightGrid& grid, const SegmentationOptions& options) {
-    if (grid.throttle_percent.empty() || grid.ground_speed_m_per_s.empty())
-        return options.idle_throttle_percent;
+    if (grid.throttle_percent.empty() || grid.ground_speed_m_per_s.empty()) return options.idle_throttle_percent;
     const double least = *std::min_element(grid.throttle_percent.begin(), grid.throttle_percent.end());
     return std::max(least, 0.0) + options.idle_throttle_percent;
 }
@@ -48,9 +47,8 @@ FlightGrid make_grid(const FlightSeries& series) {
         const auto warnings = warnings_of(series);
         throw InputError(
             {series.flight}, "has no altitude, so its phases cannot be told apart",
-            fmt::format(
-                "expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",
-                warnings.empty() ? "" : "; ", fmt::join(warnings, "; ")));
+            fmt::format("expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",
+                        warnings.empty() ? "" : "; ", fmt::join(warnings, "; ")));
     }
     FlightGrid grid;
     const auto power = power_track(series);

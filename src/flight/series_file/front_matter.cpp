@@ -46,14 +46,12 @@ telemetry::SkippedLines read_skipped(const TomlTable& table) {
     const auto count = table.numbers("count");
     const auto first_line = table.numbers("first_line");
     table.refuse_unknown_keys();
-    if (first_line.size() != count.size() || time_s.size() > count.size() ||
-        time_s.size() + 1 < count.size()) {
+    if (first_line.size() != count.size() || time_s.size() > count.size() || time_s.size() + 1 < count.size()) {
         throw InputError(table.where(), "time_s, count and first_line are not equally long");
     }
     for (std::size_t i = 0; i < count.size(); ++i) {
         skipped.lines.push_back({i < time_s.size() ? time_s[i] : std::numeric_limits<double>::infinity(),
-                                 static_cast<std::size_t>(count[i]),
-                                 static_cast<std::size_t>(first_line[i])});
+                                 static_cast<std::size_t>(count[i]), static_cast<std::size_t>(first_line[i])});
     }
     return skipped;
 }
@@ -148,8 +146,7 @@ std::string front_matter(const FlightSeries& series) {
     const auto columns = column_names(series.tracks);
     for (std::size_t i = 0; i < columns.size(); ++i) {
         const auto& track = series.tracks[i];
-        toml += fmt::format("[[column]]\nname = {}\nsource = {}\n", toml_string(columns[i]),
-                            toml_string(track.source));
+        toml += fmt::format("[[column]]\nname = {}\nsource = {}\n", toml_string(columns[i]), toml_string(track.source));
         if (!track.device.empty()) toml += fmt::format("device = {}\n", toml_string(track.device));
         if (std::isfinite(track.since_s)) toml += fmt::format("since_s = {}\n", toml_real(track.since_s));
     }

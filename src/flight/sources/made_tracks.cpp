@@ -55,8 +55,8 @@ Position position_of_utm(double east_m, double north_m, double zone) {
     constexpr double false_east_m = 500e3;
     constexpr double n = flattening / (2.0 - flattening);
     constexpr double meridian_m = equator_m / (1.0 + n) * (1.0 + n * n / 4.0 + n * n * n * n / 64.0);
-    constexpr double beta[] = {n / 2.0 - 2.0 / 3.0 * n * n + 37.0 / 96.0 * n * n * n,
-                               n * n / 48.0 + n * n * n / 15.0, 17.0 / 480.0 * n * n * n};
+    constexpr double beta[] = {n / 2.0 - 2.0 / 3.0 * n * n + 37.0 / 96.0 * n * n * n, n * n / 48.0 + n * n * n / 15.0,
+                               17.0 / 480.0 * n * n * n};
     constexpr double delta[] = {2.0 * n - 2.0 / 3.0 * n * n - 2.0 * n * n * n,
                                 7.0 / 3.0 * n * n - 8.0 / 5.0 * n * n * n, 56.0 / 15.0 * n * n * n};
     const double xi = north_m / (scale * meridian_m);
@@ -139,8 +139,7 @@ void add_made(std::vector<Track>& tracks, const SenderLog& sender, const MadeTra
 }
 
 /// The first of `fields` that the table has with the given quantity; nullptr if it has none.
-const Column* first_column(const MessageTable& table, std::initializer_list<const char*> fields,
-                           Quantity quantity) {
+const Column* first_column(const MessageTable& table, std::initializer_list<const char*> fields, Quantity quantity) {
     for (const auto* field : fields) {
         const auto* column = table.column(field);
         if (column != nullptr && column->quantity == quantity) return column;
@@ -169,8 +168,7 @@ void add_products(std::vector<Track>& tracks, const SenderLog& sender) {
         const auto* voltage = voltage_of(*table);
         const auto* current = current_of(*table);
         if (voltage == nullptr || current == nullptr) continue;
-        tracks.push_back(as_track("power_w",
-                                  fmt::format("{0}.{1} * {0}.{2}", message, voltage->field, current->field),
+        tracks.push_back(as_track("power_w", fmt::format("{0}.{1} * {0}.{2}", message, voltage->field, current->field),
                                   *table, products(*voltage, *current), Merge::mean));
     }
 }
@@ -181,8 +179,7 @@ void add_exchanged(std::vector<Track>& tracks, const SenderLog& sender) {
     if (table == nullptr || table->columns.size() != 4) return;
     const auto* energy = table->column("energy");
     const auto* power = table->column("power");
-    if (energy == nullptr || power == nullptr || table->column("bat") == nullptr ||
-        table->column("amp") == nullptr) {
+    if (energy == nullptr || power == nullptr || table->column("bat") == nullptr || table->column("amp") == nullptr) {
         return;
     }
     constexpr double raw_per_ah = 1000.0;  // the column was read as mAh
@@ -200,8 +197,8 @@ struct DeviceMessage {
     std::vector<const Column*> ids;
 };
 
-void add_devices(std::vector<Track>& tracks, const DeviceMessage& message, const char* name,
-                 const std::string& source, const std::vector<double>& column_values) {
+void add_devices(std::vector<Track>& tracks, const DeviceMessage& message, const char* name, const std::string& source,
+                 const std::vector<double>& column_values) {
     std::map<std::vector<double>, std::pair<std::vector<double>, std::vector<double>>> rows;
     for (std::size_t i = 0; i < column_values.size(); ++i) {
         std::vector<double> id;
@@ -232,8 +229,7 @@ void add_device_message(std::vector<Track>& tracks, const MessageTable* table,
         add_devices(tracks, message, "power_w", table->message, products(*voltage, *current));
     }
     if (current == nullptr) return;
-    add_devices(tracks, message, "current_a", fmt::format("{}.{}", table->message, current->field),
-                current->values);
+    add_devices(tracks, message, "current_a", fmt::format("{}.{}", table->message, current->field), current->values);
 }
 
 }  // namespace

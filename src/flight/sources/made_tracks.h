@@ -16,7 +16,6 @@ Track as_track(const std::string& name, const std::string& source, const telemet
 /// current, speed, wind and position of their components, a track each of every motor (ESC) and circuit
 /// (POWER_DEVICE), whose sum needs values between samples and is made when it is asked for. Without a .log
 /// (`definitions_assumed`), also a 4-field ENERGY with its last two fields read the other way round.
-void add_made_tracks(std::vector<Track>& tracks, const telemetry::SenderLog& sender,
-                     bool definitions_assumed);
+void add_made_tracks(std::vector<Track>& tracks, const telemetry::SenderLog& sender, bool definitions_assumed);
 
 }  // namespace flightwatt::flight

@@ -32,9 +32,8 @@ const Track* find_product(const FlightSeries& series, std::string_view message) 
 
 /// A track that no message of a log names: a user's CSV, which is believed.
 const Track* plain_power(const FlightSeries& series) {
-    return find_power(series, [](const Track& track) {
-        return track.device.empty() && track.source.find('.') == std::string::npos;
-    });
+    return find_power(
+        series, [](const Track& track) { return track.device.empty() && track.source.find('.') == std::string::npos; });
 }
 
 /// Calls visit(a, b) for the values of both tracks at the times that they share.
@@ -81,8 +80,8 @@ bool take(const Track& candidate, PowerChoice& choice) {
         choice.power_w = candidate;
         return true;
     }
-    choice.passed_over.push_back(
-        candidate.source + (candidate.time_s.size() < 2 ? " has no two finite values" : " is 0 throughout"));
+    choice.passed_over.push_back(candidate.source +
+                                 (candidate.time_s.size() < 2 ? " has no two finite values" : " is 0 throughout"));
     return false;
 }
 

@@ -22,8 +22,7 @@ constexpr double most_times_exact = 1e3;
 constexpr double equal_level = 1e-9;
 
 /// In the order of Weighting.
-constexpr std::array<std::string_view, 4> weighting_names{"uniform", "inverse-variance", "agreement",
-                                                          "by hand"};
+constexpr std::array<std::string_view, 4> weighting_names{"uniform", "inverse-variance", "agreement", "by hand"};
 
 std::vector<double> normalised(std::vector<double> weights) {
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -37,8 +36,7 @@ std::vector<double> by_variance(const PhaseFit& fit) {
     for (const auto& flight : fit.flights) {
         const auto samples = static_cast<double>(flight.samples);
         // Relative to the largest, so that neither the unit nor an rms of 0 matters.
-        const double relative =
-            largest > 0.0 ? std::max(flight.rms_w / largest, 1.0 / most_times_exact) : 1.0;
+        const double relative = largest > 0.0 ? std::max(flight.rms_w / largest, 1.0 / most_times_exact) : 1.0;
         weights.push_back(samples / (relative * relative));
     }
     return normalised(std::move(weights));
@@ -60,8 +58,7 @@ std::vector<double> disagreements(const PhaseFit& fit) {
     std::vector<double> distances;
     for (const auto& curve : curves) {
         double square_sum = 0.0;
-        for (std::size_t i = 0; i < points; ++i)
-            square_sum += std::pow(curve[i] - (sum[i] - curve[i]) / others, 2);
+        for (std::size_t i = 0; i < points; ++i) square_sum += std::pow(curve[i] - (sum[i] - curve[i]) / others, 2);
         const double distance = square_sum / static_cast<double>(points);
         distances.push_back(distance > equal_level * equal_level * size ? distance : 0.0);
     }
@@ -81,8 +78,7 @@ std::vector<double> by_agreement(const PhaseFit& fit) {
     return normalised(std::move(weights));
 }
 
-double weight_by_hand(const std::string& flight, flight::Phase phase,
-                      const std::vector<HandWeight>& by_hand) {
+double weight_by_hand(const std::string& flight, flight::Phase phase, const std::vector<HandWeight>& by_hand) {
     const HandWeight* found = nullptr;
     for (const auto& weight : by_hand) {
         if (weight.flight != flight) continue;
@@ -90,8 +86,8 @@ double weight_by_hand(const std::string& flight, flight::Phase phase,
         if (!weight.phase) found = &weight;
     }
     if (found == nullptr) {
-        throw UsageError(fmt::format("flight '{}' has no weight by hand in {}; give it one, 0 to exclude it",
-                                     flight, to_string(phase)));
+        throw UsageError(fmt::format("flight '{}' has no weight by hand in {}; give it one, 0 to exclude it", flight,
+                                     to_string(phase)));
     }
     return found->weight;
 }
@@ -100,17 +96,15 @@ std::vector<double> by_hand(const PhaseFit& fit, flight::Phase phase, const std:
     std::vector<double> weights;
     for (const auto& flight : fit.flights) weights.push_back(weight_by_hand(flight.flight, phase, given));
     if (std::ranges::none_of(weights, [](double weight) { return weight > 0.0; })) {
-        throw UsageError(fmt::format(
-            "every flight's weight by hand is 0 in {}; at least one must be positive", to_string(phase)));
+        throw UsageError(
+            fmt::format("every flight's weight by hand is 0 in {}; at least one must be positive", to_string(phase)));
     }
     return normalised(std::move(weights));
 }
 
 }  // namespace
 
-std::string_view to_string(Weighting weighting) {
-    return weighting_names[static_cast<std::size_t>(weighting)];
-}
+std::string_view to_string(Weighting weighting) { return weighting_names[static_cast<std::size_t>(weighting)]; }
 
 std::optional<Weighting> weighting_from(std::string_view name) {
     const auto found = std::ranges::find(weighting_names, name);
@@ -120,27 +114,25 @@ std::optional<Weighting> weighting_from(std::string_view name) {
 
 void check_weights(const WeightOptions& options, std::span<const std::string> flights) {
     if (options.weighting != Weighting::by_hand && !options.by_hand.empty()) {
-        throw UsageError(fmt::format("weights by hand and weights by {} exclude each other",
-                                     to_string(options.weighting)));
+        throw UsageError(
+            fmt::format("weights by hand and weights by {} exclude each other", to_string(options.weighting)));
     }
     for (auto weight = options.by_hand.begin(); weight != options.by_hand.end(); ++weight) {
         if (std::ranges::find(flights, weight->flight) == flights.end()) {
             const auto near = nearest_word(weight->flight, {flights.begin(), flights.end()});
-            throw UsageError(fmt::format("a weight is given for '{}', which is none of the flights{}",
-                                         weight->flight,
+            throw UsageError(fmt::format("a weight is given for '{}', which is none of the flights{}", weight->flight,
                                          near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
         }
         if (!(weight->weight >= 0.0) || !std::isfinite(weight->weight)) {
-            throw UsageError(fmt::format("the weight of flight '{}' is {}, expected 0 or more",
-                                         weight->flight, weight->weight));
+            throw UsageError(
+                fmt::format("the weight of flight '{}' is {}, expected 0 or more", weight->flight, weight->weight));
         }
         const auto same = [&](const HandWeight& other) {
             return other.flight == weight->flight && other.phase == weight->phase;
         };
         if (std::any_of(options.by_hand.begin(), weight, same)) {
-            throw UsageError(
-                fmt::format("flight '{}' has two weights{}", weight->flight,
-                            weight->phase ? fmt::format(" in {}", to_string(*weight->phase)) : ""));
+            throw UsageError(fmt::format("flight '{}' has two weights{}", weight->flight,
+                                         weight->phase ? fmt::format(" in {}", to_string(*weight->phase)) : ""));
         }
     }
 }

@@ -52,8 +52,7 @@ double basis_condition(Eigen::MatrixXd basis) {
     return singular(0) / singular(singular.size() - 1);
 }
 
-FourierResidual fourier_residual(const ScaledSamples& samples, double theta_rad,
-                                 const Eigen::VectorXd& coefficients) {
+FourierResidual fourier_residual(const ScaledSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients) {
     const int order = static_cast<int>(coefficients.size() - 1) / 2;
     FourierResidual result;
     result.by_coefficients = fourier_basis(samples.tau, order, theta_rad);

@@ -38,8 +38,7 @@ struct FourierResidual {
     Eigen::MatrixXd by_coefficients;  ///< d residual / d coefficients: the basis
 };
 
-FourierResidual fourier_residual(const ScaledSamples& samples, double theta_rad,
-                                 const Eigen::VectorXd& coefficients);
+FourierResidual fourier_residual(const ScaledSamples& samples, double theta_rad, const Eigen::VectorXd& coefficients);
 
 /// A linear least-squares solution with what follows from it.
 struct LinearFit {

@@ -51,8 +51,8 @@ double own_square_sum(std::span<const ScaledSamples> flights) {
     return sum;
 }
 
-Candidate refined(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
-                  double theta_rad, double reach_rad) {
+Candidate refined(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range, double theta_rad,
+                  double reach_rad) {
     const double low = std::max(range.low_rad, theta_rad - reach_rad);
     const double high = std::min(range.high_rad, theta_rad + reach_rad);
     const auto square_sum = [&](double theta) { return projected_square_sum(flights, order, theta); };
@@ -75,8 +75,7 @@ std::vector<Candidate> minima(const FrequencyScan& scan) {
 
 }  // namespace
 
-FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order,
-                               const FrequencyRange& range) {
+FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range) {
     FrequencyScan scan;
     const auto last = static_cast<std::size_t>(std::ceil(range.high_rad * order / turn_between_rad));
     scan.step_rad = range.high_rad / static_cast<double>(last);
@@ -131,8 +130,7 @@ double simplest_frequency(std::span<const ScaledSamples> flights, int order, con
         const double worse = std::max(rounding, simpler.square_sum) - best;
         const boost::math::fisher_f distribution(lacking, degrees_of_freedom);
         const double by_chance =
-            lacking * variance *
-            boost::math::quantile(boost::math::complement(distribution, harmonic_significance));
+            lacking * variance * boost::math::quantile(boost::math::complement(distribution, harmonic_significance));
         if (worse <= by_chance && worse - lacking * variance <= negligible_part * (total - best)) {
             return simpler.theta_rad;
         }

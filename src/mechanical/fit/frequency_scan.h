@@ -18,8 +18,7 @@ struct FrequencyScan {
 
 /// Scans the whole range, finely enough that the highest harmonic turns by at most 1 rad over the phase from
 /// one theta to the next, so that no minimum falls between two of them.
-FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order,
-                               const FrequencyRange& range);
+FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range);
 
 /// The frequency [rad per phase] that the flights have in common: the lowest minimum of the scan, refined,
 /// unless it is the subharmonic of a simpler answer (see simplest_frequency).

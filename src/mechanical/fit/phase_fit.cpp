@@ -24,14 +24,11 @@ void check_options(const PhaseFitOptions& options) {
             fmt::format("the order of the Fourier series is {}, expected 0 to {}", options.order, max_order));
     }
     if (!(options.low_rad > 0.0) || !std::isfinite(options.low_rad)) {
-        throw UsageError(
-            fmt::format("the lowest omega * duration is {} rad, expected more than 0", options.low_rad));
+        throw UsageError(fmt::format("the lowest omega * duration is {} rad, expected more than 0", options.low_rad));
     }
-    if (!(units::rad_from_turns(options.high_periods) > options.low_rad) ||
-        !std::isfinite(options.high_periods)) {
-        throw UsageError(
-            fmt::format("at most {} periods a phase are less than the lowest omega * duration, {} rad",
-                        options.high_periods, options.low_rad));
+    if (!(units::rad_from_turns(options.high_periods) > options.low_rad) || !std::isfinite(options.high_periods)) {
+        throw UsageError(fmt::format("at most {} periods a phase are less than the lowest omega * duration, {} rad",
+                                     options.high_periods, options.low_rad));
     }
 }
 
@@ -156,8 +153,7 @@ FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const Pha
     return range;
 }
 
-PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights,
-                   const PhaseFitOptions& options) {
+PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
     if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
     for (const auto& flight : flights) {

@@ -56,7 +56,6 @@ FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const Pha
 /// Throws InputError for samples that are no samples (unequal lengths, tau outside [0, 1], not finite, duration
 /// not positive), NoAnswerError naming flight and phase for a flight with fewer than samples_needed(order)
 /// samples, for no flights, and for a fit that does not converge.
-PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights,
-                   const PhaseFitOptions& options = {});
+PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options = {});
 
 }  // namespace flightwatt::mechanical

@@ -35,8 +35,7 @@ SpreadGrid spread(const ScaledSamples& samples, double step_rad, std::size_t cou
 
     SpreadGrid grid;
     grid.cells.assign(cells, Complex(0.0, 0.0));
-    grid.width =
-        std::numbers::pi * static_cast<double>(reach) / (modes * modes * oversampling * (oversampling - 0.5));
+    grid.width = std::numbers::pi * static_cast<double>(reach) / (modes * modes * oversampling * (oversampling - 0.5));
     std::array<double, 2 * reach> fixed_factor{};  // exp(-(offset cell)^2 / (4 width))
     for (std::size_t k = 0; k < fixed_factor.size(); ++k) {
         const double offset = (static_cast<double>(k) - static_cast<double>(reach - 1)) * cell;
@@ -47,8 +46,7 @@ SpreadGrid spread(const ScaledSamples& samples, double step_rad, std::size_t cou
         const auto nearest = static_cast<std::size_t>(angle / cell);
         const double rest = angle - static_cast<double>(nearest) * cell;
         const double ratio = std::exp(rest * cell / (2.0 * grid.width));
-        double factor =
-            std::exp(-rest * rest / (4.0 * grid.width)) * std::pow(ratio, 1.0 - static_cast<double>(reach));
+        double factor = std::exp(-rest * rest / (4.0 * grid.width)) * std::pow(ratio, 1.0 - static_cast<double>(reach));
         const Complex sample(1.0, samples.value[i]);
         for (std::size_t k = 0; k < fixed_factor.size(); ++k) {
             const std::size_t place = (nearest + cells + k - (reach - 1)) & (cells - 1);

@@ -101,8 +101,7 @@ void minimise(std::span<const ScaledSamples> flights, const FrequencyRange& rang
             // A loss takes hold of a residual block, so each sample is one.
             problem.AddResidualBlock(
                 new FourierCost({{flights[i].tau[j]}, {flights[i].value[j]}}, start[i].from_orthonormal),
-                new ceres::HuberLoss(tuning_constant * fit.noise_scale), &fit.theta_rad,
-                start[i].orthonormal.data());
+                new ceres::HuberLoss(tuning_constant * fit.noise_scale), &fit.theta_rad, start[i].orthonormal.data());
         }
     }
     ceres::Solver::Options options;
@@ -113,8 +112,7 @@ void minimise(std::span<const ScaledSamples> flights, const FrequencyRange& rang
     solve(problem, options, fit.theta_rad, range, "the robust fit did not converge");
     for (std::size_t i = 0; i < flights.size(); ++i) {
         fit.coefficients[i] = start[i].from_orthonormal * start[i].orthonormal;
-        fit.square_sum[i] =
-            fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]).residual.squaredNorm();
+        fit.square_sum[i] = fourier_residual(flights[i], fit.theta_rad, fit.coefficients[i]).residual.squaredNorm();
     }
 }
 
@@ -142,8 +140,8 @@ JointFit refine_jointly(std::span<const ScaledSamples> flights, int order, const
         const auto start = fit_at(flights[i], order, start_rad);
         auto own = coefficients.col(static_cast<Eigen::Index>(i));
         own = start.orthonormal;
-        problem.AddResidualBlock(new FourierCost(flights[i], start.from_orthonormal), nullptr,
-                                 &result.theta_rad, own.data());
+        problem.AddResidualBlock(new FourierCost(flights[i], start.from_orthonormal), nullptr, &result.theta_rad,
+                                 own.data());
         options.linear_solver_ordering->AddElementToGroup(own.data(), 0);
     }
     options.linear_solver_ordering->AddElementToGroup(&result.theta_rad, 1);

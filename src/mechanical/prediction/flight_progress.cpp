@@ -31,8 +31,7 @@ flight::FlightSeries tracks_for_segmentation(const flight::FlightSeries& series)
 /// The sortie as it looks from what is known; std::nullopt before its lift-off.
 std::optional<flight::Sortie> sortie_of(const flight::FlightSeries& known, std::size_t index,
                                         const flight::SegmentationOptions& options) {
-    if (power_track(known).time_s.size() < 2 || chosen_track(known, "altitude_m").empty())
-        return std::nullopt;
+    if (power_track(known).time_s.size() < 2 || chosen_track(known, "altitude_m").empty()) return std::nullopt;
     auto phases = segment(known, options);
     if (index >= phases.sorties.size()) return std::nullopt;
     return std::move(phases.sorties[index]);
@@ -67,13 +66,13 @@ double time_since_lift_off(const flight::FlightSeries& series, double since_s, s
     const double last_s = log_end_s(slim) + longest_log_gap_s;
     while (time_s <= last_s) {
         const auto found = sortie_of(cut_series(slim, time_s), sortie, options);
-        const double due_s = found && !found->phases.empty() ? found->phases.front().start.time_s + since_s
-                                                             : time_s + look_again_s;
+        const double due_s =
+            found && !found->phases.empty() ? found->phases.front().start.time_s + since_s : time_s + look_again_s;
         if (due_s <= time_s + same_s) return time_s;
         time_s = due_s;
     }
-    throw NoAnswerError(fmt::format("{}: the log ends at {:.0f} s, before {:.0f} s after a lift-off",
-                                    series.flight, log_end_s(slim), since_s));
+    throw NoAnswerError(fmt::format("{}: the log ends at {:.0f} s, before {:.0f} s after a lift-off", series.flight,
+                                    log_end_s(slim), since_s));
 }
 
 FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie_index,
@@ -86,8 +85,7 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
             fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", series.flight, end_s, until_s));
     }
     const auto refuse = [&](std::string_view what) {
-        throw NoAnswerError(
-            fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, what));
+        throw NoAnswerError(fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, what));
     };
     const auto sortie = sortie_of(known, sortie_index, options);
     if (!sortie || sortie->phases.empty()) refuse("has not taken off");
@@ -101,12 +99,10 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
     flown.cruise_start_s = first.end.time_s;
     // Whoever still climbs has just reached 90 % of the height so far: that is no cruise yet.
     if (last.phase == flight::Phase::takeoff || flown.cruise_s() < options.hold_s) {
-        refuse(
-            fmt::format("has not held its height for {:.0f} s: expected a moment in cruise", options.hold_s));
+        refuse(fmt::format("has not held its height for {:.0f} s: expected a moment in cruise", options.hold_s));
     }
     flown.cruise_energy_wh = integrated_energy_wh(known, flown.cruise_start_s, until_s);
-    flown.energy_wh =
-        integrated_energy_wh(known, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
+    flown.energy_wh = integrated_energy_wh(known, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
     flown.airspeed_cubed_m3_per_s3 =
         mean_cubed_airspeed_m3_per_s3(chosen_track(known, "airspeed_m_per_s"), flown.cruise_start_s, until_s);
     flown.covariates = covariates_of(known, *sortie);

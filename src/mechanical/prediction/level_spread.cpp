@@ -21,8 +21,7 @@ std::vector<std::optional<double>> block_deviations_w(const PhaseModel& model, c
     std::vector<double> sum(blocks, 0.0);
     std::vector<std::size_t> samples(blocks, 0);
     for (std::size_t i = 0; i < flight.tau.size(); ++i) {
-        const auto block =
-            std::min(static_cast<std::size_t>(flight.tau[i] * static_cast<double>(blocks)), blocks - 1);
+        const auto block = std::min(static_cast<std::size_t>(flight.tau[i] * static_cast<double>(blocks)), blocks - 1);
         sum[block] += flight.power_w[i] - power_w(curve, flight.tau[i] * flight.duration_s);
         ++samples[block];
     }
@@ -97,13 +96,11 @@ Drift drift_of(const BlockSums& sums, double length_s, double duration_s) {
     const double variance = sums.square / static_cast<double>(sums.blocks);
     const double correlation = sums.product / static_cast<double>(sums.neighbours) / variance;
     const Drift unit{1.0, correlation_time_s(correlation, length_s, duration_s)};
-    const double by_blocks =
-        variance / (variance_of_mean_w2(unit, length_s) - variance_of_mean_w2(unit, duration_s));
+    const double by_blocks = variance / (variance_of_mean_w2(unit, length_s) - variance_of_mean_w2(unit, duration_s));
     // The model's curve is the flights' own average, which takes a part of their differences from it.
     const double half_difference = sums.half_difference_square / static_cast<double>(sums.flights - 1);
-    const double by_halves =
-        half_difference / (2.0 * variance_of_mean_w2(unit, 0.5 * duration_s) -
-                           2.0 * covariance_of_means_w2(unit, 0.5 * duration_s, 0.5 * duration_s));
+    const double by_halves = half_difference / (2.0 * variance_of_mean_w2(unit, 0.5 * duration_s) -
+                                                2.0 * covariance_of_means_w2(unit, 0.5 * duration_s, 0.5 * duration_s));
     return {std::sqrt(std::max(by_blocks, by_halves)), unit.correlation_s};
 }
 

@@ -69,8 +69,7 @@ FlightPart part_of(const PhaseSamples& unsorted, const FlightCurve& curve, const
     part.orthonormal = at.by_coefficients * qr->from_orthonormal;
     part.coefficient_sensitivity = qr->coefficients;
     part.theta_direction = at.by_theta - at.by_coefficients * qr->coefficients;
-    if (part.theta_direction.norm() <= direction_tolerance * at.by_theta.norm())
-        part.theta_direction.setZero();
+    if (part.theta_direction.norm() <= direction_tolerance * at.by_theta.norm()) part.theta_direction.setZero();
     const auto power_w = as_vector(samples.power_w);
     part.square_sum_about_mean = (power_w.array() - power_w.mean()).square().sum();
     part.condition = basis_condition(at.by_coefficients);
@@ -136,8 +135,8 @@ Eigen::MatrixXd response(const MeanCurveParts& mean, std::size_t i, double weigh
     const auto& part = mean.parts[i];
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.orthonormal.rows(), 1 + part.orthonormal.cols());
     if (!frequency_is_given) rows.col(0) = theta_response(mean, i);
-    rows.rightCols(part.orthonormal.cols()) = weight * part.orthonormal * part.from_orthonormal.transpose() -
-                                              rows.col(0) * mean.sensitivity.transpose();
+    rows.rightCols(part.orthonormal.cols()) =
+        weight * part.orthonormal * part.from_orthonormal.transpose() - rows.col(0) * mean.sensitivity.transpose();
     return rows;
 }
 
@@ -148,13 +147,12 @@ struct NoiseShare {
     double degrees_of_freedom = 0.0;
 };
 
-NoiseShare share_of(const FlightResiduals& residuals, const Eigen::MatrixXd& rows,
-                    const Eigen::VectorXd& theta_rows, double autocorrelation) {
+NoiseShare share_of(const FlightResiduals& residuals, const Eigen::MatrixXd& rows, const Eigen::VectorXd& theta_rows,
+                    double autocorrelation) {
     const auto noise = noise_level(residuals, autocorrelation);
     const auto correlation = sample_correlation(residuals.tau, residuals.step, autocorrelation);
     return {noise.variance_w2 * rows.transpose() * correlated(correlation, rows),
-            noise.variance_w2 * theta_rows.dot(correlated(correlation, theta_rows).col(0)),
-            noise.degrees_of_freedom};
+            noise.variance_w2 * theta_rows.dot(correlated(correlation, theta_rows).col(0)), noise.degrees_of_freedom};
 }
 
 /// The row of derivatives of the mean curve by theta and the coefficients.

@@ -16,8 +16,7 @@ constexpr int points_a_side = 20;
 double square_sum_w2(std::span<const PhaseSamples> flights, int order, double theta_rad) {
     double sum = 0.0;
     for (const auto& flight : flights) {
-        const auto fit =
-            solve_least_squares(fourier_basis(flight.tau, order, theta_rad), as_vector(flight.power_w));
+        const auto fit = solve_least_squares(fourier_basis(flight.tau, order, theta_rad), as_vector(flight.power_w));
         if (!fit) return std::numeric_limits<double>::infinity();
         sum += fit->residual_square_sum;
     }
@@ -31,8 +30,7 @@ struct End {
 
 /// Where the sum of squares crosses `limit` between the best theta and the range's bound, or that bound.
 template <typename SquareSum>
-End end_of_interval(const SquareSum& square_sum, double best_rad, double step_rad, double bound_rad,
-                    double limit) {
+End end_of_interval(const SquareSum& square_sum, double best_rad, double step_rad, double bound_rad, double limit) {
     const double direction = bound_rad < best_rad ? -1.0 : 1.0;
     double inside = best_rad;
     double outside = best_rad;
@@ -64,8 +62,7 @@ FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const 
     const auto square_sum = [&](double theta_rad) { return square_sum_w2(flights, order, theta_rad); };
     const double best = square_sum(fit.theta_rad);
     const double half_width = student_t_half_width(analysis.errors.degrees_of_freedom);
-    const double limit =
-        best + analysis.theta_information * std::pow(half_width * analysis.free_theta_rad, 2);
+    const double limit = best + analysis.theta_information * std::pow(half_width * analysis.free_theta_rad, 2);
     const double step_rad = half_width * analysis.free_theta_rad / 4.0;
     const auto low = end_of_interval(square_sum, fit.theta_rad, step_rad, fit.range.low_rad, limit);
     const auto high = end_of_interval(square_sum, fit.theta_rad, step_rad, fit.range.high_rad, limit);

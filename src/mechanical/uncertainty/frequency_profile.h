@@ -15,8 +15,7 @@ struct FrequencyProfile {
     std::vector<double> rms_w;      ///< of all residuals at each
     double low_rad = 0.0;           ///< the 95 % interval of theta
     double high_rad = 0.0;
-    bool low_is_open =
-        false;  ///< the interval ends where the admissible range does, not where the data say so
+    bool low_is_open = false;  ///< the interval ends where the admissible range does, not where the data say so
     bool high_is_open = false;
 };
 

@@ -44,8 +44,7 @@ std::optional<ConstantPower> power_by_covariate(std::span<const PhaseSamples> fl
 }
 
 EnergyEstimate energy_of(const ConstantPower& power, double duration_s) {
-    EnergyEstimate estimate{units::wh_from_joule(power.mean_w * duration_s), power.sd_w.has_value(), 0.0,
-                            0.0};
+    EnergyEstimate estimate{units::wh_from_joule(power.mean_w * duration_s), power.sd_w.has_value(), 0.0, 0.0};
     if (power.sd_w) {
         const double sd_wh = units::wh_from_joule(*power.sd_w * duration_s);
         add_share(estimate, {sd_wh * sd_wh, power.degrees_of_freedom});

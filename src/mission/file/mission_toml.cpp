@@ -45,8 +45,7 @@ mechanical::PhaseClock read_clock(const TomlTable& root, bool has_mechanical) {
 const mechanical::LevelLaw& law_of(const TomlTable& conditions,
                                    const std::optional<mechanical::MechanicalModel>& mechanical) {
     if (!mechanical) {
-        throw InputError(conditions.where(), "conditions have no meaning with mechanical = \"none\"",
-                         "leave them out");
+        throw InputError(conditions.where(), "conditions have no meaning with mechanical = \"none\"", "leave them out");
     }
     const auto& law = mechanical->phases[Phase::cruise].level_law;
     if (law) return *law;
@@ -73,8 +72,7 @@ mechanical::ConstantPower apply_conditions(const TomlTable& conditions,
     const auto level = level_at(law, value);
     if (!level.within_flights) {
         throw InputError(
-            conditions.where(name),
-            fmt::format("{} = {} is beyond what the model's flights showed", name, value),
+            conditions.where(name), fmt::format("{} = {} is beyond what the model's flights showed", name, value),
             fmt::format("the {} flights of its level law were from {:.4g} to {:.4g}; give one of these, or "
                         "fit a model to flights that were flown so",
                         law.flights, law.least, law.most));
@@ -91,8 +89,7 @@ double read_duration(const TomlTable& durations, std::string_view phase) {
     return number_in(between(shortest_phase_s, longest_phase_s), durations, phase, "or 0: not flown");
 }
 
-PerPhase<double> read_durations(const TomlTable& root,
-                                const std::optional<mechanical::MechanicalModel>& mechanical) {
+PerPhase<double> read_durations(const TomlTable& root, const std::optional<mechanical::MechanicalModel>& mechanical) {
     PerPhase<double> durations;
     if (mechanical) {
         for (const auto phase : all_phases) durations[phase] = mechanical->phases[phase].duration_s;
@@ -162,17 +159,15 @@ PerPhase<std::optional<double>> read_phases(const TomlTable& uncertainty, std::s
     return phases;
 }
 
-Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeModel& compute,
-                             bool has_mechanical) {
+Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeModel& compute, bool has_mechanical) {
     Uncertainty read;
     read.compute_sd_percent.resize(compute.components.size());
     const auto table = mission.optional_table("uncertainty");
     if (!table) return read;
-    table->refuse_keys_except(
-        {"level_sd_percent", "duration_sd_s", "compute_sd_percent", "capacity_sd_percent"});
+    table->refuse_keys_except({"level_sd_percent", "duration_sd_s", "compute_sd_percent", "capacity_sd_percent"});
     if (table->has("level_sd_percent") && !has_mechanical) {
-        throw InputError(table->where("level_sd_percent"),
-                         "level_sd_percent has no meaning with mechanical = \"none\"", "leave it out");
+        throw InputError(table->where("level_sd_percent"), "level_sd_percent has no meaning with mechanical = \"none\"",
+                         "leave it out");
     }
     read.level_sd_percent = read_phases(*table, "level_sd_percent");
     read.duration_sd_s = read_phases(*table, "duration_sd_s");
@@ -223,13 +218,11 @@ AnyMission with_read_schedule(const TomlTable& root, const MissionReading& readi
 
 }  // namespace
 
-AnyMission parse_mission(std::string_view text, const std::filesystem::path& path,
-                         const MissionReading& reading) {
+AnyMission parse_mission(std::string_view text, const std::filesystem::path& path, const MissionReading& reading) {
     const auto root = parse_toml(text, path.string());
-    root.refuse_keys_except({"format", "name", "mechanical", "duration_s", "phase_clock", "conditions",
-                             "battery", "initial_soc_percent", "capacity_ah", "cutoff_voltage_v",
-                             "reserve_soc_percent", "components", "schedule", "plan", "policy",
-                             "uncertainty"});
+    root.refuse_keys_except({"format", "name", "mechanical", "duration_s", "phase_clock", "conditions", "battery",
+                             "initial_soc_percent", "capacity_ah", "cutoff_voltage_v", "reserve_soc_percent",
+                             "components", "schedule", "plan", "policy", "uncertainty"});
     require_known_format(root);
     MissionSetup mission;
     mission.file = path.string();
@@ -242,8 +235,7 @@ AnyMission parse_mission(std::string_view text, const std::filesystem::path& pat
     if (reading.cruise_s) mission.duration_s[Phase::cruise] = *reading.cruise_s;
     mission.battery = read_mission_battery(root);
     read_components(root, mission);
-    mission.initial_soc_percent =
-        number_in_or(more_than_up_to(0.0, 100.0), root, "initial_soc_percent", 100.0);
+    mission.initial_soc_percent = number_in_or(more_than_up_to(0.0, 100.0), root, "initial_soc_percent", 100.0);
     mission.cutoff_voltage_v = number_in_or(between(0.0, 1e6), root, "cutoff_voltage_v", 0.0);
     mission.reserve_soc_percent = number_in_or(between(0.0, 100.0), root, "reserve_soc_percent", 0.0);
     mission.uncertainty = read_uncertainty(root, mission.compute, mission.mechanical.has_value());

@@ -51,8 +51,8 @@ std::string schedule_text(const compute::ComputeModel& compute, const Schedule& 
     std::string text;
     for (const auto& segment : schedule) {
         text += fmt::format("\n[[schedule]]\nphase = {}\nfrom = {}\nto = {}\nrun = {}\n",
-                            toml_string(to_string(segment.phase)), toml_real(segment.start_s),
-                            toml_real(segment.end_s), run_text(compute, segment.run));
+                            toml_string(to_string(segment.phase)), toml_real(segment.start_s), toml_real(segment.end_s),
+                            run_text(compute, segment.run));
     }
     return text;
 }

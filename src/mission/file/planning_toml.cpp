@@ -18,10 +18,9 @@ std::optional<std::size_t> read_parameter(const TomlTable& table, const compute:
     if (!name) {
         if (known.empty()) return std::nullopt;
         if (known.size() == 1) return 0;
-        throw InputError(
-            table.where(),
-            fmt::format("the profile has {} parameters: which one has the utility?", known.size()),
-            fmt::format("add parameter = ..., one of {}", fmt::join(known, ", ")));
+        throw InputError(table.where(),
+                         fmt::format("the profile has {} parameters: which one has the utility?", known.size()),
+                         fmt::format("add parameter = ..., one of {}", fmt::join(known, ", ")));
     }
     const auto found = std::ranges::find(known, *name);
     if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
@@ -60,28 +59,25 @@ void read_points(const TomlTable& table, const std::vector<double>& axis, Utilit
     const auto& x = utility.points_qos;
     const auto& y = utility.points_value;
     if (x.size() < 2 || x.size() != y.size()) {
-        throw InputError(
-            table.where(value),
-            fmt::format("{} numbers of qos and {} of {} are no points", x.size(), y.size(), value),
-            "give as many of each, 2 or more");
+        throw InputError(table.where(value),
+                         fmt::format("{} numbers of qos and {} of {} are no points", x.size(), y.size(), value),
+                         "give as many of each, 2 or more");
     }
     if (std::ranges::adjacent_find(x, std::greater_equal<>()) != x.end())
         throw InputError(table.where("qos"), "the values of qos do not rise");
     if (!std::ranges::is_sorted(y)) {
-        throw InputError(table.where(value),
-                         fmt::format("{} falls: better quality cannot have less utility", value),
+        throw InputError(table.where(value), fmt::format("{} falls: better quality cannot have less utility", value),
                          "the numbers must not fall");
     }
     if (x.front() > axis.front() || x.back() < axis.back()) {
         throw InputError(table.where("qos"),
-                         fmt::format("the points from {} to {} do not cover the profile's range, {} to {}",
-                                     x.front(), x.back(), axis.front(), axis.back()),
+                         fmt::format("the points from {} to {} do not cover the profile's range, {} to {}", x.front(),
+                                     x.back(), axis.front(), axis.back()),
                          "add points at its ends");
     }
 }
 
-std::size_t component_index(const compute::ComputeModel& compute, const std::string& name,
-                            const Location& where) {
+std::size_t component_index(const compute::ComputeModel& compute, const std::string& name, const Location& where) {
     std::vector<std::string> known;
     for (std::size_t i = 0; i < compute.components.size(); ++i) {
         if (compute.components[i].name == name) return i;
@@ -123,9 +119,9 @@ Utility read_utility(const TomlTable& table, const compute::PowerProfile& profil
     const bool has_points = utility.shape == UtilityShape::points;
     for (const std::string_view key : {"shape", "qos", "value", "worth"}) {
         if (!table.has(key) || (utility.parameter && (has_points || key == "shape"))) continue;
-        throw InputError(table.where(key), fmt::format("`{}` has no meaning here", key),
-                         utility.parameter ? R"(it belongs to shape = "points")"
-                                           : "the profile has no parameter: leave it out");
+        throw InputError(
+            table.where(key), fmt::format("`{}` has no meaning here", key),
+            utility.parameter ? R"(it belongs to shape = "points")" : "the profile has no parameter: leave it out");
     }
     if (!utility.parameter) return utility;
     const auto& axis = profile.axes[*utility.parameter];
@@ -157,14 +153,12 @@ PlanSettings read_plan_settings(const TomlTable& mission, const compute::Compute
 std::optional<AdaptivePolicy> read_adaptive_policy(const TomlTable& mission) {
     const auto policy = mission.optional_table("policy");
     if (!policy) return std::nullopt;
-    policy->refuse_keys_except(
-        {"kind", "decide_every_s", "mechanical_sd_percent", "learning_time_s", "probability"});
+    policy->refuse_keys_except({"kind", "decide_every_s", "mechanical_sd_percent", "learning_time_s", "probability"});
     const auto kind = policy->string("kind");
     if (kind == "static") {
         for (const auto& key : policy->keys()) {
             if (key == "kind") continue;
-            throw InputError(policy->where(key),
-                             fmt::format("`{}` has no meaning with kind = \"static\"", key),
+            throw InputError(policy->where(key), fmt::format("`{}` has no meaning with kind = \"static\"", key),
                              "leave it out, or make it kind = \"adaptive\"");
         }
         return std::nullopt;

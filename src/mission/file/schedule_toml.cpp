@@ -27,9 +27,8 @@ double percent_in(const TomlTable& entry, std::string_view key) {
     while (!number.empty() && number.back() == ' ') number.remove_suffix(1);
     const auto value = parse_number(number);
     if (!is_percent || !value) {
-        throw InputError(
-            entry.where(key), fmt::format("{} = \"{}\" is no time in a phase", key, text),
-            fmt::format("write seconds ({} = 240) or percent of the phase ({} = \"40 %\")", key, key));
+        throw InputError(entry.where(key), fmt::format("{} = \"{}\" is no time in a phase", key, text),
+                         fmt::format("write seconds ({} = 240) or percent of the phase ({} = \"40 %\")", key, key));
     }
     return *value;
 }
@@ -65,8 +64,8 @@ void read_segment(const TomlTable& table, double duration_s, ScheduleEntry& entr
 
 /// Before a key is missed: one that is there, and wrong, is what the user has to find. `what` begins the message,
 /// `of_none` and `of_known` the hint.
-void refuse_unknown_names(const TomlTable& table, const std::vector<std::string>& known,
-                          const std::string& what, std::string_view of_none, std::string_view of_known) {
+void refuse_unknown_names(const TomlTable& table, const std::vector<std::string>& known, const std::string& what,
+                          std::string_view of_none, std::string_view of_known) {
     for (const auto& key : table.keys()) {
         if (std::ranges::find(known, key) != known.end()) continue;
         const auto near = nearest_word(key, known);
@@ -80,8 +79,7 @@ void refuse_unknown_names(const TomlTable& table, const std::vector<std::string>
 compute::RunningComponent read_running(const TomlTable& run, const std::string& name, std::size_t index,
                                        const compute::PowerProfile& profile) {
     const auto given = run.table(name);
-    refuse_unknown_names(given, profile.parameters, name + " has no parameter", "it has none",
-                         "its parameters are");
+    refuse_unknown_names(given, profile.parameters, name + " has no parameter", "it has none", "its parameters are");
     compute::RunningComponent running{index, {}};
     for (std::size_t i = 0; i < profile.parameters.size(); ++i) {
         const auto& parameter = profile.parameters[i];
@@ -100,8 +98,7 @@ compute::Configuration read_run(const TomlTable& run, const compute::ComputeMode
     // In the model's order, not the file's: sums of power are then the same however a mission is written.
     compute::Configuration configuration;
     for (std::size_t i = 0; i < known.size(); ++i)
-        if (run.has(known[i]))
-            configuration.push_back(read_running(run, known[i], i, compute.components[i].profile));
+        if (run.has(known[i])) configuration.push_back(read_running(run, known[i], i, compute.components[i].profile));
     return configuration;
 }
 
@@ -140,11 +137,10 @@ void refuse_second_otherwise(const std::vector<ScheduleEntry>& entries) {
     for (const auto& entry : entries) {
         const auto* first = otherwise_of(entries, entry.phase);
         if (!entry.otherwise || first == &entry) continue;
-        throw InputError(
-            entry.where,
-            fmt::format("a second `otherwise` for {}, the first is in line {}",
-                        entry.phase ? to_string(*entry.phase) : "the whole mission", first->where.line),
-            "keep one of them");
+        throw InputError(entry.where,
+                         fmt::format("a second `otherwise` for {}, the first is in line {}",
+                                     entry.phase ? to_string(*entry.phase) : "the whole mission", first->where.line),
+                         "keep one of them");
     }
 }
 
@@ -153,10 +149,9 @@ void refuse_second_otherwise(const std::vector<ScheduleEntry>& entries) {
         std::minmax(first, second, [](const auto& a, const auto& b) { return a.where.line < b.where.line; });
     throw InputError(
         later.where,
-        fmt::format(
-            "{} is scheduled twice, here and in line {}",
-            spell(*first.phase, std::max(first.start_s, second.start_s), std::min(first.end_s, second.end_s)),
-            earlier.where.line),
+        fmt::format("{} is scheduled twice, here and in line {}",
+                    spell(*first.phase, std::max(first.start_s, second.start_s), std::min(first.end_s, second.end_s)),
+                    earlier.where.line),
         first.whole_phase || second.whole_phase
             ? "give the entry of the whole phase `otherwise = true`, and it takes what the others leave"
             : "let one end where the other begins");
@@ -169,21 +164,17 @@ struct PlacedEntry {
 };
 
 /// The explicit entries of a phase in order. Throws InputError where two overlap.
-std::vector<PlacedEntry> placed_entries(const std::vector<ScheduleEntry>& entries, Phase phase,
-                                        double duration_s) {
+std::vector<PlacedEntry> placed_entries(const std::vector<ScheduleEntry>& entries, Phase phase, double duration_s) {
     const double tolerance_s = same_time_tolerance_s(duration_s);
     std::vector<PlacedEntry> placed;
     for (const auto& entry : entries)
-        if (!entry.otherwise && entry.phase == phase)
-            placed.push_back({{phase, entry.start_s, entry.end_s}, &entry});
-    std::ranges::stable_sort(placed, [](const PlacedEntry& a, const PlacedEntry& b) {
-        return a.segment.start_s < b.segment.start_s;
-    });
+        if (!entry.otherwise && entry.phase == phase) placed.push_back({{phase, entry.start_s, entry.end_s}, &entry});
+    std::ranges::stable_sort(
+        placed, [](const PlacedEntry& a, const PlacedEntry& b) { return a.segment.start_s < b.segment.start_s; });
     double covered_s = 0.0;
     const ScheduleEntry* previous = nullptr;
     for (auto& [segment, entry] : placed) {
-        if (previous != nullptr && segment.start_s < previous->end_s - tolerance_s)
-            refuse_overlap(*previous, *entry);
+        if (previous != nullptr && segment.start_s < previous->end_s - tolerance_s) refuse_overlap(*previous, *entry);
         if (segment.start_s <= covered_s + tolerance_s) segment.start_s = covered_s;
         if (segment.end_s >= duration_s - tolerance_s) segment.end_s = duration_s;
         covered_s = segment.end_s;
@@ -212,8 +203,7 @@ double read_time_s(const TomlTable& entry, std::string_view key, double duration
 std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const compute::ComputeModel& compute,
                                          const PerPhase<double>& duration_s) {
     std::vector<ScheduleEntry> entries;
-    for (const auto& table : mission.tables("schedule"))
-        entries.push_back(read_entry(table, compute, duration_s));
+    for (const auto& table : mission.tables("schedule")) entries.push_back(read_entry(table, compute, duration_s));
     return entries;
 }
 
@@ -242,8 +232,7 @@ Schedule resolve_schedule(const std::vector<ScheduleEntry>& entries, const PerPh
             covered_s = segment.end_s;
         }
         if (covered_s < duration_s[phase] - same_time_tolerance_s(duration_s[phase]))
-            fill_until(duration_s[phase],
-                       placed[phase].empty() ? entries.back() : *placed[phase].back().entry);
+            fill_until(duration_s[phase], placed[phase].empty() ? entries.back() : *placed[phase].back().entry);
     }
     for (const auto& entry : entries) {
         if (!entry.otherwise || used.contains(&entry)) continue;
@@ -253,8 +242,7 @@ Schedule resolve_schedule(const std::vector<ScheduleEntry>& entries, const PerPh
     return segments;
 }
 
-Schedule resolve_fixed_segments(const std::vector<ScheduleEntry>& entries,
-                                const PerPhase<double>& duration_s) {
+Schedule resolve_fixed_segments(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s) {
     for (const auto& entry : entries) {
         if (!entry.otherwise) continue;
         throw InputError(entry.where, "`otherwise` leaves nothing to plan",

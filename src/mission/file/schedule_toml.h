@@ -35,8 +35,7 @@ Schedule resolve_schedule(const std::vector<ScheduleEntry>& entries, const PerPh
 /// The segments of the explicit entries alone, in order: what is fixed of a schedule yet to be planned.
 /// Throws InputError for two entries at the same time, and for `otherwise`, which would leave nothing to
 /// plan.
-Schedule resolve_fixed_segments(const std::vector<ScheduleEntry>& entries,
-                                const PerPhase<double>& duration_s);
+Schedule resolve_fixed_segments(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s);
 
 /// The phase at `phase`. Throws InputError for one that there is not, or that the mission does not fly.
 Phase read_flown_phase(const TomlTable& entry, const PerPhase<double>& duration_s);

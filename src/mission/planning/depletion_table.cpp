@@ -36,16 +36,15 @@ struct PhaseLoad {
     /// Its RC voltage takes the battery's constant source to where the course is.
     battery::BatteryState state(double time_s) const {
         if (!course) return {};
-        return {100.0, battery.voltage_v -
-                           interpolate_clamped(course->time_s, course->voltage_v, phase_start_s + time_s)};
+        return {100.0,
+                battery.voltage_v - interpolate_clamped(course->time_s, course->voltage_v, phase_start_s + time_s)};
     }
     bool is_deliverable(double time_s) const {
         const auto now = state(time_s);
         const double demand_w = power_w(time_s);
         if (demand_w > power_limit_w(battery, now)) return false;
         return cutoff_voltage_v == 0.0 ||
-               terminal_voltage_v(battery, now, internal_current_a(battery, demand_w, now)) >=
-                   cutoff_voltage_v;
+               terminal_voltage_v(battery, now, internal_current_a(battery, demand_w, now)) >= cutoff_voltage_v;
     }
 
     double power_w(double time_s) const {
@@ -78,8 +77,8 @@ double at_cell(const PhaseDepletion& depletion, std::size_t cell, double part) {
     const double rise = b.depleted_percent - a.depleted_percent;
     const double slope_a = a.percent_per_s / depletion.cells_per_s;
     const double slope_b = b.percent_per_s / depletion.cells_per_s;
-    return a.depleted_percent + part * (slope_a + part * (3.0 * rise - 2.0 * slope_a - slope_b +
-                                                          part * (slope_a + slope_b - 2.0 * rise)));
+    return a.depleted_percent +
+           part * (slope_a + part * (3.0 * rise - 2.0 * slope_a - slope_b + part * (slope_a + slope_b - 2.0 * rise)));
 }
 
 /// How many points the battery has lost since the phase began.
@@ -121,8 +120,7 @@ PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, std::size_t ce
 
 /// The table with as many cells as the wanted error takes.
 PhaseDepletion tabulate(const PhaseLoad& load, double duration_s) {
-    auto cells =
-        std::clamp(static_cast<std::size_t>(std::ceil(duration_s)), fewest_cells, first_cells_at_most);
+    auto cells = std::clamp(static_cast<std::size_t>(std::ceil(duration_s)), fewest_cells, first_cells_at_most);
     auto depletion = tabulate(load, duration_s, cells);
     const double wanted_percent = load.course ? wanted_error_along_source_percent : wanted_error_percent;
     while (depletion.error_percent > wanted_percent && cells < most_cells && depletion.deliverable) {
@@ -181,8 +179,7 @@ std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission, cons
     return course;
 }
 
-DepletionTable make_depletion_table(const MissionSetup& mission,
-                                    std::vector<compute::Configuration> configurations,
+DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<compute::Configuration> configurations,
                                     const VoltageCourse* course) {
     DepletionTable table;
     table.initial_soc_percent = mission.initial_soc_percent;
@@ -231,8 +228,7 @@ std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable
 
 double soc_depletion_percent(const DepletionTable& table, const TabledSegment& segment) {
     const auto& depletion = table.depletions[segment.configuration][segment.phase];
-    if (is_undeliverable(depletion, segment.start_s, segment.end_s))
-        return std::numeric_limits<double>::infinity();
+    if (is_undeliverable(depletion, segment.start_s, segment.end_s)) return std::numeric_limits<double>::infinity();
     return depleted_percent(depletion, segment.end_s) - depleted_percent(depletion, segment.start_s);
 }
 

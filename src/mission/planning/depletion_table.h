@@ -44,7 +44,7 @@ struct DepletionTable {
     std::vector<compute::Configuration> configurations;
     std::vector<PerPhase<PhaseDepletion>> depletions;  ///< one a configuration
     double initial_soc_percent = 100.0;
-    bool charges = false;  ///< somewhere: what a full battery then refuses depends on the state of charge
+    bool charges = false;           ///< somewhere: what a full battery then refuses depends on the state of charge
     bool depends_on_state = false;  ///< the source follows the charge: sums do not tell the end
     double error_percent = 0.0;     ///< the greatest of the phases'
 };
@@ -59,8 +59,7 @@ struct TabledSegment : PhaseSegment {
 /// them). What the cut-off voltage forbids counts as undeliverable. A battery whose source follows its charge is
 /// tabled along `course`, with an error under 1e-6 points; or without one along its voltage at the start, which
 /// depletes it no more than the truth if nothing charges.
-DepletionTable make_depletion_table(const MissionSetup& mission,
-                                    std::vector<compute::Configuration> configurations,
+DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<compute::Configuration> configurations,
                                     const VoltageCourse* course = nullptr);
 
 /// None if the table does not hold the configuration.

@@ -50,8 +50,7 @@ class LabelPass {
         std::vector<std::vector<std::vector<Label>>> at(graph.slots + 1);
         for (auto& labels : at) labels.resize(graph.choices + 1);
         trail_.push_back({0, graph.begin_choice, graph.begin});
-        at[graph.begin][std::min(graph.begin_choice, graph.choices)].push_back(
-            {trail_.front(), graph.before_begin});
+        at[graph.begin][std::min(graph.begin_choice, graph.choices)].push_back({trail_.front(), graph.before_begin});
         for (std::size_t i = graph.begin; i < graph.slots; ++i) {
             expand(i, at);
             at[i].clear();
@@ -59,8 +58,7 @@ class LabelPass {
         const auto finished = merged(graph.slots, at[graph.slots]);
         const auto best = std::ranges::max_element(
             finished, [](const auto& a, const auto& b) { return a.sum.utility < b.sum.utility; });
-        if (best != finished.end() && best->sum.utility > result.best.sum.utility)
-            result.best = path_of(*best);
+        if (best != finished.end() && best->sum.utility > result.best.sum.utility) result.best = path_of(*best);
         const double lost = as_good_ * static_cast<double>(2 * graph.slots + 2);
         result.bound = std::min(result.bound, std::max(result.best.sum.utility, dropped_bound_) + lost);
         result.bound = std::max(result.bound, result.best.sum.utility);
@@ -173,8 +171,8 @@ KnapsackPath path_by(const KnapsackGraph& graph, double utility_weight, double c
 void relax(const KnapsackPath& greedy, Search& search) {
     KnapsackPath beyond = greedy;
     for (int round = 0; round < 100; ++round) {
-        search.slope = std::max(
-            0.0, (beyond.sum.utility - search.best.sum.utility) / (beyond.sum.cost - search.best.sum.cost));
+        search.slope =
+            std::max(0.0, (beyond.sum.utility - search.best.sum.utility) / (beyond.sum.cost - search.best.sum.cost));
         search.by_slope = cost_to_go(search.graph, 1.0, search.slope);
         const auto path = best_path(search.graph, search.by_slope, 1.0, search.slope);
         const auto above = [&](const KnapsackPath& p) { return p.sum.utility - search.slope * p.sum.cost; };

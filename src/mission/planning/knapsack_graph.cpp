@@ -14,9 +14,7 @@ std::size_t gap_end(const std::vector<KnapsackSlot>& slots, std::size_t i) {
     return i;
 }
 
-bool begins_gap(const std::vector<KnapsackSlot>& slots, std::size_t i) {
-    return i == 0 || slots[i - 1].fixed;
-}
+bool begins_gap(const std::vector<KnapsackSlot>& slots, std::size_t i) { return i == 0 || slots[i - 1].fixed; }
 
 /// Adds the run of `choice` from slot `from` for at least so long, if it can be.
 void add_run(const MultipleChoiceKnapsack& problem, std::size_t from, std::size_t choice,
@@ -81,8 +79,8 @@ KnapsackGraph make_knapsack_graph(const MultipleChoiceKnapsack& problem) {
         for (std::size_t c = 0; c < problem.free_choices; ++c) {
             add_run(problem, i, c, graph.runs[i]);
             const auto run = single(problem, i, c);
-            const bool is_run = !graph.runs[i].empty() && graph.runs[i].back().choice == c &&
-                                graph.runs[i].back().to == i + 1;
+            const bool is_run =
+                !graph.runs[i].empty() && graph.runs[i].back().choice == c && graph.runs[i].back().to == i + 1;
             if (!is_run && std::isfinite(run.sum.cost)) graph.one_more[i].push_back(run);
         }
     }
@@ -110,8 +108,7 @@ CostToGo cost_to_go(const KnapsackGraph& graph, double utility_weight, double co
     return best;
 }
 
-KnapsackPath best_path(const KnapsackGraph& graph, const CostToGo& to_go, double utility_weight,
-                       double cost_weight) {
+KnapsackPath best_path(const KnapsackGraph& graph, const CostToGo& to_go, double utility_weight, double cost_weight) {
     KnapsackPath path;
     path.sum = graph.before_begin;
     path.choices.assign(graph.begin, graph.begin_choice);

@@ -52,7 +52,6 @@ struct KnapsackPath {
 };
 
 /// A way that reaches `to_go`, which must be that of the same weights and finite.
-KnapsackPath best_path(const KnapsackGraph& graph, const CostToGo& to_go, double utility_weight,
-                       double cost_weight);
+KnapsackPath best_path(const KnapsackGraph& graph, const CostToGo& to_go, double utility_weight, double cost_weight);
 
 }  // namespace flightwatt::mission

@@ -44,17 +44,16 @@ std::vector<std::optional<compute::RunningComponent>> ways_to_run(std::size_t co
 void require_few(const PlanningProblem& problem) {
     double combinations = 1.0;
     for (const auto& component : problem.plan.choices) {
-        const double ways = std::accumulate(
-            component.levels.begin(), component.levels.end(), 1.0,
-            [](double all, const auto& levels) { return all * static_cast<double>(levels.size()); });
+        const double ways =
+            std::accumulate(component.levels.begin(), component.levels.end(), 1.0,
+                            [](double all, const auto& levels) { return all * static_cast<double>(levels.size()); });
         combinations *= ways + (component.may_be_off ? 1.0 : 0.0);
     }
     if (combinations <= most_combinations) return;
-    throw InputError(
-        {problem.file},
-        fmt::format("the components have {:.3g} combinations of levels, more than {:.0e} to choose from",
-                    combinations, most_combinations),
-        "say with `levels` in [plan] which ones may be chosen");
+    throw InputError({problem.file},
+                     fmt::format("the components have {:.3g} combinations of levels, more than {:.0e} to choose from",
+                                 combinations, most_combinations),
+                     "say with `levels` in [plan] which ones may be chosen");
 }
 
 std::vector<Choice> every_choice(const PlanningProblem& problem) {
@@ -81,8 +80,7 @@ std::vector<Choice> every_choice(const PlanningProblem& problem) {
 
 /// Only what has more utility than everything that draws less. Whatever else is kept: with a dwell time, going
 /// on with what is fixed can be better than something better.
-std::vector<Choice> undominated(std::vector<Choice> choices,
-                                const std::vector<compute::Configuration>& kept) {
+std::vector<Choice> undominated(std::vector<Choice> choices, const std::vector<compute::Configuration>& kept) {
     std::ranges::stable_sort(choices, draws_less);
     std::optional<double> most;
     std::erase_if(choices, [&](const Choice& choice) {
@@ -105,14 +103,14 @@ void add_free_slots(PhaseSegment free, double slot_s, double tolerance_s, std::v
 
 void require_few_slots(const PlanningProblem& problem, double duration_s) {
     if (duration_s / problem.plan.slot_s <= most_slots) return;
-    throw InputError({problem.file},
-                     fmt::format("{} s in slots of {} s are more than {} slots", duration_s,
-                                 problem.plan.slot_s, most_slots),
-                     "make slot_s in [plan] longer");
+    throw InputError(
+        {problem.file},
+        fmt::format("{} s in slots of {} s are more than {} slots", duration_s, problem.plan.slot_s, most_slots),
+        "make slot_s in [plan] longer");
 }
 
-MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner& planner,
-                                   const PlanStart& start, const std::vector<MissionSlot>& slots) {
+MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
+                                   const std::vector<MissionSlot>& slots) {
     MultipleChoiceKnapsack knapsack;
     knapsack.utility_per_s = planner.utility_per_s;
     knapsack.free_choices = planner.free_choices;
@@ -126,8 +124,8 @@ MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner
         if (slot.fixed) choices.fixed = index_of(planner.depletions, *slot.fixed).value();
         double more_percent = 0.0;
         if (start.mechanical_factor != 1.0) {
-            more_percent = (start.mechanical_factor - 1.0) *
-                           soc_depletion_percent(planner.mechanical_depletion, {slot, 0});
+            more_percent =
+                (start.mechanical_factor - 1.0) * soc_depletion_percent(planner.mechanical_depletion, {slot, 0});
         }
         for (std::size_t c = 0; c < planner.utility_per_s.size(); ++c)
             choices.cost.push_back(soc_depletion_percent(planner.depletions, {slot, c}) + more_percent);

@@ -72,8 +72,7 @@ class Flight {
         charge_.soc_percent = actual.initial_soc_percent;
         reserve_percent_ = energy_equivalent_soc_percent(planner, known_.reserve_soc_percent);
         const auto& policy = *known_.adaptive;
-        reach_ =
-            policy.mechanical_sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
+        reach_ = policy.mechanical_sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
         for (const auto phase : all_phases)
             if (known_.duration_s[phase] > 0.0)
                 rest_mechanical_percent_ += mechanical_percent({phase, 0.0, known_.duration_s[phase]});
@@ -110,9 +109,8 @@ class Flight {
         PlanStart start{planned_.start_s[interval.phase] + interval.start_s, soc_left_percent(), running_,
                         running_for_s_};
         start.mechanical_factor = learned_.factor(policy);
-        const double seen = policy.learning_time_s > 0.0
-                                ? policy.learning_time_s / (learned_.time_s + policy.learning_time_s)
-                                : 0.0;
+        const double seen =
+            policy.learning_time_s > 0.0 ? policy.learning_time_s / (learned_.time_s + policy.learning_time_s) : 0.0;
         const double to_come = policy.learning_time_s / (planned_.duration_s - start.time_s);
         const double margin_percent = reach_ * rest_mechanical_percent_ * std::sqrt(seen + to_come);
         const auto plan = plan_rest(known_, adaptive_.planner, start, reserve_percent_ + margin_percent,
@@ -176,8 +174,8 @@ AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     AdaptivePlanner planner{problem, std::nullopt, {}};
     auto& battery = planner.known.battery;
     if (battery.thevenin) {
-        battery.voltage_v = open_circuit_voltage_v(
-            battery, (problem.initial_soc_percent + problem.reserve_soc_percent) / 2.0);
+        battery.voltage_v =
+            open_circuit_voltage_v(battery, (problem.initial_soc_percent + problem.reserve_soc_percent) / 2.0);
         battery.resistance_ohm += battery.thevenin->rc_resistance_ohm;
         planner.open_circuit = battery.thevenin->open_circuit;
         battery.thevenin.reset();

@@ -71,9 +71,8 @@ void find_compute(const MissionSetup& mission, FlightSpreads& spreads) {
         note_source(spreads, stated_percent ? *stated_percent > 0.0 : has_errors,
                     fmt::format("power of {}", components[i].name),
                     stated_percent ? fmt::format("sd {:.4g} %, stated", *stated_percent)
-                    : has_errors
-                        ? "standard errors of its profile"
-                        : "its profile has no standard errors: profile it, or state compute_sd_percent");
+                    : has_errors   ? "standard errors of its profile"
+                                   : "its profile has no standard errors: profile it, or state compute_sd_percent");
     }
 }
 
@@ -85,8 +84,7 @@ void find_battery(const MissionSetup& mission, FlightSpreads& spreads) {
                     has_interval ? "the battery's interval" : "the battery's file has no interval");
     };
     if (const auto percent = mission.uncertainty.capacity_sd_percent) {
-        note_source(spreads, *percent > 0.0, "battery capacity",
-                    fmt::format("sd {:.4g} %, stated", *percent));
+        note_source(spreads, *percent > 0.0, "battery capacity", fmt::format("sd {:.4g} %, stated", *percent));
     } else {
         find("battery capacity", intervals.capacity_ah.has_value());
     }
@@ -144,20 +142,17 @@ void draw_battery(const Uncertainty& stated, Normals& normal, battery::Battery& 
         battery.capacity_ah =
             moved(battery.capacity_ah, intervals.capacity_ah, capacity_z, least_part * battery.capacity_ah);
     }
-    battery.voltage_v =
-        moved(battery.voltage_v, intervals.voltage_v, voltage_z, least_part * battery.voltage_v);
+    battery.voltage_v = moved(battery.voltage_v, intervals.voltage_v, voltage_z, least_part * battery.voltage_v);
     battery.resistance_ohm = moved(battery.resistance_ohm, intervals.resistance_ohm, resistance_z, 0.0);
     if (!battery.thevenin) return;
     auto& circuit = *battery.thevenin;
-    circuit.rc_resistance_ohm =
-        moved(circuit.rc_resistance_ohm, intervals.rc_resistance_ohm, rc_resistance_z, 0.0);
+    circuit.rc_resistance_ohm = moved(circuit.rc_resistance_ohm, intervals.rc_resistance_ohm, rc_resistance_z, 0.0);
     circuit.rc_time_constant_s =
         moved_logarithm(circuit.rc_time_constant_s, intervals.rc_time_constant_s, time_constant_z);
     auto& voltage_v = circuit.open_circuit.voltage_v;
     double below_v = least_part * voltage_v.front();  // the curve never falls
     for (std::size_t k = 0; k < intervals.open_circuit_standard_error_v.size(); ++k) {
-        voltage_v[k] =
-            std::max(below_v, voltage_v[k] + voltage_z * intervals.open_circuit_standard_error_v[k]);
+        voltage_v[k] = std::max(below_v, voltage_v[k] + voltage_z * intervals.open_circuit_standard_error_v[k]);
         below_v = voltage_v[k];
     }
 }
@@ -186,8 +181,7 @@ FlightSpreads find_spreads(const MissionSetup& mission) {
         if (mission.mechanical) {
             const auto deviation = level_deviation(mission, phase);
             spreads.level_sd_w[phase] = deviation.sd_w;
-            note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)),
-                        basis_of(deviation));
+            note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)), basis_of(deviation));
         }
         find_duration(mission, phase, spreads);
     }
@@ -203,8 +197,7 @@ MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& sprea
     for (const auto phase : all_phases) {
         const double level_z = normal();
         const double duration_z = normal();
-        if (flight.mechanical)
-            flight.mechanical->phases[phase].fourier.a0_w += level_z * spreads.level_sd_w[phase];
+        if (flight.mechanical) flight.mechanical->phases[phase].fourier.a0_w += level_z * spreads.level_sd_w[phase];
         const double planned_s = mission.duration_s[phase];
         flight.duration_s[phase] =
             std::max(shortest_part * planned_s, planned_s + duration_z * spreads.duration_sd_s[phase]);

@@ -14,8 +14,7 @@
 namespace flightwatt::mission {
 namespace {
 
-double phase_depletion_percent(const MissionSetup& mission, const compute::Configuration& configuration,
-                               Phase phase) {
+double phase_depletion_percent(const MissionSetup& mission, const compute::Configuration& configuration, Phase phase) {
     const auto table = make_depletion_table(mission, {configuration});
     return soc_depletion_percent(table, {{phase, 0.0, mission.duration_s[phase]}, 0});
 }
@@ -54,11 +53,11 @@ double level_sd_w(const MissionSetup& mission, Phase phase) {
     const auto deviation = level_deviation(mission, phase);
     if (deviation.source != DeviationSource::none && deviation.source != DeviationSource::fit_error)
         return deviation.sd_w;
-    throw InputError({mission.file},
-                     fmt::format("the mechanical model does not say how flights differ: [{}] has no spread",
-                                 to_string(phase)),
-                     "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
-                     "[uncertainty] with level_sd_percent");
+    throw InputError(
+        {mission.file},
+        fmt::format("the mechanical model does not say how flights differ: [{}] has no spread", to_string(phase)),
+        "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
+        "[uncertainty] with level_sd_percent");
 }
 
 double soc_depletion_sd_percent(const MissionSetup& mission,
@@ -66,8 +65,7 @@ double soc_depletion_sd_percent(const MissionSetup& mission,
     const auto most_power = std::ranges::max_element(configurations, [&](const auto& a, const auto& b) {
         return power_w(mission.compute, a) < power_w(mission.compute, b);
     });
-    if (most_power == configurations.end())
-        throw std::invalid_argument("soc_depletion_sd_percent: no configuration");
+    if (most_power == configurations.end()) throw std::invalid_argument("soc_depletion_sd_percent: no configuration");
     double variance = 0.0;
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
@@ -106,8 +104,7 @@ PlanningProblem mission_at_quantile(const PlanningProblem& problem, double proba
     for (const auto phase : all_phases) {
         const double part = sd_w[phase] * problem.duration_s[phase] / std::sqrt(energy_variance_j2);
         if (part > 0.0) {
-            stronger.mechanical->phases[phase].fourier.a0_w +=
-                normal_quantile(probability) * part * sd_w[phase];
+            stronger.mechanical->phases[phase].fourier.a0_w += normal_quantile(probability) * part * sd_w[phase];
         }
     }
     return stronger;

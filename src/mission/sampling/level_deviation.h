@@ -35,8 +35,7 @@ double level_sd_w(const MissionSetup& mission, Phase phase);
 /// Standard deviation [points] of a mission's depletion (docs/methods.md, Eq. 34), each phase flown beside the
 /// configuration that draws most. Throws InputError as level_sd_w; NoAnswerError where the battery could not deliver
 /// one standard deviation more of mechanical power.
-double soc_depletion_sd_percent(const MissionSetup& mission,
-                                const std::vector<compute::Configuration>& configurations);
+double soc_depletion_sd_percent(const MissionSetup& mission, const std::vector<compute::Configuration>& configurations);
 
 /// What to plan for above a reserve, so that it is kept with `probability`: that quantile of a Gaussian with the
 /// deviation above. Throws std::invalid_argument for a probability not from 0.5 to below 1.

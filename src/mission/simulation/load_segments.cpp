@@ -40,8 +40,7 @@ bool never_charges(const LoadSegment& segment) {
     if (segment.mechanical) {
         const auto& curve = *segment.mechanical;
         least_w += curve.a0_w;
-        for (std::size_t n = 0; n < curve.cos_w.size(); ++n)
-            least_w -= std::hypot(curve.cos_w[n], curve.sin_w[n]);
+        for (std::size_t n = 0; n < curve.cos_w.size(); ++n) least_w -= std::hypot(curve.cos_w[n], curve.sin_w[n]);
     }
     return least_w >= 0.0;
 }
@@ -82,8 +81,7 @@ std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedu
     return segments;
 }
 
-std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments,
-                                   const Disturbances& disturbances) {
+std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, const Disturbances& disturbances) {
     std::vector<LoadSegment> result;
     result.reserve(segments.size() + 2 * disturbances.size());
     for (const auto& segment : segments) {
@@ -94,8 +92,7 @@ std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments,
             part.start_s = start_s;
             part.end_s = end_s;
             for (const auto& disturbance : disturbances) {
-                if (disturbance.start_s >= end_s - edge_tolerance_s ||
-                    disturbance.end_s <= start_s + edge_tolerance_s)
+                if (disturbance.start_s >= end_s - edge_tolerance_s || disturbance.end_s <= start_s + edge_tolerance_s)
                     continue;
                 disturb_power(disturbance, part);
                 if (disturbance.start_s >= start_s - edge_tolerance_s)
@@ -111,9 +108,7 @@ double mechanical_w(const LoadSegment& segment, double time_s) {
     return segment.mechanical ? power_w(*segment.mechanical, time_s - segment.phase_start_s) : 0.0;
 }
 
-double power_w(const LoadSegment& segment, double time_s) {
-    return mechanical_w(segment, time_s) + segment.compute_w;
-}
+double power_w(const LoadSegment& segment, double time_s) { return mechanical_w(segment, time_s) + segment.compute_w; }
 
 double mechanical_energy_j(const LoadSegment& segment, double time_s) {
     if (!segment.mechanical) return 0.0;
@@ -134,8 +129,8 @@ battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segme
     return state;
 }
 
-battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v,
-                                 const LoadSegment& segment, battery::Discharge state) {
+battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment,
+                                 battery::Discharge state) {
     if (state.ended_at_s() || state.undeliverable) return state;
     if (segment.soc_drop_percent > 0.0) state = after_drop(state, segment);
     if (state.ended_at_s()) return state;
@@ -148,8 +143,7 @@ battery::Discharge after_segment(const battery::Battery& battery, double cutoff_
         }
     }
     const auto load = [&](double time_s) { return power_w(segment, time_s); };
-    return discharge(battery, {load, segment.start_s, segment.end_s}, state,
-                     {coarse_step_s, cutoff_voltage_v});
+    return discharge(battery, {load, segment.start_s, segment.end_s}, state, {coarse_step_s, cutoff_voltage_v});
 }
 
 }  // namespace flightwatt::mission

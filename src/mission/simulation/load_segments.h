@@ -39,8 +39,7 @@ LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& schedul
 std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule);
 
 /// The segments, cut where a disturbance starts or ends and changed in between.
-std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments,
-                                   const Disturbances& disturbances);
+std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, const Disturbances& disturbances);
 
 double mechanical_w(const LoadSegment& segment, double time_s);
 double power_w(const LoadSegment& segment, double time_s);
@@ -55,7 +54,7 @@ battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segme
 /// The battery after a segment, for flights that are flown by the thousand: the closed integral where the source is
 /// constant, without resistance, and nothing charges; elsewhere Runge-Kutta with steps of a second. A battery that has
 /// ended, or cannot deliver, stays as it is.
-battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v,
-                                 const LoadSegment& segment, battery::Discharge state);
+battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment,
+                                 battery::Discharge state);
 
 }  // namespace flightwatt::mission

@@ -48,8 +48,7 @@ FigureData knot_rows(const battery::BatteryIdentification& identified) {
         const double reach_v = errors_v.empty() ? std::nan("") : normal_half_width() * errors_v[i];
         // Knots are rounded to their state of charge: the last one that was flown belongs to the flights.
         const bool flown = curve.soc_percent[i] >= identified.known_down_to_percent - 1e-6;
-        data.add({curve.soc_percent[i], curve.voltage_v[i], curve.voltage_v[i] - reach_v,
-                  curve.voltage_v[i] + reach_v},
+        data.add({curve.soc_percent[i], curve.voltage_v[i], curve.voltage_v[i] - reach_v, curve.voltage_v[i] + reach_v},
                  {flown ? "from flights" : "after the LiPo chart"});
     }
     return data;
@@ -60,10 +59,9 @@ VegaJson open_circuit_axis(std::string_view field) {
 }
 
 VegaJson band_layer() {
-    return layer(R"({"type": "area", "style": "measured", "opacity": 0.2, "aria": false})",
-                 {{"x", quantity("soc_percent", soc_title)},
-                  {"y", open_circuit_axis("low_v")},
-                  {"y2", {{"field", "high_v"}}}});
+    return layer(
+        R"({"type": "area", "style": "measured", "opacity": 0.2, "aria": false})",
+        {{"x", quantity("soc_percent", soc_title)}, {"y", open_circuit_axis("low_v")}, {"y2", {{"field", "high_v"}}}});
 }
 
 VegaJson curve_layer() {
@@ -90,19 +88,18 @@ VegaJson knot_layer() {
 
 Figure voltage_figure(const battery::Battery& battery, std::span<const battery::DischargeRecord> records,
                       const std::string& id) {
-    auto description =
-        fmt::format("Terminal voltage of {} flights over time, measured and modelled.", records.size());
+    auto description = fmt::format("Terminal voltage of {} flights over time, measured and modelled.", records.size());
     auto panels = VegaJson::array();
     for (const auto& record : records) {
         const auto [low, high] = std::ranges::minmax_element(record.voltage_v);
         description += fmt::format(" {}: {:.2f} to {:.2f} V.", record.flight, *low, *high);
         panels.push_back(voltage_panel(battery, record));
     }
-    auto figure = new_figure(
-        id,
-        "The model predicts the voltage from the measured current and the voltage at rest before the flight "
-        "alone. Both are broken where the record contradicts itself: a current that the motor did not draw.",
-        description);
+    auto figure =
+        new_figure(id,
+                   "The model predicts the voltage from the measured current and the voltage at rest before the flight "
+                   "alone. Both are broken where the record contradicts itself: a current that the motor did not draw.",
+                   description);
     set_panels(figure, 2, 66, panels);
     return figure;
 }

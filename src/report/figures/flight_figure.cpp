@@ -120,8 +120,8 @@ VegaJson phase_layers(const FigureData& phases, const FigureData& edges, bool wi
               R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "strokeWidth": 1.5, "clip": true})",
               {{"x", quantity("time_s", log_time_title)},
                {"tooltip",
-                {category("edge", "edge"), shown("time_s", "time [s]", ".1f"),
-                 category("evidence", "evidence"), category("verdict", "the autopilot")}}}));
+                {category("edge", "edge"), shown("time_s", "time [s]", ".1f"), category("evidence", "evidence"),
+                 category("verdict", "the autopilot")}}}));
     if (with_names) layers.push_back(phase_names(phases.reference("phases"), log_time_title));
     return layers;
 }
@@ -164,23 +164,20 @@ std::string description_of(const ReportFlight& flight) {
         for (const auto& span : sortie.phases) {
             const auto statistics = phase_statistics(flight.series, span.start.time_s, span.end.time_s);
             text += fmt::format(" Sortie {}, {}: {:.0f} s from {:.1f} s on, {:.1f} W on average.", number,
-                                phase_word(span.phase), span.duration_s(), span.start.time_s,
-                                statistics.mean_power_w);
+                                phase_word(span.phase), span.duration_s(), span.start.time_s, statistics.mean_power_w);
         }
     }
     return text;
 }
 
 std::string caption_of(const ReportFlight& flight, bool has_model) {
-    std::string text =
-        "Phases are shaded and end at the dashed lines; those tell their evidence when pointed at.";
+    std::string text = "Phases are shaded and end at the dashed lines; those tell their evidence when pointed at.";
     if (has_model) text += " The model is each phase's curve, stretched to the time flown.";
     const auto power = power_track(flight.series);
     const auto samples = power.time_s.size();
     const auto drawn = visible_rows(power.time_s, power.value, power_columns).size();
     if (drawn < samples) {
-        text += fmt::format(" Drawn with {} of {} samples: the extremes of each column of the screen.", drawn,
-                            samples);
+        text += fmt::format(" Drawn with {} of {} samples: the extremes of each column of the screen.", drawn, samples);
     }
     return text;
 }
@@ -232,8 +229,8 @@ Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical:
         views.push_back(fmt::format("panel_{}", views.size()));
         view["layer"].back()["name"] = views.back();  // of a panel, its last layer
     }
-    figure.spec["params"] = {add_zoom(figure, views), legend_parameter("curve", {"measured", "model"},
-                                                                       views.back().get<std::string>())};
+    figure.spec["params"] = {add_zoom(figure, views),
+                             legend_parameter("curve", {"measured", "model"}, views.back().get<std::string>())};
     figure.spec["datasets"] = {{"phases", phases.csv()}, {"edges", edges.csv()}};
     figure.spec["vconcat"] = panels;
     figure.spec["spacing"] = 10;

@@ -39,9 +39,8 @@ std::optional<Figure> track_figure(const ReportFlight& flight, const std::string
 /// The mechanical model as the paper's Fig. 2, a panel a phase: the curve, the envelope of the flights and
 /// the 95 % band of the mean, where they are known (bands of no times: unknown), and the digitised figure's
 /// points where they are given.
-Figure model_figure(const mechanical::MechanicalModel& model,
-                    const flight::PerPhase<mechanical::CurveBand>& bands, const PublishedFigures& published,
-                    const std::string& id);
+Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerPhase<mechanical::CurveBand>& bands,
+                    const PublishedFigures& published, const std::string& id);
 
 /// How far each model's prediction of the energy of a flight that it has not seen was off: a point a flight,
 /// a row a model.

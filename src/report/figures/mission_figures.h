@@ -35,8 +35,7 @@ struct UtilityPoint {
 };
 
 /// Utility over final state of charge, a point a mission, with the planned one's reserve and proven bound.
-Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points,
-                      const std::string& id);
+Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points, const std::string& id);
 
 /// When a component of a mission runs with which quality of service, from start to end as it is seen: equal
 /// neighbours are one.

@@ -15,8 +15,7 @@ constexpr auto phase_time_title = "time since the phase began [s]";
 enum PhaseCurve : std::size_t { model_curve, mean_band, flights_envelope, published_curve };
 
 const VegaJson& curve_names() {
-    static const VegaJson names{"model", "95 % band of the mean", "envelope of the flights",
-                                "published, Fig. 2"};
+    static const VegaJson names{"model", "95 % band of the mean", "envelope of the flights", "published, Fig. 2"};
     return names;
 }
 
@@ -33,9 +32,7 @@ VegaJson color_of(PhaseCurve curve, const VegaJson& drawn) {
             {"legend", {{"values", drawn}, {"symbolType", "square"}, {"columns", 4}}}};
 }
 
-VegaJson power_axis(std::string_view field) {
-    return quantity(field, "power [W]", {{"scale", {{"zero", false}}}});
-}
+VegaJson power_axis(std::string_view field) { return quantity(field, "power [W]", {{"scale", {{"zero", false}}}}); }
 
 VegaJson area_layer(const std::vector<double>& time_s, const std::vector<double>& low_w,
                     const std::vector<double>& high_w, double opacity, const VegaJson& color) {
@@ -53,12 +50,11 @@ VegaJson area_layer(const std::vector<double>& time_s, const std::vector<double>
 VegaJson band_layers(const mechanical::CurveBand& band, const VegaJson& drawn) {
     auto layers = VegaJson::array();
     if (!band.flights_low_w.empty()) {
-        layers.push_back(area_layer(band.time_s, band.flights_low_w, band.flights_high_w, 0.55,
-                                    color_of(flights_envelope, drawn)));
+        layers.push_back(
+            area_layer(band.time_s, band.flights_low_w, band.flights_high_w, 0.55, color_of(flights_envelope, drawn)));
     }
     if (!band.time_s.empty()) {
-        layers.push_back(
-            area_layer(band.time_s, band.low_95_w, band.high_95_w, 0.4, color_of(mean_band, drawn)));
+        layers.push_back(area_layer(band.time_s, band.low_95_w, band.high_95_w, 0.4, color_of(mean_band, drawn)));
     }
     return layers;
 }
@@ -81,12 +77,11 @@ VegaJson model_layer(const mechanical::PhaseModel& phase, const VegaJson& drawn)
 VegaJson published_layer(const PublishedCurve& curve, const VegaJson& drawn) {
     FigureData data({"time_s", "power_w"});
     for (std::size_t i = 0; i < curve.time_s.size(); ++i) data.add({curve.time_s[i], curve.value[i]});
-    return layer(
-        data.json(), R"({"type": "point", "size": 14, "strokeWidth": 1.2, "clip": true, "aria": false})",
-        {{"x", quantity("time_s", phase_time_title)},
-         {"y", power_axis("power_w")},
-         {"color", color_of(published_curve, drawn)},
-         {"tooltip", {shown("time_s", "time [s]", ".1f"), shown("power_w", "published [W]", ".2f")}}});
+    return layer(data.json(), R"({"type": "point", "size": 14, "strokeWidth": 1.2, "clip": true, "aria": false})",
+                 {{"x", quantity("time_s", phase_time_title)},
+                  {"y", power_axis("power_w")},
+                  {"color", color_of(published_curve, drawn)},
+                  {"tooltip", {shown("time_s", "time [s]", ".1f"), shown("power_w", "published [W]", ".2f")}}});
 }
 
 /// Root mean square of published less model, over the points within the phase.
@@ -133,16 +128,15 @@ FigureData error_rows(std::span<const mechanical::ValidatedFlight> flights) {
             const auto energy = predicted_energy(flight, model, std::nullopt);
             if (!energy) continue;
             const double predicted_wh = energy->estimate.energy_wh;
-            data.add({predicted_wh - energy->measured_wh, energy->measured_wh, predicted_wh},
-                     {model, flight.flight});
+            data.add({predicted_wh - energy->measured_wh, energy->measured_wh, predicted_wh}, {model, flight.flight});
         }
     }
     return data;
 }
 
 std::string errors_described(std::span<const mechanical::ValidatedFlight> flights) {
-    std::string text = fmt::format(
-        "Error of the predicted energy of {} flights, each predicted by the others.", flights.size());
+    std::string text =
+        fmt::format("Error of the predicted energy of {} flights, each predicted by the others.", flights.size());
     for (const auto& model : model_names(flights)) {
         const auto score = score_of(flights, model, std::nullopt);
         if (!score) continue;
@@ -153,9 +147,8 @@ std::string errors_described(std::span<const mechanical::ValidatedFlight> flight
 
 }  // namespace
 
-Figure model_figure(const mechanical::MechanicalModel& model,
-                    const flight::PerPhase<mechanical::CurveBand>& bands, const PublishedFigures& published,
-                    const std::string& id) {
+Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerPhase<mechanical::CurveBand>& bands,
+                    const PublishedFigures& published, const std::string& id) {
     VegaJson drawn{curve_names()[model_curve]};
     const auto& cruise = bands[flight::Phase::cruise];
     if (!cruise.time_s.empty()) drawn.push_back(curve_names()[mean_band]);
@@ -178,11 +171,11 @@ Figure model_figure(const mechanical::MechanicalModel& model,
 }
 
 Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, const std::string& id) {
-    auto figure = new_figure(
-        id,
-        "Energy of the whole flight, predicted from its durations by the other flights, less measured. "
-        "A ring is a flight.",
-        errors_described(flights));
+    auto figure =
+        new_figure(id,
+                   "Energy of the whole flight, predicted from its durations by the other flights, less measured. "
+                   "A ring is a flight.",
+                   errors_described(flights));
     figure.spec["width"] = 560;
     figure.spec["height"] = {{"step", 30}};
     figure.spec["layer"] = {
@@ -193,9 +186,8 @@ Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, c
                {"y", category("model", "", {{"sort", nullptr}})},
                {"color", category("model", "", {{"legend", nullptr}})},
                {"tooltip",
-                {category("flight", "flight"), category("model", "model"),
-                 shown("measured_wh", "measured [Wh]", ".3f"), shown("predicted_wh", "predicted [Wh]", ".3f"),
-                 shown("error_wh", "error [Wh]", "+.3f")}}})};
+                {category("flight", "flight"), category("model", "model"), shown("measured_wh", "measured [Wh]", ".3f"),
+                 shown("predicted_wh", "predicted [Wh]", ".3f"), shown("error_wh", "error [Wh]", "+.3f")}}})};
     return figure;
 }
 

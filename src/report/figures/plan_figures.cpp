@@ -79,18 +79,15 @@ VegaJson names_layer(const std::vector<UtilityPoint>& points) {
     auto encoding = utility_axes();
     encoding["text"] = category("mission", "mission");
     const auto texts = [&](std::string_view side, std::string_view mark) {
-        VegaJson filtered{
-            {"transform", VegaJson::array({{{"filter", {{"field", "side"}, {"equal", side}}}}})}};
+        VegaJson filtered{{"transform", VegaJson::array({{{"filter", {{"field", "side"}, {"equal", side}}}}})}};
         filtered.update(layer(mark, encoding));
         return filtered;
     };
     return {
         {"data", data.json()},
         {"layer",
-         {texts("left",
-                R"({"type": "text", "style": "note", "align": "right", "dx": -8, "dy": 11, "limit": 220})"),
-          texts("right",
-                R"({"type": "text", "style": "note", "align": "left", "dx": 8, "dy": 11, "limit": 220})")}}};
+         {texts("left", R"({"type": "text", "style": "note", "align": "right", "dx": -8, "dy": 11, "limit": 220})"),
+          texts("right", R"({"type": "text", "style": "note", "align": "left", "dx": 8, "dy": 11, "limit": 220})")}}};
 }
 
 /// A line across the figure, its place on `channel`, with its name written by `mark`.
@@ -100,8 +97,7 @@ VegaJson rule_layer(std::string_view channel, double value, const std::string& t
     };
     return {{"data", {{"values", VegaJson::array({{{"text", text}}})}}},
             {"layer",
-             {layer(R"({"type": "rule", "style": "edge", "strokeDash": [5, 3], "strokeWidth": 1.5})",
-                    with("tooltip")),
+             {layer(R"({"type": "rule", "style": "edge", "strokeDash": [5, 3], "strokeWidth": 1.5})", with("tooltip")),
               layer(mark, with("text"))}}};
 }
 
@@ -113,26 +109,23 @@ VegaJson bars_layer(const mission::Mission& mission, double duration_s) {
                   power_w(component.profile, running.qos), running.end_s - running.start_s},
                  {component.name, describe_qos(component, running.qos)});
     }
-    const VegaJson whole{{"scale", {{"domain", {0.0, duration_s}}, {"nice", false}}},
-                         {"axis", {{"grid", false}}}};
+    const VegaJson whole{{"scale", {{"domain", {0.0, duration_s}}, {"nice", false}}}, {"axis", {{"grid", false}}}};
     const auto y = category("component", "", vega(R"({"sort": null, "axis": {"labelLimit": 130}})"));
-    const auto bars = layer(
-        R"({"type": "bar", "clip": true, "height": 15, "yOffset": 9})",
-        {{"x", quantity("from_s", mission_time_title, whole)},
-         {"x2", {{"field", "to_s"}}},
-         {"y", y},
-         {"color", power_ramp("power_w", "power of the component [W]")},
-         {"tooltip",
-          {category("component", "component"), category("runs", "runs"), shown("from_s", "from [s]", ".0f"),
-           shown("to_s", "to [s]", ".0f"), shown("power_w", "power [W]", ".2f")}}});
+    const auto bars =
+        layer(R"({"type": "bar", "clip": true, "height": 15, "yOffset": 9})",
+              {{"x", quantity("from_s", mission_time_title, whole)},
+               {"x2", {{"field", "to_s"}}},
+               {"y", y},
+               {"color", power_ramp("power_w", "power of the component [W]")},
+               {"tooltip",
+                {category("component", "component"), category("runs", "runs"), shown("from_s", "from [s]", ".0f"),
+                 shown("to_s", "to [s]", ".0f"), shown("power_w", "power [W]", ".2f")}}});
     constexpr double least_part = 0.13;  // of the time: a shorter bar has no room for its words
     VegaJson words{
-        {"transform",
-         VegaJson::array({{{"filter", fmt::format("datum.long_s > {}", least_part * duration_s)}}})}};
-    words.update(layer(R"({"type": "text", "style": "note", "dy": -8})",
-                       {{"x", quantity("middle_s", mission_time_title, whole)},
-                        {"y", y},
-                        {"text", category("runs", "runs")}}));
+        {"transform", VegaJson::array({{{"filter", fmt::format("datum.long_s > {}", least_part * duration_s)}}})}};
+    words.update(
+        layer(R"({"type": "text", "style": "note", "dy": -8})",
+              {{"x", quantity("middle_s", mission_time_title, whole)}, {"y", y}, {"text", category("runs", "runs")}}));
     return {{"data", data.json()}, {"layer", {bars, words}}};
 }
 
@@ -144,13 +137,12 @@ VegaJson edge_layer(const mission::Mission& mission) {
         data.add({timeline.start_s[phase], timeline.start_s[phase] + mission.duration_s[phase] / 2.0},
                  {phase_word(phase)});
     }
-    return {
-        {"data", data.json()},
-        {"layer",
-         {layer(R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "aria": false})",
-                {{"x", quantity("begin_s", mission_time_title)}}),
-          layer(R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0})",
-                {{"x", quantity("middle_s", mission_time_title)}, {"text", category("phase", "phase")}})}}};
+    return {{"data", data.json()},
+            {"layer",
+             {layer(R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "aria": false})",
+                    {{"x", quantity("begin_s", mission_time_title)}}),
+              layer(R"({"type": "text", "style": "note", "baseline": "bottom", "dy": -3, "y": 0})",
+                    {{"x", quantity("middle_s", mission_time_title)}, {"text", category("phase", "phase")}})}}};
 }
 
 }  // namespace
@@ -180,25 +172,22 @@ std::string describe_qos(const compute::Component& component, const std::vector<
     return qos.empty() ? "on" : compute::spell_qos(component.profile.parameters, qos, " ", ", ");
 }
 
-Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points,
-                      const std::string& id) {
+Figure utility_figure(const SimulatedMission& planned, const std::vector<UtilityPoint>& points, const std::string& id) {
     std::string description = "Utility over final state of charge.";
     for (const auto& point : points) {
-        description +=
-            fmt::format(" {}: {:.4g} at {:.2f} %.", point.mission, point.utility, point.soc_percent);
+        description += fmt::format(" {}: {:.4g} at {:.2f} %.", point.mission, point.utility, point.soc_percent);
     }
-    auto figure = new_figure(
-        id,
-        "The utility of the schedules, by that of the planned mission, over what they leave. To the left "
-        "of the reserve a schedule spends what was to be kept; above the bound there is none that keeps it. "
-        "What runs after the battery's end counts nothing.",
-        description);
+    auto figure =
+        new_figure(id,
+                   "The utility of the schedules, by that of the planned mission, over what they leave. To the left "
+                   "of the reserve a schedule spends what was to be kept; above the bound there is none that keeps it. "
+                   "What runs after the battery's end counts nothing.",
+                   description);
     figure.spec["width"] = plan_width;
     figure.spec["height"] = 260;
     auto& layers = figure.spec["layer"] = VegaJson::array();
-    layers.push_back(
-        rule_layer("x", planned.simulation.summary.reserve_soc_percent, "reserve",
-                   R"({"type": "text", "style": "note", "align": "left", "dx": 4, "dy": 10, "y": 0})"));
+    layers.push_back(rule_layer("x", planned.simulation.summary.reserve_soc_percent, "reserve",
+                                R"({"type": "text", "style": "note", "align": "left", "dx": 4, "dy": 10, "y": 0})"));
     if (planned.planned->feasible) {
         layers.push_back(rule_layer(
             "y", planned.planned->bound, "proven bound",
@@ -217,8 +206,8 @@ Figure strip_figure(const SimulatedMission& planned, const std::string& id) {
         description += fmt::format(" {} {} from {:.0f} to {:.0f} s.", component.name,
                                    describe_qos(component, running.qos), running.start_s, running.end_s);
     }
-    auto figure = new_figure(id, "What runs when, coloured by its power; a component without a bar is off.",
-                             description);
+    auto figure =
+        new_figure(id, "What runs when, coloured by its power; a component without a bar is off.", description);
     figure.spec["width"] = plan_width;
     figure.spec["height"] = {{"step", 42}};
     figure.spec["usermeta"] = {{"margin_px", 150}};  // the components' names

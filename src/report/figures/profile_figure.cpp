@@ -39,8 +39,7 @@ bool all_measured(const compute::PowerProfile& profile) {
 
 /// The nodes: interpolated ones are hollow where there are any.
 VegaJson points_layer(const compute::PowerProfile& profile) {
-    auto points =
-        layer(R"({"type": "point", "style": "measured", "size": 45, "opacity": 1})", VegaJson::object());
+    auto points = layer(R"({"type": "point", "style": "measured", "size": 45, "opacity": 1})", VegaJson::object());
     if (all_measured(profile)) {
         points["mark"]["filled"] = true;
     } else {
@@ -55,8 +54,7 @@ FigureData node_rows(const compute::PowerProfile& profile) {
     for (std::size_t node = 0; node < profile.power_w.size(); ++node) {
         const auto qos = qos_of_node(profile, node);
         const double power_w = profile.power_w[node];
-        const double error_w =
-            profile.standard_error_w.empty() ? std::nan("") : profile.standard_error_w[node];
+        const double error_w = profile.standard_error_w.empty() ? std::nan("") : profile.standard_error_w[node];
         const double reach_w = normal_half_width() * error_w;
         data.add({qos.empty() ? 0.0 : qos.front(), power_w, error_w, power_w - reach_w, power_w + reach_w},
                  {line_name(profile, qos), is_measured(profile, node) ? "measured" : "interpolated"});
@@ -98,13 +96,11 @@ std::string profile_described(const compute::ComputeModel& compute) {
 
 std::string profile_caption(const compute::ComputeModel& compute) {
     const auto any = [&](const auto& holds) {
-        return std::ranges::any_of(compute.components, [&](const compute::Component& component) {
-            return holds(component.profile);
-        });
+        return std::ranges::any_of(compute.components,
+                                   [&](const compute::Component& component) { return holds(component.profile); });
     };
     const bool interpolated = any([](const auto& profile) { return !all_measured(profile); });
-    std::string text =
-        interpolated ? "Circles were measured, crosses found between them;" : "Points were profiled,";
+    std::string text = interpolated ? "Circles were measured, crosses found between them;" : "Points were profiled,";
     text += " lines are interpolated between them, and nothing is extrapolated.";
     if (any([](const auto& profile) { return !profile.standard_error_w.empty(); })) {
         text += " Bars are 95 % intervals, of the standard errors that the profile has.";

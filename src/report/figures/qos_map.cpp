@@ -63,10 +63,9 @@ double cell_soc(const QosMap& map, std::size_t i, std::size_t j) {
 }
 
 VegaJson axis(const std::string& field, const QosAxis& qos) {
-    return quantity(
-        field, valid_utf8(qos.name),
-        {{"scale", {{"domain", {qos.nodes.front(), qos.nodes.back()}}, {"nice", false}, {"zero", false}}},
-         {"axis", {{"grid", false}}}});
+    return quantity(field, valid_utf8(qos.name),
+                    {{"scale", {{"domain", {qos.nodes.front(), qos.nodes.back()}}, {"nice", false}, {"zero", false}}},
+                     {"axis", {{"grid", false}}}});
 }
 
 VegaJson soc_color() {
@@ -78,8 +77,7 @@ VegaJson cell_layer(const QosMap& map) {
     FigureData data({"x_low", "x_high", "y_low", "y_high", "soc_percent"});
     for (std::size_t j = 0; j + 1 < map.y.nodes.size(); ++j) {
         for (std::size_t i = 0; i + 1 < map.x.nodes.size(); ++i) {
-            data.add({map.x.nodes[i], map.x.nodes[i + 1], map.y.nodes[j], map.y.nodes[j + 1],
-                      cell_soc(map, i, j)});
+            data.add({map.x.nodes[i], map.x.nodes[i + 1], map.y.nodes[j], map.y.nodes[j + 1], cell_soc(map, i, j)});
         }
     }
     return layer(data.json(), R"({"type": "rect"})",
@@ -117,8 +115,7 @@ std::map<std::pair<double, double>, std::string> configurations(const QosMap& ma
 
 VegaJson marker_layer(const QosMap& map, std::span<const SimulatedMission> missions) {
     FigureData data({"x", "y"}, {"missions"});
-    for (const auto& [place, who] : configurations(map, missions))
-        data.add({place.first, place.second}, {who});
+    for (const auto& [place, who] : configurations(map, missions)) data.add({place.first, place.second}, {who});
     return layer(data.json(),
                  R"({"type": "point", "shape": "diamond", "style": "marker", "filled": true, "opacity": 1,
                      "size": 130, "strokeWidth": 1.5})",
@@ -132,8 +129,8 @@ VegaJson marker_layer(const QosMap& map, std::span<const SimulatedMission> missi
 VegaJson published_layer(const QosMap& map, const std::vector<PublishedCell>& cells) {
     FigureData data({"x", "y", "soc_percent"});
     for (const auto& cell : cells) {
-        data.add({std::midpoint(cell.fps_low, cell.fps_high),
-                  std::midpoint(cell.key_bits_low, cell.key_bits_high), cell.soc_percent});
+        data.add({std::midpoint(cell.fps_low, cell.fps_high), std::midpoint(cell.key_bits_low, cell.key_bits_high),
+                  cell.soc_percent});
     }
     return layer(data.json(),
                  R"({"type": "circle", "size": 80, "opacity": 1, "stroke": "#ffffff", "strokeWidth": 0.8,
@@ -149,8 +146,7 @@ VegaJson published_layer(const QosMap& map, const std::vector<PublishedCell>& ce
 /// The least and the greatest of what can be delivered; both 0 if nothing can.
 std::pair<double, double> range_of(const QosMap& map) {
     std::vector<double> known;
-    std::ranges::copy_if(map.soc_percent, std::back_inserter(known),
-                         [](double soc) { return std::isfinite(soc); });
+    std::ranges::copy_if(map.soc_percent, std::back_inserter(known), [](double soc) { return std::isfinite(soc); });
     if (known.empty()) return {0.0, 0.0};
     const auto [least, greatest] = std::ranges::minmax_element(known);
     return {*least, *greatest};
@@ -183,20 +179,17 @@ std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     QosMap map{axes[0], axes[1], {}, ""};
     auto run = greatest(mission.compute);
     for (std::size_t a = 2; a < axes.size(); ++a) {
-        map.others +=
-            fmt::format("{}{} {:g}", map.others.empty() ? "" : ", ", axes[a].name, axes[a].nodes.back());
+        map.others += fmt::format("{}{} {:g}", map.others.empty() ? "" : ", ", axes[a].name, axes[a].nodes.back());
     }
     mission::SimulationSteps steps;
     steps.integration_s = 1.0;  // constant or smooth power: the error is far below a hundredth of a percent
-    for (const auto phase : flight::all_phases)
-        steps.output_s = std::max(steps.output_s, mission.duration_s[phase]);
+    for (const auto phase : flight::all_phases) steps.output_s = std::max(steps.output_s, mission.duration_s[phase]);
     for (const double y : map.y.nodes) {
         run[map.y.component].qos[map.y.parameter] = y;
         for (const double x : map.x.nodes) {
             run[map.x.component].qos[map.x.parameter] = x;
             const auto summary = simulate(mission, throughout(mission, run), steps).summary;
-            map.soc_percent.push_back(
-                summary.final_soc_percent.value_or(std::numeric_limits<double>::quiet_NaN()));
+            map.soc_percent.push_back(summary.final_soc_percent.value_or(std::numeric_limits<double>::quiet_NaN()));
         }
     }
     return map;
@@ -210,13 +203,11 @@ bool have_same_model(const mission::MissionSetup& a, const mission::MissionSetup
 }
 
 bool have_same_software(const mission::MissionSetup& a, const mission::MissionSetup& b) {
-    return std::ranges::equal(a.compute.components, b.compute.components,
-                              [](const compute::Component& one, const compute::Component& other) {
-                                  return one.name == other.name &&
-                                         one.profile.parameters == other.profile.parameters &&
-                                         one.profile.axes == other.profile.axes &&
-                                         one.profile.power_w == other.profile.power_w;
-                              });
+    return std::ranges::equal(
+        a.compute.components, b.compute.components, [](const compute::Component& one, const compute::Component& other) {
+            return one.name == other.name && one.profile.parameters == other.profile.parameters &&
+                   one.profile.axes == other.profile.axes && one.profile.power_w == other.profile.power_w;
+        });
 }
 
 bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b) {
@@ -225,8 +216,8 @@ bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& 
         return to_toml(battery);
     };
     return a.duration_s.values == b.duration_s.values && a.initial_soc_percent == b.initial_soc_percent &&
-           nameless(a.battery) == nameless(b.battery) && have_same_software(a, b) &&
-           a.phase_clock == b.phase_clock && have_same_model(a, b);
+           nameless(a.battery) == nameless(b.battery) && have_same_software(a, b) && a.phase_clock == b.phase_clock &&
+           have_same_model(a, b);
 }
 
 Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missions,
@@ -245,10 +236,9 @@ Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missi
     }
     auto figure = new_figure(
         id, caption,
-        fmt::format(
-            "Final state of charge over {} and {}: from {:.1f} % to {:.1f} % where one configuration runs "
-            "throughout.",
-            map.x.name, map.y.name, least, greatest));
+        fmt::format("Final state of charge over {} and {}: from {:.1f} % to {:.1f} % where one configuration runs "
+                    "throughout.",
+                    map.x.name, map.y.name, least, greatest));
     figure.spec["width"] = 560;
     figure.spec["height"] = 320;
     figure.spec["layer"] = VegaJson::array({cell_layer(map)});

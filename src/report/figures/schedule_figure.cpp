@@ -18,8 +18,7 @@ FigureData curve_rows(Missions missions) {
     FigureData data({"time_s", "soc_percent", "power_w", "mission_number"}, {"phase"});
     for (std::size_t m = 0; m < missions.size(); ++m) {
         for (const auto& row : missions[m].simulation.curve.rows) {
-            data.add({row.time_s, row.soc_percent, row.power_w, static_cast<double>(m)},
-                     {phase_word(row.phase)});
+            data.add({row.time_s, row.soc_percent, row.power_w, static_cast<double>(m)}, {phase_word(row.phase)});
         }
     }
     return data;
@@ -37,8 +36,7 @@ FigureData title_rows(Missions missions) {
 VegaJson with_titles(const FigureData& titles) {
     return VegaJson::array(
         {{{"lookup", "mission_number"},
-          {"from",
-           {{"data", titles.reference("missions")}, {"key", "mission_number"}, {"fields", {"mission"}}}}},
+          {"from", {{"data", titles.reference("missions")}, {"key", "mission_number"}, {"fields", {"mission"}}}}},
          shown_by_legend()});
 }
 
@@ -64,20 +62,19 @@ VegaJson dashes_of(Missions missions) {
 }
 
 VegaJson curve_layer(Missions missions, const FigureData& titles) {
-    return {
-        {"name", "curves"},
-        {"data", curve_rows(missions).json()},
-        {"transform", with_titles(titles)},
-        {"mark", vega(R"({"type": "line", "strokeWidth": 1.8, "clip": true,
+    return {{"name", "curves"},
+            {"data", curve_rows(missions).json()},
+            {"transform", with_titles(titles)},
+            {"mark", vega(R"({"type": "line", "strokeWidth": 1.8, "clip": true,
                               "point": {"opacity": 0, "size": 50, "aria": false}})")},
-        {"encoding",
-         {{"x", quantity("time_s", schedule_time_title)},
-          {"y", quantity("soc_percent", schedule_soc_title)},
-          {"color", mission_channel(missions, "category")},
-          {"strokeDash", mission_channel(missions, dashes_of(missions))},
-          {"tooltip",
-           {category("mission", "mission"), category("phase", "phase"), shown("time_s", "time [s]", ".0f"),
-            shown("soc_percent", schedule_soc_title, ".2f"), shown("power_w", "power [W]", ".2f")}}}}};
+            {"encoding",
+             {{"x", quantity("time_s", schedule_time_title)},
+              {"y", quantity("soc_percent", schedule_soc_title)},
+              {"color", mission_channel(missions, "category")},
+              {"strokeDash", mission_channel(missions, dashes_of(missions))},
+              {"tooltip",
+               {category("mission", "mission"), category("phase", "phase"), shown("time_s", "time [s]", ".0f"),
+                shown("soc_percent", schedule_soc_title, ".2f"), shown("power_w", "power [W]", ".2f")}}}}};
 }
 
 VegaJson published_layer(Missions missions, const PublishedFigures& published, const FigureData& titles) {
@@ -86,8 +83,7 @@ VegaJson published_layer(Missions missions, const PublishedFigures& published, c
         const auto found = published.soc.find(missions[m].mission.name);
         if (found == published.soc.end()) continue;
         const auto& [time_s, soc_percent] = found->second;
-        for (std::size_t i = 0; i < time_s.size(); ++i)
-            data.add({time_s[i], soc_percent[i], static_cast<double>(m)});
+        for (std::size_t i = 0; i < time_s.size(); ++i) data.add({time_s[i], soc_percent[i], static_cast<double>(m)});
     }
     if (data.empty()) return nullptr;
     return {{"data", data.json()},
@@ -115,8 +111,7 @@ VegaJson phase_layers(Missions missions) {
         data.add({start_s, end_s, std::midpoint(start_s, end_s)}, {phase_word(phase)});
     }
     const auto edges =
-        layer(data.json(),
-              R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "clip": true, "aria": false})",
+        layer(data.json(), R"({"type": "rule", "style": "edge", "strokeDash": [3, 3], "clip": true, "aria": false})",
               {{"x", quantity("end_s", schedule_time_title)}});
     return VegaJson::array({edges, phase_names(data.json(), schedule_time_title)});
 }
@@ -129,13 +124,11 @@ VegaJson strip_panel(Missions missions, double longest_s) {
         const auto timeline = mission::timeline_of(mission.duration_s);
         for (const auto& segment : mission.schedule) {
             const double start_s = timeline.start_s[segment.phase];
-            data.add(
-                {start_s + segment.start_s, start_s + segment.end_s, power_w(mission.compute, segment.run)},
-                {simulated.title, phase_word(segment.phase), describe(mission.compute, segment.run)});
+            data.add({start_s + segment.start_s, start_s + segment.end_s, power_w(mission.compute, segment.run)},
+                     {simulated.title, phase_word(segment.phase), describe(mission.compute, segment.run)});
         }
     }
-    const VegaJson whole{{"scale", {{"domain", {0.0, longest_s}}, {"nice", false}}},
-                         {"axis", {{"grid", false}}}};
+    const VegaJson whole{{"scale", {{"domain", {0.0, longest_s}}, {"nice", false}}}, {"axis", {{"grid", false}}}};
     const VegaJson rows{{"sort", title_list(missions)},
                         {"axis", {{"labelLimit", 150}, {"ticks", false}, {"domain", false}}}};
     return {{"width", schedule_width},
@@ -165,12 +158,10 @@ std::string schedules_described(Missions missions) {
 
 Figure schedule_figure(Missions missions, const PublishedFigures& published, const std::string& id) {
     auto figure = new_figure(
-        id,
-        "A click on the legend hides a mission. Below: what each schedule runs when, coloured by its power.",
+        id, "A click on the legend hides a mission. Below: what each schedule runs when, coloured by its power.",
         schedules_described(missions));
     double longest_s = 0.0;
-    for (const auto& mission : missions)
-        longest_s = std::max(longest_s, mission.simulation.summary.duration_s);
+    for (const auto& mission : missions) longest_s = std::max(longest_s, mission.simulation.summary.duration_s);
     const auto titles = title_rows(missions);
     auto layers = phase_layers(missions);
     layers.push_back(curve_layer(missions, titles));
@@ -180,17 +171,14 @@ Figure schedule_figure(Missions missions, const PublishedFigures& published, con
     }
     for (auto& part : layers) {
         part["encoding"]["x"]["scale"] = {{"domain", {0.0, longest_s}}, {"nice", false}};
-        if (part["encoding"].contains("y"))
-            part["encoding"]["y"]["scale"] = vega(R"({"domain": [0.0, 100.0]})");
+        if (part["encoding"].contains("y")) part["encoding"]["y"]["scale"] = vega(R"({"domain": [0.0, 100.0]})");
     }
-    figure.spec["params"] = {add_zoom(figure, {"curves"}),
-                             legend_parameter("mission", title_list(missions), "curves")};
+    figure.spec["params"] = {add_zoom(figure, {"curves"}), legend_parameter("mission", title_list(missions), "curves")};
     figure.spec["usermeta"] = {{"margin_px", 170}};  // the strip's names
     figure.spec["datasets"] = {{"missions", titles.csv()}};
     figure.spec["vconcat"] = {{{"width", schedule_width}, {"height", 330}, {"layer", layers}},
                               strip_panel(missions, longest_s)};
-    figure.spec["resolve"] =
-        vega(R"({"scale": {"x": "shared", "color": "independent", "strokeDash": "independent"}})");
+    figure.spec["resolve"] = vega(R"({"scale": {"x": "shared", "color": "independent", "strokeDash": "independent"}})");
     return figure;
 }
 

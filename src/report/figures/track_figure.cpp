@@ -93,8 +93,7 @@ FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, doub
                 bg::simplify(line, simple, tolerance_m);
                 double order = 0.0;
                 for (const auto& point : simple) {
-                    data.add({point.x(), point.y(), order++, piece},
-                             {to_string(span.phase), phase_word(span.phase)});
+                    data.add({point.x(), point.y(), order++, piece}, {to_string(span.phase), phase_word(span.phase)});
                 }
             }
         }
@@ -104,11 +103,10 @@ FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, doub
 
 VegaJson encoding_of(const Square& square) {
     const auto axis = [&](std::string_view field, std::string_view title, double middle_m) {
-        return quantity(field, title,
-                        {{"scale",
-                          {{"domain", {middle_m - square.half_m, middle_m + square.half_m}},
-                           {"nice", false},
-                           {"zero", false}}}});
+        return quantity(
+            field, title,
+            {{"scale",
+              {{"domain", {middle_m - square.half_m, middle_m + square.half_m}}, {"nice", false}, {"zero", false}}}});
     };
     const auto color = vega(R"({"scale": {"domain": ["take-off", "cruise", "landing"], "range": "phases"},
         "legend": {"symbolType": "stroke"}})");
@@ -121,8 +119,7 @@ VegaJson encoding_of(const Square& square) {
             {"color", category("word", "", color)},
             {"strokeDash", category("word", "", dash)},
             {"tooltip",
-             {category("word", "phase"), shown("east_m", "east [m]", ".0f"),
-              shown("north_m", "north [m]", ".0f")}}};
+             {category("word", "phase"), shown("east_m", "east [m]", ".0f"), shown("north_m", "north [m]", ".0f")}}};
 }
 
 }  // namespace
@@ -135,10 +132,9 @@ std::optional<Figure> track_figure(const ReportFlight& flight, const std::string
     if (data.empty()) return std::nullopt;
     auto figure = new_figure(
         id, "Ground track from above, coloured by phase; broken where samples are missing.",
-        fmt::format(
-            "Ground track of flight {} coloured by phase, within {:.0f} m from west to east and from south to "
-            "north.",
-            flight.name, 2.0 * square.half_m));
+        fmt::format("Ground track of flight {} coloured by phase, within {:.0f} m from west to east and from south to "
+                    "north.",
+                    flight.name, 2.0 * square.half_m));
     figure.spec["data"] = data.json();
     figure.spec["width"] = side;
     figure.spec["height"] = side;

@@ -47,9 +47,7 @@ MessagePlan plan_of(const MessageRequest& request, const std::optional<LogConfig
 }
 
 bool choose_definition(MessagePlan& plan, std::size_t field_count) {
-    const auto fits = [&](const MessageDefinition& candidate) {
-        return candidate.fields.size() == field_count;
-    };
+    const auto fits = [&](const MessageDefinition& candidate) { return candidate.fields.size() == field_count; };
     const auto found = std::find_if(plan.candidates.begin(), plan.candidates.end(), fits);
     if (found == plan.candidates.end()) return false;
     plan.definition = &*found;
@@ -95,9 +93,8 @@ class LogReader {
         }
         for (const auto& plan : plans_) {
             if (plan.definition == nullptr || plan.from_log) continue;
-            log_.assumed_definitions.push_back(
-                {fmt::format("{}: {}", plan.request.message, plan.definition->origin),
-                 first_time_s(plan.request.message)});
+            log_.assumed_definitions.push_back({fmt::format("{}: {}", plan.request.message, plan.definition->origin),
+                                                first_time_s(plan.request.message)});
         }
     }
 
@@ -192,16 +189,14 @@ class LogReader {
             const auto& plan = plans_[plan_index];
             tables.push_back({plan.request.message, {}, {}});
             for (const auto& target : plan.targets) {
-                tables.back().columns.push_back(
-                    {plan.definition->fields[target.field].name, target.quantity, {}});
+                tables.back().columns.push_back({plan.definition->fields[target.field].name, target.quantity, {}});
             }
         }
         return tables[slot];
     }
 
     std::string describe(const SkipKind& skip) const {
-        const auto& plan =
-            plans_[skip.reason == Reason::not_a_number ? skip.detail / max_fields : skip.detail];
+        const auto& plan = plans_[skip.reason == Reason::not_a_number ? skip.detail / max_fields : skip.detail];
         const auto& message = plan.request.message;
         switch (skip.reason) {
             case Reason::not_a_message:
@@ -234,8 +229,7 @@ class LogReader {
 }  // namespace
 
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                             std::optional<LogConfiguration> configuration,
-                             const std::vector<MessageRequest>& wanted) {
+                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted) {
     TelemetryLog log;
     log.data_file = data_file;
     log.flight = flight_name(data_file);

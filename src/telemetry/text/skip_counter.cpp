@@ -20,8 +20,7 @@ double time_of(std::string_view line) {
 }  // namespace
 
 void SkipCounter::add(const SkipKind& kind, double time_s, std::size_t line_number) {
-    auto known =
-        std::find_if(skips_.begin(), skips_.end(), [&](const auto& skip) { return skip.first == kind; });
+    auto known = std::find_if(skips_.begin(), skips_.end(), [&](const auto& skip) { return skip.first == kind; });
     if (known == skips_.end()) known = skips_.insert(known, {kind, {}});
     auto& lines = known->second.lines;
     if (!lines.empty() && lines.back().time_s == time_s) {
@@ -40,9 +39,8 @@ double SkipCounter::time_behind_s(const char* line_end) {
     // The last lines are scanned in a copy, which ends in zeros.
     const char* const text_end = text_.data() + text_.size();
     const bool in_text = line_end >= text_.data() && line_end < text_end;
-    std::string_view rest = in_text
-                                ? std::string_view(line_end, static_cast<std::size_t>(text_end - line_end))
-                                : std::string_view(line_end);
+    std::string_view rest = in_text ? std::string_view(line_end, static_cast<std::size_t>(text_end - line_end))
+                                    : std::string_view(line_end);
     searched_from_ = line_end;
     found_s_ = std::numeric_limits<double>::infinity();
     while (!rest.empty()) {
@@ -59,8 +57,7 @@ double SkipCounter::time_behind_s(const char* line_end) {
 std::vector<std::pair<SkipKind, SkippedLines>> SkipCounter::take() {
     for (auto& [kind, skipped] : skips_) {
         auto& lines = skipped.lines;
-        std::stable_sort(lines.begin(), lines.end(),
-                         [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+        std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
         std::vector<SkippedLines::AtTime> merged;
         for (const auto& at : lines) {
             if (!merged.empty() && merged.back().time_s == at.time_s) {

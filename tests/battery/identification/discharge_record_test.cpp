@@ -100,17 +100,15 @@ TEST(DischargeRecord, RefusesByNameAndReason) {
     EXPECT_EQ(rejected([&] { discharge_record(computed); }),
               "synthetic_7: synthetic_7: its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), "
               "not measured: it says nothing of the battery; use flights with a current sensor");
-    EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v.clear(); }),
-              "f.data: synthetic_7: has no voltage" + hint);
-    EXPECT_EQ(of([](test::SampleColumns& s) { s.current_a.clear(); }),
-              "f.data: synthetic_7: has no current" + hint);
+    EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v.clear(); }), "f.data: synthetic_7: has no voltage" + hint);
+    EXPECT_EQ(of([](test::SampleColumns& s) { s.current_a.clear(); }), "f.data: synthetic_7: has no current" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) { std::fill(s.voltage_v.begin(), s.voltage_v.end(), 11.0); }),
               "f.data: synthetic_7: its voltage is 11 throughout" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v[3] = 0.0; }),
               "f.data: synthetic_7: its voltage is not positive throughout" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) {
-                  for (auto* column : {&s.time_s, &s.power_w, &s.voltage_v, &s.current_a, &s.charge_ah,
-                                       &s.throttle_percent}) {
+                  for (auto* column :
+                       {&s.time_s, &s.power_w, &s.voltage_v, &s.current_a, &s.charge_ah, &s.throttle_percent}) {
                       column->resize(std::min<std::size_t>(column->size(), 20));
                   }
               }),

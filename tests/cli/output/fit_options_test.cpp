@@ -66,8 +66,7 @@ TEST(FitOptions, RefuseWhatDoesNotFitTogether) {
     EXPECT_THAT(refusal({"--weight", "a"}), HasSubstr("expected FLIGHT=NUMBER"));
     EXPECT_THAT(refusal({"--weight", "a:glide=1"}), HasSubstr("no phase 'glide'"));
     EXPECT_THAT(refusal({"--weight", "a=1", "--weights", "uniform"}), HasSubstr("exclude each other"));
-    EXPECT_THAT(refusal({"--weights", "heavy"}),
-                HasSubstr("expected uniform, inverse-variance or agreement"));
+    EXPECT_THAT(refusal({"--weights", "heavy"}), HasSubstr("expected uniform, inverse-variance or agreement"));
     EXPECT_NE(refusal({"--min-periods", "-1"}), "nothing refused");
 }
 

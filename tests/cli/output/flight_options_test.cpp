@@ -17,9 +17,7 @@ using testing::HasSubstr;
 
 class FlightOptions : public testing::Test {
   protected:
-    test::ProgramResult run(const std::string& command) {
-        return test::run_shell("flightwatt " + command, folder_);
-    }
+    test::ProgramResult run(const std::string& command) { return test::run_shell("flightwatt " + command, folder_); }
     /// The same command with and without an option; what they print must differ.
     void expect_effect(const std::string& command, const std::string& option) {
         SCOPED_TRACE(command + " " + option);
@@ -30,8 +28,8 @@ class FlightOptions : public testing::Test {
         EXPECT_NE(with.out, without.out);
     }
     static std::string sample(int number) {
-        return " " + test::shell_quoted(test::source_dir() / "logs" /
-                                        fmt::format("opterra_synthetic_0{}.data", number));
+        return " " +
+               test::shell_quoted(test::source_dir() / "logs" / fmt::format("opterra_synthetic_0{}.data", number));
     }
     static std::string two_sorties() {
         for (const auto& log : test::all_logs()) {
@@ -124,8 +122,7 @@ TEST_F(FlightOptions, ExcludeAndKeepFlights) {
     expect_effect("validate" + three, "--exclude opterra_synthetic_02");
     expect_effect("battery --name x" + three, "--exclude opterra_synthetic_02");
     const auto batch = run("batch -o out --exclude opterra_synthetic_02" + three);
-    EXPECT_THAT(batch.err,
-                HasSubstr("opterra_synthetic_02: it is excluded from the fit: --exclude names it"));
+    EXPECT_THAT(batch.err, HasSubstr("opterra_synthetic_02: it is excluded from the fit: --exclude names it"));
     for (const auto* stage : {"fit", "validate", "battery", "batch -o out"}) {
         const auto unknown = run(stage + three + " --exclude opterra_synthetic_2");
         EXPECT_EQ(unknown.code, usage_error) << stage;

@@ -26,8 +26,7 @@ StageCall call_with(const std::vector<std::string>& arguments) {
 
 TEST(SamplingOptions, AreNoneWithoutSamples) {
     EXPECT_FALSE(sampling_options(call_with({}), false));
-    EXPECT_THROW(sampling_options(call_with({"--seed", "3"}), false), UsageError)
-        << "it belongs to --samples";
+    EXPECT_THROW(sampling_options(call_with({"--seed", "3"}), false), UsageError) << "it belongs to --samples";
 }
 
 TEST(SamplingOptions, HoldNumberSeedAndBands) {
@@ -41,8 +40,7 @@ TEST(SamplingOptions, HoldNumberSeedAndBands) {
 
 TEST(SamplingOptions, RefuseWhatIsNoWholeNumber) {
     for (const auto* text : {"-5", "1.5", "many"}) {
-        EXPECT_THROW(sampling_options(call_with({std::string("--samples=") + text}), false), UsageError)
-            << text;
+        EXPECT_THROW(sampling_options(call_with({std::string("--samples=") + text}), false), UsageError) << text;
     }
 }
 

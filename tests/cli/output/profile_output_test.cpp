@@ -54,8 +54,7 @@ TEST(ProfileJson, HoldsReportedAndTotalPower) {
     EXPECT_EQ(node["power_w"], 3.0);
     EXPECT_EQ(node["total_power_w"], 5.0);
     EXPECT_EQ(node["energy_j"], 12.0);
-    EXPECT_NEAR(node["standard_error_w"].get<double>(), std::hypot(0.1, 0.1), 1e-12)
-        << "that of idle as well";
+    EXPECT_NEAR(node["standard_error_w"].get<double>(), std::hypot(0.1, 0.1), 1e-12) << "that of idle as well";
     EXPECT_FALSE(json["components"][0]["nodes"][1]["measured"].get<bool>());
 }
 

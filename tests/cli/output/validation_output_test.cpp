@@ -49,10 +49,10 @@ TEST(Verdict, ComparesPhaseByPhaseAndIsSilentOnTies) {
     const auto back = verdict(validated(), "constant_mean", "fourier");
     const bool better = score_of(validated(), "fourier", std::nullopt)->mean_absolute_error_wh <
                         score_of(validated(), "constant_mean", std::nullopt)->mean_absolute_error_wh;
-    EXPECT_THAT(text, HasSubstr(better ? "total: fourier beats constant_mean"
-                                       : "total: fourier does not beat constant_mean"));
-    EXPECT_THAT(back, HasSubstr(better ? "total: constant_mean does not beat fourier"
-                                       : "total: constant_mean beats fourier"));
+    EXPECT_THAT(
+        text, HasSubstr(better ? "total: fourier beats constant_mean" : "total: fourier does not beat constant_mean"));
+    EXPECT_THAT(
+        back, HasSubstr(better ? "total: constant_mean does not beat fourier" : "total: constant_mean beats fourier"));
 }
 
 TEST(ScoresJson, HoldsTheScoresAsNumbers) {

@@ -13,11 +13,11 @@ using test::write_text;
 
 TEST(PowprofilerConfig, ReadsCombinations) {
     const auto folder = scratch_dir();
-    const auto config = read_powprofiler_config(
-        write_text(folder / "c.cfg",
-                   "  [settings]  # ours\n frequency = 20\nh=0,01\ndirectory=out\n\n"
-                   "\t[combinations]\r\n# none\n1,5=a.csv=4,0.5 # yes\nb.csv = 1 , 10\n"
-                   "name=out.csv"));
+    const auto config =
+        read_powprofiler_config(write_text(folder / "c.cfg",
+                                           "  [settings]  # ours\n frequency = 20\nh=0,01\ndirectory=out\n\n"
+                                           "\t[combinations]\r\n# none\n1,5=a.csv=4,0.5 # yes\nb.csv = 1 , 10\n"
+                                           "name=out.csv"));
     EXPECT_EQ(config.sampling_hz, 20.0);
     EXPECT_EQ(PowprofilerConfig{}.sampling_hz, 10.0) << "unless told";
     ASSERT_EQ(config.combinations.size(), 2U);
@@ -41,16 +41,14 @@ TEST(PowprofilerConfig, RefusesWhatIsNoCombination) {
     EXPECT_EQ(of("[settings]\nfrequency=-1\n"), "c.cfg:2: frequency = -1 Hz is not positive");
     EXPECT_EQ(of("[settings]\nfrequencie=1\n"),
               "c.cfg:2: unknown setting 'frequencie'; known are frequency, h and directory");
-    EXPECT_EQ(of("[components]\nsrc=a\n"),
-              "c.cfg:2: 'src=a' stands in [components], before any [component.NAME]");
+    EXPECT_EQ(of("[components]\nsrc=a\n"), "c.cfg:2: 'src=a' stands in [components], before any [component.NAME]");
     EXPECT_EQ(of("[other]\n"),
               "c.cfg:1: unknown section [other]; known are [settings], [components], [component.NAME] and "
               "[combinations]");
     EXPECT_EQ(of("[component.a]\nrange=1,2\n"), "c.cfg:2: range = 1,2, expected min, max, step");
-    EXPECT_EQ(
-        of("[component.a]\nrange=4,1,1\n"),
-        "c.cfg:2: range = 4,1,1 is empty or endless; min is 0 or more, max not less, step more than 0, n of "
-        "pow(n) more than 1");
+    EXPECT_EQ(of("[component.a]\nrange=4,1,1\n"),
+              "c.cfg:2: range = 4,1,1 is empty or endless; min is 0 or more, max not less, step more than 0, n of "
+              "pow(n) more than 1");
     EXPECT_EQ(of("[component.a]\nrange=1,4,pow(1)\n").substr(0, 30), "c.cfg:2: range = 1,4,pow(1) is");
     EXPECT_EQ(of("[component.a]\nsource=b\n"),
               "c.cfg:2: unknown property 'source' of a component; known are src, range, fixed and runtime");

@@ -78,14 +78,12 @@ TEST(PowerRecording, ReadsTheRealRecordings) {
         std::size_t samples;
         double mean_w;  ///< as the layer 2 made from the recordings has it
     };
-    const Real reals[] = {
-        {"1_Yolo4fps_nfold10fps", 1032, 6.22922},   {"2_Yolo4fps_nfold0,5fps", 1015, 6.30497},
-        {"3_Yolo1fps_nfold10fps", 996, 4.99916},    {"4_Yolo1fps_nfold0,5fps", 981, 4.81432},
-        {"5_Yolo0,25fps_nfold10fps", 971, 4.35776}, {"6_Yolo0,25fps_nfold0,5fps", 970, 4.10743},
-        {"7_Yolo0,1fps_nfold10fps", 955, 4.01517},  {"8_Yolo0,1fps_nfold0,5fps", 982, 3.93941}};
+    const Real reals[] = {{"1_Yolo4fps_nfold10fps", 1032, 6.22922},   {"2_Yolo4fps_nfold0,5fps", 1015, 6.30497},
+                          {"3_Yolo1fps_nfold10fps", 996, 4.99916},    {"4_Yolo1fps_nfold0,5fps", 981, 4.81432},
+                          {"5_Yolo0,25fps_nfold10fps", 971, 4.35776}, {"6_Yolo0,25fps_nfold0,5fps", 970, 4.10743},
+                          {"7_Yolo0,1fps_nfold10fps", 955, 4.01517},  {"8_Yolo0,1fps_nfold0,5fps", 982, 3.93941}};
     for (const auto& real : reals) {
-        const auto file =
-            test::shared_dir() / "powprofiler" / ("tracking_" + std::string(real.name) + ".csv");
+        const auto file = test::shared_dir() / "powprofiler" / ("tracking_" + std::string(real.name) + ".csv");
         const auto power_w = layer1_power_w(read_csv(file, CsvHeader::absent));
         EXPECT_EQ(power_w.size(), real.samples) << real.name;
         EXPECT_NEAR(mean(power_w), real.mean_w, 5e-6) << real.name;

@@ -20,9 +20,7 @@ using testing::HasSubstr;
 
 PowerSampler constant_sampler(double power_w) {
     PowerSampler sampler;
-    sampler.read = [power_w] {
-        return std::vector<PowerReading>{{std::chrono::steady_clock::now(), power_w}};
-    };
+    sampler.read = [power_w] { return std::vector<PowerReading>{{std::chrono::steady_clock::now(), power_w}}; };
     return sampler;
 }
 
@@ -100,8 +98,8 @@ TEST_F(MisbehavingComponent, LeavesAChildBehind) {
 TEST_F(MisbehavingComponent, ForksTwiceIntoASessionOfItsOwn) {
     const auto ready = test::scratch_dir() / "ready";
     const auto done =
-        run("setsid sh -c 'trap \"\" TERM; (: > " + ready.string() +
-                "; FOREVER; FOREVER) & exit 0' & while ! [ -e " + ready.string() + " ]; do sleep 0.01; done",
+        run("setsid sh -c 'trap \"\" TERM; (: > " + ready.string() + "; FOREVER; FOREVER) & exit 0' & while ! [ -e " +
+                ready.string() + " ]; do sleep 0.01; done",
             until_it_ends);
     EXPECT_EQ(done.status, RunStatus::ok) << done.note;
     EXPECT_THAT(done.note, HasSubstr("behind, ended; did not answer SIGTERM, killed"));
@@ -165,8 +163,8 @@ TEST(SupervisedProcesses, EndWithTheirOwner) {
     const auto marker = test::new_marker();
     const auto child = ::fork();
     if (child == 0) {
-        SupervisedProcesses processes(
-            {{"sh", "-c", "trap '' TERM; setsid sleep " + marker + " & sleep " + marker}}, {});
+        SupervisedProcesses processes({{"sh", "-c", "trap '' TERM; setsid sleep " + marker + " & sleep " + marker}},
+                                      {});
         while (true) ::pause();
     }
     ASSERT_TRUE(test::wait_until([&] { return test::processes_with(marker) >= 3; }));

@@ -28,8 +28,7 @@ TEST(RunStatistics, EnergyIsMeanPowerTimesDuration) {
     EXPECT_DOUBLE_EQ(run.energy_j, 1.2);
     EXPECT_EQ(run.samples, 4U);
     // A late sample stands for the time that it closes, the first for the median interval, 0.3 s.
-    EXPECT_NEAR(estimate_run({{0.0, 0.1, 0.4}, {1.0, 1.0, 4.0}}, 0.5).power_w, (0.3 + 0.1 + 1.2) / 0.7,
-                1e-12);
+    EXPECT_NEAR(estimate_run({{0.0, 0.1, 0.4}, {1.0, 1.0, 4.0}}, 0.5).power_w, (0.3 + 0.1 + 1.2) / 0.7, 1e-12);
     const auto single = estimate_run({{0.0}, {5.0}}, 2.0);
     EXPECT_EQ(single.energy_j, 10.0);
     EXPECT_TRUE(std::isnan(single.standard_error_w));  // unknown is not 0
@@ -45,13 +44,11 @@ TEST(RunStatistics, StandardErrorKnowsOfAutocorrelation) {
         constexpr int seeds = 200;
         constexpr std::size_t count = 1000;
         for (int seed = 0; seed < seeds; ++seed) {
-            const auto run =
-                estimate_run(series(correlation, count, static_cast<std::uint64_t>(seed)), 100.0);
+            const auto run = estimate_run(series(correlation, count, static_cast<std::uint64_t>(seed)), 100.0);
             squared_error += (run.power_w - 10.0) * (run.power_w - 10.0) / seeds;
             reported += run.standard_error_w / seeds;
         }
-        const double truth =
-            std::sqrt((1.0 + correlation) / (1.0 - correlation) / static_cast<double>(count));
+        const double truth = std::sqrt((1.0 + correlation) / (1.0 - correlation) / static_cast<double>(count));
         EXPECT_NEAR(reported, truth, 0.12 * truth) << correlation;
         EXPECT_NEAR(std::sqrt(squared_error), truth, 0.15 * truth) << correlation;
     }
@@ -65,8 +62,7 @@ TEST(RunStatistics, CombinesRepeats) {
     EXPECT_EQ(both.samples, 50U);
     EXPECT_EQ(both.repeats, 2U);
     // Two that happen to agree are not without error.
-    EXPECT_NEAR(combine_repeats({{10.0, 0.3, 1, 10, 9, 1}, {10.0, 0.4, 1, 10, 9, 1}}).standard_error_w, 0.25,
-                1e-12);
+    EXPECT_NEAR(combine_repeats({{10.0, 0.3, 1, 10, 9, 1}, {10.0, 0.4, 1, 10, 9, 1}}).standard_error_w, 0.25, 1e-12);
 }
 
 TEST(RunStatistics, JitterIsThatOfIntervalsWithinRuns) {

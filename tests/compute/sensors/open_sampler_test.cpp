@@ -35,13 +35,12 @@ class SensorTree : public testing::Test {
         const auto readings = open_sampler(given).read();
         return readings.size() == 1 ? readings.front().power_w : -1.0;
     }
-    void put_iio_channel(const path& device, int channel, const std::string& rail,
-                         const std::string& power_mw) const {
+    void put_iio_channel(const path& device, int channel, const std::string& rail, const std::string& power_mw) const {
         put(device / ("rail_name_" + std::to_string(channel)), rail);
         put(device / ("in_power" + std::to_string(channel) + "_input"), power_mw);
     }
-    void put_hwmon_channel(const path& device, int channel, const std::string& label,
-                           const std::string& voltage_mv, const std::string& current_ma) const {
+    void put_hwmon_channel(const path& device, int channel, const std::string& label, const std::string& voltage_mv,
+                           const std::string& current_ma) const {
         const auto number = std::to_string(channel);
         if (!label.empty()) put(device / ("in" + number + "_label"), label);
         put(device / ("in" + number + "_input"), voltage_mv);

@@ -26,11 +26,9 @@ TEST_F(Recording, Csv) {
     const auto trace = read("# meter\nvoltage_v,time_s,power_w\n5,0,1.5\n5,0.25,2\n");
     EXPECT_EQ(trace.time_s, (Values{0.0, 0.25}));
     EXPECT_EQ(trace.power_w, (Values{1.5, 2.0}));
-    EXPECT_EQ(refused("time_s,power_w\n1,2\n1,3\n"),
-              "r:3: time_s = 1 follows 1; the time stamps of a recording rise");
+    EXPECT_EQ(refused("time_s,power_w\n1,2\n1,3\n"), "r:3: time_s = 1 follows 1; the time stamps of a recording rise");
     EXPECT_EQ(refused("time_s,power_w\n"), "r: has a header and no samples");
-    EXPECT_EQ(refused("time_s,power_mw\n1,2\n"),
-              "r:1: has no column 'power_w'; its columns are time_s, power_mw");
+    EXPECT_EQ(refused("time_s,power_mw\n1,2\n"), "r:1: has no column 'power_w'; its columns are time_s, power_mw");
     EXPECT_EQ(refused("a,b\n1,2\n"),
               "r:1: is no recording of power: neither time_s,power_w nor 100,... nor tegrastats");
 }

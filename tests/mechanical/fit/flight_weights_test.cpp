@@ -52,14 +52,11 @@ TEST(FlightWeights, HaveNamesBothWays) {
 }
 
 TEST(FlightWeights, SumToOneWhateverTheWay) {
-    const auto fit =
-        fit_phase(flight::Phase::landing, test::record_flights(flight::Phase::landing, 6, 0.2, 1));
+    const auto fit = fit_phase(flight::Phase::landing, test::record_flights(flight::Phase::landing, 6, 0.2, 1));
     std::vector<HandWeight> by_hand;
-    for (std::size_t i = 0; i < 6; ++i)
-        by_hand.push_back({fit.flights[i].flight, {}, static_cast<double>(i)});
-    for (const auto& options :
-         {WeightOptions{Weighting::uniform, {}}, WeightOptions{Weighting::inverse_variance, {}},
-          WeightOptions{Weighting::agreement, {}}, WeightOptions{Weighting::by_hand, by_hand}}) {
+    for (std::size_t i = 0; i < 6; ++i) by_hand.push_back({fit.flights[i].flight, {}, static_cast<double>(i)});
+    for (const auto& options : {WeightOptions{Weighting::uniform, {}}, WeightOptions{Weighting::inverse_variance, {}},
+                                WeightOptions{Weighting::agreement, {}}, WeightOptions{Weighting::by_hand, by_hand}}) {
         const auto weights = flight_weights(fit, flight::Phase::landing, options);
         ASSERT_EQ(weights.size(), 6U);
         EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1.0, 1e-14);
@@ -71,9 +68,8 @@ TEST(FlightWeights, SumToOneWhateverTheWay) {
 }
 
 TEST(FlightWeights, UniformIsTheSameForAll) {
-    EXPECT_THAT(
-        flight_weights(fit_with_levels({1, 2, 3, 40}), flight::Phase::cruise, {Weighting::uniform, {}}),
-        ElementsAre(0.25, 0.25, 0.25, 0.25));
+    EXPECT_THAT(flight_weights(fit_with_levels({1, 2, 3, 40}), flight::Phase::cruise, {Weighting::uniform, {}}),
+                ElementsAre(0.25, 0.25, 0.25, 0.25));
 }
 
 TEST(FlightWeights, InverseVarianceGoesWithSamplesAndScatter) {
@@ -104,8 +100,7 @@ TEST(FlightWeights, AgreementIsTheFormulaOfItsDistances) {
 }
 
 TEST(FlightWeights, AStrayFlightCountsLittle) {
-    const auto weights =
-        flight_weights(fit_with_levels({20.0, 20.1, 19.9, 20.05, 35.0}), flight::Phase::cruise, {});
+    const auto weights = flight_weights(fit_with_levels({20.0, 20.1, 19.9, 20.05, 35.0}), flight::Phase::cruise, {});
     EXPECT_LT(weights[4], 0.2 * weights[0]);
     EXPECT_NEAR(weights[0], weights[1], 0.05);
 }
@@ -136,13 +131,10 @@ TEST(FlightWeights, ByHandRefusesWhatDoesNotFitTheFlights) {
         return usage_error_of([&] { check_weights({weighting, std::move(by_hand)}, flights); });
     };
     EXPECT_EQ(refusal(Weighting::by_hand, {{"20_07_03", {}, 1.0}, {"20_07_05", {}, 0.0}}), "accepted");
-    EXPECT_THAT(
-        refusal(Weighting::by_hand, {{"20_07_30", {}, 1.0}}),
-        AllOf(HasSubstr("'20_07_30', which is none of the flights"), HasSubstr("did you mean '20_07_03'")));
-    EXPECT_THAT(refusal(Weighting::by_hand, {{"20_07_03", {}, -1.0}}),
-                HasSubstr("is -1, expected 0 or more"));
-    EXPECT_THAT(refusal(Weighting::by_hand, {{"20_07_03", {}, std::nan("")}}),
-                HasSubstr("expected 0 or more"));
+    EXPECT_THAT(refusal(Weighting::by_hand, {{"20_07_30", {}, 1.0}}),
+                AllOf(HasSubstr("'20_07_30', which is none of the flights"), HasSubstr("did you mean '20_07_03'")));
+    EXPECT_THAT(refusal(Weighting::by_hand, {{"20_07_03", {}, -1.0}}), HasSubstr("is -1, expected 0 or more"));
+    EXPECT_THAT(refusal(Weighting::by_hand, {{"20_07_03", {}, std::nan("")}}), HasSubstr("expected 0 or more"));
     EXPECT_THAT(refusal(Weighting::by_hand,
                         {{"20_07_03", flight::Phase::cruise, 1.0}, {"20_07_03", flight::Phase::cruise, 2.0}}),
                 HasSubstr("'20_07_03' has two weights in cruise"));
@@ -153,11 +145,11 @@ TEST(FlightWeights, ByHandRefusesWhatDoesNotFitTheFlights) {
                     flight_weights(fit, flight::Phase::cruise, {Weighting::by_hand, {{"f1", {}, 1.0}}});
                 }),
                 HasSubstr("'f2' has no weight by hand in cruise"));
-    EXPECT_THAT(usage_error_of([&] {
-                    flight_weights(fit, flight::Phase::cruise,
-                                   {Weighting::by_hand, {{"f1", {}, 0.0}, {"f2", {}, 0.0}}});
-                }),
-                HasSubstr("every flight's weight by hand is 0 in cruise"));
+    EXPECT_THAT(
+        usage_error_of([&] {
+            flight_weights(fit, flight::Phase::cruise, {Weighting::by_hand, {{"f1", {}, 0.0}, {"f2", {}, 0.0}}});
+        }),
+        HasSubstr("every flight's weight by hand is 0 in cruise"));
 }
 
 TEST(FlightWeights, AveragingCoefficientsIsAveragingCurves) {

@@ -60,8 +60,7 @@ TEST(FourierResidual, IsCurveMinusSamples) {
     coefficients << f.a0_w, f.cos_w[0], f.sin_w[0], f.cos_w[1], f.sin_w[1], f.cos_w[2], f.sin_w[2];
     EXPECT_EQ(coefficients_of(f), coefficients);
     EXPECT_EQ(series_of(coefficients, f.omega_rad_per_s).sin_w, f.sin_w);
-    const auto result =
-        fourier_residual({samples.tau, samples.power_w}, test::theta_rad(phase), coefficients);
+    const auto result = fourier_residual({samples.tau, samples.power_w}, test::theta_rad(phase), coefficients);
     EXPECT_LT(result.residual.cwiseAbs().maxCoeff(), 1e-12);
 }
 
@@ -82,8 +81,7 @@ TEST(FourierResidual, DerivativesAreThoseOfDifferences) {
                 shifted(j) += step;
                 const Eigen::VectorXd up = fourier_residual(samples, theta_rad, shifted).residual;
                 const Eigen::VectorXd difference = (up - at.residual) / step;
-                EXPECT_LT((at.by_coefficients.col(j) - difference).cwiseAbs().maxCoeff(), 1e-6)
-                    << "column " << j;
+                EXPECT_LT((at.by_coefficients.col(j) - difference).cwiseAbs().maxCoeff(), 1e-6) << "column " << j;
             }
         }
     }
@@ -133,8 +131,7 @@ TEST(LeastSquares, IsTheFourierTransformOnAWholePeriod) {
     const auto fit = solve_least_squares(basis, values);
     ASSERT_TRUE(fit);
     EXPECT_NEAR(fit->coefficients(0), values.mean(), 1e-13);
-    for (Eigen::Index j = 1; j < 7; ++j)
-        EXPECT_NEAR(fit->coefficients(j), basis.col(j).dot(values) / 25.0, 1e-13);
+    for (Eigen::Index j = 1; j < 7; ++j) EXPECT_NEAR(fit->coefficients(j), basis.col(j).dot(values) / 25.0, 1e-13);
 }
 
 TEST(LeastSquares, TheOrthonormalBasisIsOrthonormalAndSpansTheSame) {
@@ -145,8 +142,7 @@ TEST(LeastSquares, TheOrthonormalBasisIsOrthonormalAndSpansTheSame) {
     const auto fit = solve_least_squares(basis, values);
     ASSERT_TRUE(fit);
     const Eigen::MatrixXd orthonormal = basis * fit->from_orthonormal;
-    EXPECT_LT((orthonormal.transpose() * orthonormal - Eigen::MatrixXd::Identity(7, 7)).cwiseAbs().maxCoeff(),
-              1e-11);
+    EXPECT_LT((orthonormal.transpose() * orthonormal - Eigen::MatrixXd::Identity(7, 7)).cwiseAbs().maxCoeff(), 1e-11);
     EXPECT_LT((fit->from_orthonormal * fit->orthonormal - fit->coefficients).cwiseAbs().maxCoeff(),
               1e-11 * fit->coefficients.cwiseAbs().maxCoeff());
 }

@@ -44,8 +44,7 @@ TEST(PhaseFit, RecoversTableOneFromExactSamples) {
         for (const double interval_s : {0.1, 1.1}) {
             const auto published = test::published_model().phases[phase];
             std::mt19937 random(1);
-            const auto samples =
-                test::record(published, {published.duration_s, interval_s, 0.0, 0.0}, random);
+            const auto samples = test::record(published, {published.duration_s, interval_s, 0.0, 0.0}, random);
             const auto fit = fit_phase(phase, std::vector{samples});
             EXPECT_NEAR(fit.theta_rad, test::theta_rad(published), 1e-8) << to_string(phase);
             EXPECT_LT(fit.rms_w, 1e-9);
@@ -86,13 +85,12 @@ TEST_P(FrequencyIdentification, IsWithinOnePerCentEveryTime) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    PhaseFit, FrequencyIdentification,
-    testing::Values(Series{"CruiseOfTableOneTimesFour",
-                           {4 * 0.3737, 4 * 0.6513, 4 * 0.5039},
-                           {4 * 1.194, 4 * 0.2954, 4 * -0.2864}},
-                    Series{"FundamentalWithWeakHarmonics", {9.0, 0.6, 0.3}, {6.0, -0.3, 0.3}}),
-    [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(PhaseFit, FrequencyIdentification,
+                         testing::Values(Series{"CruiseOfTableOneTimesFour",
+                                                {4 * 0.3737, 4 * 0.6513, 4 * 0.5039},
+                                                {4 * 1.194, 4 * 0.2954, 4 * -0.2864}},
+                                         Series{"FundamentalWithWeakHarmonics", {9.0, 0.6, 0.3}, {6.0, -0.3, 0.3}}),
+                         [](const auto& test) { return test.param.name; });
 
 TEST(PhaseFit, EstimatesTheFrequencyAsWellAsTheNoiseAllows) {
     const auto published = test::published_model().phases[flight::Phase::cruise];
@@ -121,8 +119,7 @@ TEST(PhaseFit, GapsAndUnequalStepsDoNotMatter) {
         kept.tau.push_back(samples.tau[i]);
         kept.power_w.push_back(samples.power_w[i]);
     }
-    EXPECT_NEAR(fit_phase(flight::Phase::cruise, std::vector{kept}).theta_rad, test::theta_rad(published),
-                1e-7);
+    EXPECT_NEAR(fit_phase(flight::Phase::cruise, std::vector{kept}).theta_rad, test::theta_rad(published), 1e-7);
 }
 
 TEST(PhaseFit, AThousandfoldPowerHasThousandfoldCoefficients) {
@@ -140,8 +137,7 @@ TEST(PhaseFit, AThousandfoldPowerHasThousandfoldCoefficients) {
             const auto& small = fit.flights[i].fourier;
             const auto& large = scaled.flights[i].fourier;
             EXPECT_NEAR(large.a0_w, 1000.0 * small.a0_w, 1e-5 * large.a0_w);
-            for (std::size_t n = 0; n < 3; ++n)
-                EXPECT_NEAR(large.cos_w[n], 1000.0 * small.cos_w[n], 1e-5 * large.a0_w);
+            for (std::size_t n = 0; n < 3; ++n) EXPECT_NEAR(large.cos_w[n], 1000.0 * small.cos_w[n], 1e-5 * large.a0_w);
         }
     }
 }
@@ -164,8 +160,8 @@ TEST(PhaseFit, TheSharedFrequencyIsTheSameForTwinsAsForOne) {
     const auto one = test::record_flights(flight::Phase::cruise, 1, 0.5, 7);
     std::vector<PhaseSamples> twins{one.front(), one.front()};
     twins[1].flight = "twin";
-    EXPECT_NEAR(fit_phase(flight::Phase::cruise, twins).theta_rad,
-                fit_phase(flight::Phase::cruise, one).theta_rad, 1e-6);
+    EXPECT_NEAR(fit_phase(flight::Phase::cruise, twins).theta_rad, fit_phase(flight::Phase::cruise, one).theta_rad,
+                1e-6);
 }
 
 TEST(PhaseFit, ReportsThatItStandsAtABound) {
@@ -183,10 +179,8 @@ TEST(PhaseFit, TheRangeEndsWhereTheHighestHarmonicOutrunsTheSamples) {
     const auto phase = test::cruise_of(2.0, {3.0}, {2.0});
     const auto coarse = test::record(phase, {600.0, 2.0, 0.0, 0.0}, random);
     const auto fine = test::record(phase, {600.0, 0.1, 0.0, 0.0}, random);
-    EXPECT_NEAR(admissible_range(std::vector{fine, coarse}, {}).high_rad, std::numbers::pi * 300.0 / 3.0,
-                1e-6);
-    EXPECT_NEAR(admissible_range(std::vector{fine, coarse}, {.order = 5}).high_rad, std::numbers::pi * 60.0,
-                1e-6);
+    EXPECT_NEAR(admissible_range(std::vector{fine, coarse}, {}).high_rad, std::numbers::pi * 300.0 / 3.0, 1e-6);
+    EXPECT_NEAR(admissible_range(std::vector{fine, coarse}, {.order = 5}).high_rad, std::numbers::pi * 60.0, 1e-6);
     EXPECT_NEAR(admissible_range(std::vector{fine}, {}).high_rad, 240.0 * std::numbers::pi, 1e-9);  // the cap
     EXPECT_EQ(admissible_range(std::vector{fine}, {}).low_rad, std::numbers::pi);
 }

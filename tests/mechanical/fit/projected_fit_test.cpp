@@ -43,8 +43,7 @@ TEST(TrigonometricSums, DirectSumsAreTheSums) {
 
 TEST(TrigonometricSums, FftSumsAreTheDirectSums) {
     for (const double step_rad : {0.05, 1.0 / 3.0, 1.0, 9.0}) {
-        for (const std::size_t count :
-             {std::size_t{1}, std::size_t{7}, std::size_t{100}, std::size_t{5000}}) {
+        for (const std::size_t count : {std::size_t{1}, std::size_t{7}, std::size_t{100}, std::size_t{5000}}) {
             const auto samples = scattered_samples(300, 7);
             const auto direct = sum_directly(samples, step_rad, count);
             const auto fast = sum_by_fft(samples, step_rad, count);
@@ -60,8 +59,8 @@ TEST(TrigonometricSums, FftSumsAreTheDirectSums) {
 }
 
 double square_sum_by_qr(const ScaledSamples& samples, int order, double theta_rad) {
-    const auto values = Eigen::Map<const Eigen::VectorXd>(samples.value.data(),
-                                                          static_cast<Eigen::Index>(samples.value.size()));
+    const auto values =
+        Eigen::Map<const Eigen::VectorXd>(samples.value.data(), static_cast<Eigen::Index>(samples.value.size()));
     return solve_least_squares(fourier_basis(samples.tau, order, theta_rad), values)->residual_square_sum;
 }
 

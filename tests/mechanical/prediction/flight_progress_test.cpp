@@ -57,8 +57,7 @@ TEST(FlightProgress, HasNoHindsight) {
 TEST(FlightProgress, HasNoHindsightOnRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
-        const auto series =
-            flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
+        const auto series = flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
         for (const double since_s : {120.0, 300.0, 500.0}) expect_no_hindsight(series, since_s);
     }
 }

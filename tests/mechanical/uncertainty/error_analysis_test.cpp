@@ -21,8 +21,7 @@ struct Analysed {
     ErrorAnalysis analysis;
 };
 
-Analysed analysed(std::vector<PhaseSamples> flights, flight::Phase phase,
-                  const PhaseFitOptions& options = {}) {
+Analysed analysed(std::vector<PhaseSamples> flights, flight::Phase phase, const PhaseFitOptions& options = {}) {
     Analysed result;
     result.fit = fit_phase(phase, flights, options);
     result.weights = flight_weights(result.fit, phase, {Weighting::uniform, {}});
@@ -49,8 +48,7 @@ Eigen::MatrixXd textbook_covariance(const Analysed& one) {
 
 TEST(ErrorAnalysis, WithoutCorrelationIsTheCovarianceOfTheTextbook) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
-        const auto one =
-            analysed(test::record_flights(flight::Phase::cruise, 1, 0.3, seed), flight::Phase::cruise);
+        const auto one = analysed(test::record_flights(flight::Phase::cruise, 1, 0.3, seed), flight::Phase::cruise);
         if (one.analysis.errors.autocorrelation > 0.0) continue;
         const auto expected = textbook_covariance(one);
         EXPECT_LT((one.analysis.covariance - expected).norm(), 1e-6 * expected.norm());
@@ -72,14 +70,13 @@ TEST(ErrorAnalysis, TheNoiseOfOneFlightCountsByItsWeight) {
     auto two = analysed(test::record_flights(flight::Phase::cruise, 2, 0.3, 5), flight::Phase::cruise);
     const auto only_first = analyse_errors(two.flights, two.fit, std::vector{1.0, 0.0});
     const auto alone = analysed({two.flights[0]}, flight::Phase::cruise);
-    EXPECT_NEAR(only_first.errors.curve_w, alone.analysis.errors.curve_w,
-                0.1 * alone.analysis.errors.curve_w);
+    EXPECT_NEAR(only_first.errors.curve_w, alone.analysis.errors.curve_w, 0.1 * alone.analysis.errors.curve_w);
     EXPECT_GT(only_first.errors.curve_w, 1.2 * two.analysis.errors.curve_w);
 }
 
 TEST(ErrorAnalysis, AtABoundTheFrequencyIsTakenAsGiven) {
-    const auto bound = analysed(test::record_flights(flight::Phase::cruise, 2, 0.2, 8), flight::Phase::cruise,
-                                {.low_rad = 5.3});
+    const auto bound =
+        analysed(test::record_flights(flight::Phase::cruise, 2, 0.2, 8), flight::Phase::cruise, {.low_rad = 5.3});
     EXPECT_TRUE(bound.analysis.errors.frequency_is_given);
     EXPECT_EQ(bound.analysis.errors.omega_rad_per_s, 0.0);
     EXPECT_EQ(bound.analysis.covariance.row(0).cwiseAbs().maxCoeff(), 0.0);
@@ -90,12 +87,10 @@ TEST(ErrorAnalysis, AtABoundTheFrequencyIsTakenAsGiven) {
 }
 
 TEST(ErrorAnalysis, GoodnessOfFit) {
-    const auto exact =
-        analysed(test::record_flights(flight::Phase::cruise, 2, 0.0, 6), flight::Phase::cruise);
+    const auto exact = analysed(test::record_flights(flight::Phase::cruise, 2, 0.0, 6), flight::Phase::cruise);
     EXPECT_NEAR(exact.analysis.errors.r2, 1.0, 1e-12);
     EXPECT_LT(exact.analysis.errors.curve_w, 1e-8);
-    const auto landing =
-        analysed(test::record_flights(flight::Phase::landing, 2, 0.1, 6), flight::Phase::landing);
+    const auto landing = analysed(test::record_flights(flight::Phase::landing, 2, 0.1, 6), flight::Phase::landing);
     EXPECT_GT(landing.analysis.errors.condition, 10.0);  // 38 on evenly spread samples at the truth
     EXPECT_LT(landing.analysis.errors.condition, 200.0);
     EXPECT_GT(landing.analysis.errors.r2, 0.9);
@@ -139,8 +134,7 @@ TEST(FrequencyProfile, IsLowestAtTheFrequencyFoundAndAgreesWithItsStandardError)
 }
 
 TEST(FrequencyProfile, OfANoisyLandingIsOpenBelow) {
-    const auto fit =
-        analysed(test::record_flights(flight::Phase::landing, 1, 0.5, 2), flight::Phase::landing);
+    const auto fit = analysed(test::record_flights(flight::Phase::landing, 1, 0.5, 2), flight::Phase::landing);
     const auto profile = frequency_profile(fit.flights, fit.fit, fit.analysis);
     EXPECT_TRUE(profile.low_is_open);
     EXPECT_NEAR(profile.low_rad, std::numbers::pi, 1e-6);

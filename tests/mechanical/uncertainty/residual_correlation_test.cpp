@@ -27,8 +27,7 @@ Eigen::MatrixXd full_matrix(const std::vector<double>& tau, double step, double 
 }
 
 /// Evenly spread noise of that autocorrelation; the fit of a third-order series taken out.
-FlightResiduals residuals_of_noise(int samples, double autocorrelation, double noise_w,
-                                   std::mt19937& random) {
+FlightResiduals residuals_of_noise(int samples, double autocorrelation, double noise_w, std::mt19937& random) {
     std::normal_distribution<double> normal(0.0, noise_w);
     FlightResiduals flight;
     flight.step = 1.0 / samples;

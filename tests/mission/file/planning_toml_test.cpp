@@ -32,11 +32,7 @@ AnyMission read(const std::string& text, bool may_lack_schedule = true) {
 
 std::string refused(const std::string& text, bool may_lack_schedule = true) {
     const auto folder = mission_folder();
-    return rejected(
-        [&] {
-            parse_mission(head + text, folder / "m.toml", {may_lack_schedule, std::nullopt});
-        },
-        folder);
+    return rejected([&] { parse_mission(head + text, folder / "m.toml", {may_lack_schedule, std::nullopt}); }, folder);
 }
 
 /// A detection component with a utility, to be planned.
@@ -54,8 +50,7 @@ TEST(UtilityToml, HasShapes) {
     EXPECT_DOUBLE_EQ(utility_at("{ shape = \"linear\", weight = 0 }", 20.0), 0.0);
     EXPECT_DOUBLE_EQ(utility_at("{ shape = \"sqrt\" }", 25.0), 5.0);
     EXPECT_DOUBLE_EQ(utility_at("{ shape = \"log\", weight = 2 }", 20.0), 2.0 * std::log(21.0));
-    const std::string points =
-        "{ shape = \"points\", qos = [0, 10, 20, 30], value = [0, 1, 5, 5], weight = 2 }";
+    const std::string points = "{ shape = \"points\", qos = [0, 10, 20, 30], value = [0, 1, 5, 5], weight = 2 }";
     EXPECT_DOUBLE_EQ(utility_at(points, 10.0), 2.0);
     EXPECT_DOUBLE_EQ(utility_at(points, 15.0), 6.0);
     EXPECT_DOUBLE_EQ(utility_at(points, 30.0), 10.0);
@@ -83,8 +78,7 @@ TEST(UtilityToml, RefusesWhatIsNotMonotoneOrUnknown) {
     EXPECT_EQ(refused(with_utility("{ weight = -1 }")), "m.toml:6:13: weight = -1, expected 0 or more");
     EXPECT_EQ(refused(with_utility("{ shape = \"cubic\" }")),
               "m.toml:6:13: there is no shape 'cubic'; it is \"linear\", \"sqrt\", \"log\" or \"points\"");
-    EXPECT_EQ(refused(with_utility("{ wieght = 1 }")),
-              "m.toml:6:13: unknown key 'wieght'; did you mean 'weight'?");
+    EXPECT_EQ(refused(with_utility("{ wieght = 1 }")), "m.toml:6:13: unknown key 'wieght'; did you mean 'weight'?");
     EXPECT_EQ(refused(with_utility("{ qos = [1, 2] }")),
               "m.toml:6:13: `qos` has no meaning here; it belongs to shape = \"points\"");
     const auto points = [](const std::string& text) {
@@ -98,10 +92,9 @@ TEST(UtilityToml, RefusesWhatIsNotMonotoneOrUnknown) {
     EXPECT_EQ(points("qos = [12, 40], value = [1, 2]"),
               "m.toml:6:31: the points from 12 to 40 do not cover the profile's range, 10 to 30; add "
               "points at its ends");
-    EXPECT_EQ(
-        refused("[components.two]\nprofile = \"two.csv\"\nutility = {}\n"),
-        "m.toml:6:11: the profile has 2 parameters: which one has the utility?; add parameter = ..., one of fps, "
-        "width");
+    EXPECT_EQ(refused("[components.two]\nprofile = \"two.csv\"\nutility = {}\n"),
+              "m.toml:6:11: the profile has 2 parameters: which one has the utility?; add parameter = ..., one of fps, "
+              "width");
     EXPECT_EQ(refused("[components.camera]\nprofile = \"camera.csv\"\nutility = { shape = \"sqrt\" }\n"),
               "m.toml:6:13: `shape` has no meaning here; the profile has no parameter: leave it out");
 }
@@ -120,11 +113,10 @@ TEST(PlanSettingsToml, HasDefaults) {
 }
 
 TEST(PlanSettingsToml, ReadsWhatMayBeChosenAndWhatIsFixed) {
-    const auto mission =
-        problem(with_utility("{}") +
-                "[plan]\nslot_s = 5\ndwell_s = 20\nmay_be_off = [\"detection\"]\n"
-                "levels = { detection = { fps = [25, 12, 25] } }\n"
-                "[[schedule]]\nphase = \"cruise\"\nmiddle = 60\nrun = { detection = { fps = 30 } }\n");
+    const auto mission = problem(with_utility("{}") +
+                                 "[plan]\nslot_s = 5\ndwell_s = 20\nmay_be_off = [\"detection\"]\n"
+                                 "levels = { detection = { fps = [25, 12, 25] } }\n"
+                                 "[[schedule]]\nphase = \"cruise\"\nmiddle = 60\nrun = { detection = { fps = 30 } }\n");
     EXPECT_EQ(mission.plan.slot_s, 5.0);
     EXPECT_EQ(mission.plan.dwell_s, 20.0);
     EXPECT_EQ(mission.plan.choices[0].levels, (std::vector<std::vector<double>>{{12.0, 25.0}}));
@@ -135,9 +127,7 @@ TEST(PlanSettingsToml, ReadsWhatMayBeChosenAndWhatIsFixed) {
 }
 
 TEST(PlanSettingsToml, RefusesWhatMakesNoSense) {
-    const auto plan = [](const std::string& text) {
-        return refused(with_utility("{}") + "[plan]\n" + text + "\n");
-    };
+    const auto plan = [](const std::string& text) { return refused(with_utility("{}") + "[plan]\n" + text + "\n"); };
     EXPECT_EQ(plan("slot_s = 0"), "m.toml:8:1: slot_s = 0, expected more than 0");
     EXPECT_EQ(plan("dwell_s = -1"), "m.toml:8:1: dwell_s = -1, expected 0 or more");
     EXPECT_EQ(plan("slots = 3"), "m.toml:8:1: unknown key 'slots'; did you mean 'slot_s'?");
@@ -146,18 +136,15 @@ TEST(PlanSettingsToml, RefusesWhatMakesNoSense) {
     EXPECT_EQ(plan("levels = { detection = { fps = [] } }"),
               "m.toml:8:26: fps = [] leaves no choice; leave it out for the levels that were profiled");
     EXPECT_NE(plan("levels = { detection = { fps = [31] } }").find("m.toml:8:26: "), std::string::npos);
-    EXPECT_EQ(
-        plan("[[schedule]]\notherwise = true\nrun = {}"),
-        "m.toml:8:1: `otherwise` leaves nothing to plan; take it out: what no other entry fixes is planned");
-    EXPECT_EQ(refused("reserve_soc_percent = 101\n"),
-              "m.toml:4:1: reserve_soc_percent = 101, expected 0 to 100");
+    EXPECT_EQ(plan("[[schedule]]\notherwise = true\nrun = {}"),
+              "m.toml:8:1: `otherwise` leaves nothing to plan; take it out: what no other entry fixes is planned");
+    EXPECT_EQ(refused("reserve_soc_percent = 101\n"), "m.toml:4:1: reserve_soc_percent = 101, expected 0 to 100");
 }
 
 TEST(PlanSettingsToml, IsRefusedWhereAScheduleIsDue) {
-    EXPECT_EQ(
-        refused(with_utility("{}") + "[plan]\n", false),
-        "m.toml:7:2: this mission has no complete schedule: it is yet to be planned; `flightwatt plan` makes "
-        "one; without [plan], [[schedule]] is taken as complete");
+    EXPECT_EQ(refused(with_utility("{}") + "[plan]\n", false),
+              "m.toml:7:2: this mission has no complete schedule: it is yet to be planned; `flightwatt plan` makes "
+              "one; without [plan], [[schedule]] is taken as complete");
 }
 
 TEST(PlanSettingsToml, FliesAnotherCruise) {
@@ -177,10 +164,9 @@ TEST(AdaptivePolicyToml, ReadsAndRefuses) {
     const auto refused = [](const std::string& text) { return rejected([&] { policy(text); }); };
     EXPECT_EQ(refused("[policy]\nkind = \"adaptiv\"\n"),
               "m.toml:2:1: there is no policy 'adaptiv'; it is \"adaptive\" or \"static\"");
-    EXPECT_EQ(
-        refused("[policy]\nkind = \"static\"\nprobability = 0.9\n"),
-        "m.toml:3:1: `probability` has no meaning with kind = \"static\"; leave it out, or make it kind = "
-        "\"adaptive\"");
+    EXPECT_EQ(refused("[policy]\nkind = \"static\"\nprobability = 0.9\n"),
+              "m.toml:3:1: `probability` has no meaning with kind = \"static\"; leave it out, or make it kind = "
+              "\"adaptive\"");
     EXPECT_EQ(refused("[policy]\nkind = \"adaptive\"\ndecide_every_s = 0\n"),
               "m.toml:3:1: decide_every_s = 0, expected 0.1 to 1000000");
 }

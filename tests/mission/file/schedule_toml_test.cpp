@@ -30,8 +30,8 @@ std::string spell(const std::vector<ScheduleSegment>& segments) {
     std::string text;
     for (const auto& s : segments) {
         text += std::string(to_string(s.phase)) + " " + std::to_string(static_cast<int>(s.start_s)) + ".." +
-                std::to_string(static_cast<int>(s.end_s)) + "=" +
-                std::to_string(static_cast<int>(s.run[0].qos[0])) + "; ";
+                std::to_string(static_cast<int>(s.end_s)) + "=" + std::to_string(static_cast<int>(s.run[0].qos[0])) +
+                "; ";
     }
     return text;
 }
@@ -39,22 +39,19 @@ std::string spell(const std::vector<ScheduleSegment>& segments) {
 TEST(ScheduleEntries, OtherwiseFillsWhatIsLeft) {
     const auto laid =
         resolve_schedule({part(flight::Phase::cruise, 240.0, 360.0, 3), rest(std::nullopt, 1)}, durations);
-    EXPECT_EQ(spell(laid),
-              "takeoff 0..28=1; cruise 0..240=1; cruise 240..360=3; cruise 360..600=1; landing 0..60=1; ");
+    EXPECT_EQ(spell(laid), "takeoff 0..28=1; cruise 0..240=1; cruise 240..360=3; cruise 360..600=1; landing 0..60=1; ");
 }
 
 TEST(ScheduleEntries, AnOtherwiseOfThePhaseComesBeforeThatOfTheMission) {
     const auto laid = resolve_schedule(
-        {rest(std::nullopt, 1), part(flight::Phase::cruise, 0.0, 100.0, 3), rest(flight::Phase::cruise, 2)},
-        durations);
+        {rest(std::nullopt, 1), part(flight::Phase::cruise, 0.0, 100.0, 3), rest(flight::Phase::cruise, 2)}, durations);
     EXPECT_EQ(spell(laid), "takeoff 0..28=1; cruise 0..100=3; cruise 100..600=2; landing 0..60=1; ");
 }
 
 TEST(ScheduleEntries, NeedsNoOtherwiseWhereEntriesMeet) {
     const auto laid = resolve_schedule(
         {part(flight::Phase::landing, 0.0, 60.0, 4), part(flight::Phase::cruise, 300.0, 600.0, 3),
-         part(flight::Phase::cruise, 0.0, 300.0 + 1e-12, 2),
-         part(flight::Phase::takeoff, -1e-13, 28.0 - 1e-13, 1)},
+         part(flight::Phase::cruise, 0.0, 300.0 + 1e-12, 2), part(flight::Phase::takeoff, -1e-13, 28.0 - 1e-13, 1)},
         durations);
     EXPECT_EQ(spell(laid), "takeoff 0..28=1; cruise 0..300=2; cruise 300..600=3; landing 0..60=4; ");
     EXPECT_EQ(laid[0].start_s, 0.0);
@@ -113,8 +110,7 @@ TEST(ScheduleEntries, RefusesOverlaps) {
     auto whole = part(flight::Phase::cruise, 0.0, 600.0, 1, 12);
     whole.whole_phase = true;
     EXPECT_EQ(rejected([&] {
-                  resolve_schedule({part(flight::Phase::cruise, 240.0, 360.0, 1, 8), whole, rest({}, 1)},
-                                   durations);
+                  resolve_schedule({part(flight::Phase::cruise, 240.0, 360.0, 1, 8), whole, rest({}, 1)}, durations);
               }),
               "m.toml:12:1: cruise from 240 s to 360 s is scheduled twice, here and in line 8; give the "
               "entry of the whole "
@@ -123,9 +119,9 @@ TEST(ScheduleEntries, RefusesOverlaps) {
 
 TEST(ScheduleEntries, RefusesASegmentWithinAnother) {
     EXPECT_EQ(rejected([] {
-                  resolve_schedule({part(flight::Phase::cruise, 0.0, 500.0, 1, 2),
-                                    part(flight::Phase::cruise, 100.0, 200.0, 1, 3)},
-                                   durations);
+                  resolve_schedule(
+                      {part(flight::Phase::cruise, 0.0, 500.0, 1, 2), part(flight::Phase::cruise, 100.0, 200.0, 1, 3)},
+                      durations);
               }),
               "m.toml:3:1: cruise from 100 s to 200 s is scheduled twice, here and in line 2; let one end "
               "where the other "
@@ -133,16 +129,15 @@ TEST(ScheduleEntries, RefusesASegmentWithinAnother) {
 }
 
 TEST(ScheduleEntries, RefusesGaps) {
-    EXPECT_EQ(
-        rejected([] {
-            resolve_schedule(
-                {part(flight::Phase::takeoff, 0.0, 28.0, 1, 3), part(flight::Phase::cruise, 0.0, 240.0, 1, 6),
-                 part(flight::Phase::cruise, 360.0, 600.0, 1, 9), rest(flight::Phase::landing, 1, 12)},
-                durations);
-        }),
-        "m.toml:9:1: nothing is scheduled for cruise from 240 s to 360 s; add an entry with `otherwise "
-        "= true`; "
-        "`run = {}` runs nothing");
+    EXPECT_EQ(rejected([] {
+                  resolve_schedule(
+                      {part(flight::Phase::takeoff, 0.0, 28.0, 1, 3), part(flight::Phase::cruise, 0.0, 240.0, 1, 6),
+                       part(flight::Phase::cruise, 360.0, 600.0, 1, 9), rest(flight::Phase::landing, 1, 12)},
+                      durations);
+              }),
+              "m.toml:9:1: nothing is scheduled for cruise from 240 s to 360 s; add an entry with `otherwise "
+              "= true`; "
+              "`run = {}` runs nothing");
     EXPECT_EQ(rejected([] { resolve_schedule({part(flight::Phase::takeoff, 0.0, 20.0, 1, 3)}, durations); }),
               "m.toml:3:1: nothing is scheduled for takeoff from 20 s to 28 s; add an entry with `otherwise "
               "= true`; "
@@ -154,23 +149,20 @@ TEST(ScheduleEntries, RefusesGaps) {
 }
 
 TEST(ScheduleEntries, RefusesAnOtherwiseTooMany) {
-    const std::string nothing =
-        "this `otherwise` covers nothing: the other entries leave no time; take it out";
+    const std::string nothing = "this `otherwise` covers nothing: the other entries leave no time; take it out";
     EXPECT_EQ(rejected([] {
-                  resolve_schedule(
-                      {part(flight::Phase::cruise, 0.0, 600.0, 1), rest(flight::Phase::cruise, 1, 5)},
-                      {{0.0, 600.0, 0.0}});
+                  resolve_schedule({part(flight::Phase::cruise, 0.0, 600.0, 1), rest(flight::Phase::cruise, 1, 5)},
+                                   {{0.0, 600.0, 0.0}});
               }),
               "m.toml:5:1: " + nothing);
     EXPECT_EQ(rejected([] {
                   resolve_schedule({rest(flight::Phase::cruise, 1, 3), rest({}, 1, 6)}, {{0.0, 600.0, 0.0}});
               }),
               "m.toml:6:1: " + nothing);
-    EXPECT_EQ(
-        rejected([] {
-            resolve_schedule({rest({}, 1, 3), rest({}, 1, 6)}, durations);
-        }),
-        "m.toml:6:1: a second `otherwise` for the whole mission, the first is in line 3; keep one of them");
+    EXPECT_EQ(rejected([] {
+                  resolve_schedule({rest({}, 1, 3), rest({}, 1, 6)}, durations);
+              }),
+              "m.toml:6:1: a second `otherwise` for the whole mission, the first is in line 3; keep one of them");
     EXPECT_EQ(rejected([] {
                   resolve_schedule(
                       {rest(flight::Phase::cruise, 1, 3), rest({}, 1, 5), rest(flight::Phase::cruise, 1, 6)},

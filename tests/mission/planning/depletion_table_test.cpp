@@ -37,8 +37,8 @@ std::vector<ScheduleSegment> random_schedule(const Mission& mission, std::mt1993
 }
 
 TEST(DepletionTable, AgreesWithRungeKuttaOnThePapersSchedules) {
-    for (const auto* name : {"computing-only", "mechanical-only", "invariant-5.8fps-32bit",
-                             "invariant-10fps-240bit", "phased", "adaptive"}) {
+    for (const auto* name : {"computing-only", "mechanical-only", "invariant-5.8fps-32bit", "invariant-10fps-240bit",
+                             "phased", "adaptive"}) {
         const auto mission = paper_mission(name);
         const auto soc = tabled_soc(mission);
         ASSERT_TRUE(soc) << name;

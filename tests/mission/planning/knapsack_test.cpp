@@ -113,8 +113,7 @@ MultipleChoiceKnapsack random_problem(std::mt19937& random, const RandomCase& ki
     }
     problem.budget = least + uniform(-0.1, 1.1) * (most - least);
     if (kind.dwell) problem.dwell_s = uniform(0, 40);
-    if (kind.running)
-        problem.running = {count(0, static_cast<int>(problem.free_choices) - 1), uniform(0, 40)};
+    if (kind.running) problem.running = {count(0, static_cast<int>(problem.free_choices) - 1), uniform(0, 40)};
     return problem;
 }
 
@@ -176,8 +175,7 @@ MultipleChoiceKnapsack large_problem(std::size_t slots, std::size_t choices, dou
     }
     for (std::size_t i = 0; i < slots; ++i) {
         KnapsackSlot slot{10.0, {}, {}};
-        for (std::size_t c = 0; c < choices; ++c)
-            slot.cost.push_back((1.0 + static_cast<double>(c)) * uniform(random));
+        for (std::size_t c = 0; c < choices; ++c) slot.cost.push_back((1.0 + static_cast<double>(c)) * uniform(random));
         problem.slots.push_back(slot);
         problem.budget += slot.cost.front() + 0.37 * (slot.cost.back() - slot.cost.front());
     }
@@ -194,8 +192,7 @@ TEST(KnapsackSolution, ProvesItsGapWhereNothingIsAlike) {
         EXPECT_LE(plan.cost, problem.budget);
         EXPECT_LE(plan.bound, plan.utility * 1.001) << dwell_s;
         EXPECT_GE(plan.bound, plan.utility);
-        RecordProperty("seconds_dwell_" + std::to_string(static_cast<int>(dwell_s)),
-                       std::to_string(took.count()));
+        RecordProperty("seconds_dwell_" + std::to_string(static_cast<int>(dwell_s)), std::to_string(took.count()));
     }
 }
 

@@ -22,8 +22,8 @@ namespace {
 std::function<PlanningProblem(double)> thevenin_plan(double reserve_soc_percent = 20.0,
                                                      double cutoff_voltage_v = 10.5) {
     return [=](double cruise_s) {
-        auto mission = std::get<PlanningProblem>(read_mission(
-            test::source_dir() / "missions" / "synthetic" / "thevenin-plan.toml", {true, cruise_s}));
+        auto mission = std::get<PlanningProblem>(
+            read_mission(test::source_dir() / "missions" / "synthetic" / "thevenin-plan.toml", {true, cruise_s}));
         mission.reserve_soc_percent = reserve_soc_percent;
         mission.cutoff_voltage_v = cutoff_voltage_v;
         return mission;
@@ -155,8 +155,7 @@ TEST(PlanRest, AnswersALearnedFactorOnAPackWhoseVoltageFalls) {
     const auto problem = thevenin_plan()(1800.0);
     const auto planner = make_planner(problem);
     const auto soc_with = [&](double mechanical_factor) {
-        const auto plan =
-            plan_rest(problem, planner, {0.0, 100.0, std::nullopt, 0.0, mechanical_factor}, 95.0);
+        const auto plan = plan_rest(problem, planner, {0.0, 100.0, std::nullopt, 0.0, mechanical_factor}, 95.0);
         EXPECT_FALSE(plan.feasible) << "so that the schedule is the one that demands least energy";
         return plan.final_soc_percent;
     };
@@ -232,8 +231,8 @@ TEST(SimulatedPlan, HasFeasibilityLimits) {
     const auto mission = thevenin_plan()(1800.0);
     const auto payload = largest_payload(mission);
     EXPECT_NEAR(payload.residual_percent, 0.0, 1e-6);
-    EXPECT_FALSE(simulate(with_payload(with_minimum_energy_schedule(mission), payload.value + 0.01))
-                     .summary.keeps_reserve);
+    EXPECT_FALSE(
+        simulate(with_payload(with_minimum_energy_schedule(mission), payload.value + 0.01)).summary.keeps_reserve);
 }
 
 }  // namespace

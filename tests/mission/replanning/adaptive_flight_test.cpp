@@ -54,16 +54,14 @@ TEST(AdaptiveFlight, KeepsItsReserveInAHeadwindThatEmptiesStaticSchedules) {
 
 TEST(AdaptiveFlight, KeepsItsReserveWhateverElseHappens) {
     const std::vector<std::vector<Disturbance>> cases{
-        {weak_pack(0.95)},  {drop(328.0, 3.0)},
-        {drop(600.0, 0.2)}, {headwind(1.04), weak_pack(0.98), drop(200.0, 1.0)},
+        {weak_pack(0.95)}, {drop(328.0, 3.0)}, {drop(600.0, 0.2)}, {headwind(1.04), weak_pack(0.98), drop(200.0, 1.0)},
         {headwind(0.9)},
     };
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const auto summary = flown(paper_problem("adaptive-replanned"), cases[i]);
         EXPECT_TRUE(summary.keeps_reserve) << i << ": " << *summary.final_soc_percent;
     }
-    for (std::size_t i = 0; i < 4; ++i)
-        EXPECT_FALSE(flown(planned_beforehand(), cases[i]).keeps_reserve) << i;
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(flown(planned_beforehand(), cases[i]).keeps_reserve) << i;
 }
 
 TEST(AdaptiveFlight, LandsWithAsMuchAsPossibleWhereTheReserveCannotBeKept) {
@@ -91,8 +89,7 @@ TEST(AdaptiveFlight, LearnsHowMuchMoreMechanicalPowerIs) {
         return flown(paper_problem("adaptive-replanned"), disturbances).decisions->mechanical_factor;
     };
     EXPECT_NEAR(at({}), 1.0, 1e-6);
-    EXPECT_NEAR(at({headwind(1.1)}), 1.0 + 0.1 * 688.0 / (688.0 + 60.0), 1e-6)
-        << "shrunk by the learning time";
+    EXPECT_NEAR(at({headwind(1.1)}), 1.0 + 0.1 * 688.0 / (688.0 + 60.0), 1e-6) << "shrunk by the learning time";
     EXPECT_NEAR(at({drop(328.0, 3.0)}), 1.0, 1e-6) << "a jump of the charge is no wind";
 }
 

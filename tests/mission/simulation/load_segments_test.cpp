@@ -17,8 +17,7 @@ double integral_j(const LoadSegment& segment) {
     const int n = 20000;
     const double h = (segment.end_s - segment.start_s) / n;
     double sum = mechanical_w(segment, segment.start_s) + mechanical_w(segment, segment.end_s);
-    for (int i = 1; i < n; ++i)
-        sum += (i % 2 == 1 ? 4.0 : 2.0) * mechanical_w(segment, segment.start_s + i * h);
+    for (int i = 1; i < n; ++i) sum += (i % 2 == 1 ? 4.0 : 2.0) * mechanical_w(segment, segment.start_s + i * h);
     return sum * h / 3.0;
 }
 
@@ -55,8 +54,8 @@ TEST(LoadSegment, SplittingAPhaseChangesNoEnergy) {
     const double whole_j = mechanical_energy_j(load_of(mission)[1], 628.0);
     mission.schedule = {{flight::Phase::cruise, 0.0, 123.4, {}}, {flight::Phase::cruise, 123.4, 600.0, {}}};
     const auto parts = load_of(mission);
-    EXPECT_NEAR(mechanical_energy_j(parts[0], parts[0].end_s) + mechanical_energy_j(parts[1], parts[1].end_s),
-                whole_j, 1e-9);
+    EXPECT_NEAR(mechanical_energy_j(parts[0], parts[0].end_s) + mechanical_energy_j(parts[1], parts[1].end_s), whole_j,
+                1e-9);
 }
 
 TEST(LoadSegment, ClocksAPhaseFlownLonger) {

@@ -37,8 +37,7 @@ TEST(FlightFigure, HasEveryChannelAndExplainsItsEdges) {
     EXPECT_NE(power.find(",measured"), std::string::npos);
     EXPECT_NE(power.find(",model"), std::string::npos);
     const auto edges = figure.spec["datasets"]["edges"].get<std::string>();
-    for (const auto* edge :
-         {"lift-off", "end of take-off", "end of cruise", "touchdown", "TAKEOFF message"}) {
+    for (const auto* edge : {"lift-off", "end of take-off", "end of cruise", "touchdown", "TAKEOFF message"}) {
         EXPECT_NE(edges.find(edge), std::string::npos) << edge;
     }
     EXPECT_EQ(std::count(edges.begin(), edges.end(), '\n'), 4);

@@ -20,8 +20,8 @@ Figure figure_of(const std::string& csv) {
 }
 
 TEST(ProfileFigure, ShowsIntervalsAndWhatWasInterpolated) {
-    const auto figure = figure_of(
-        "fps,power_w,standard_error_w,source\n1,2,0.5,measured\n2,4,0.25,interpolated\n3,6,0.5,measured\n");
+    const auto figure =
+        figure_of("fps,power_w,standard_error_w,source\n1,2,0.5,measured\n2,4,0.25,interpolated\n3,6,0.5,measured\n");
     const auto& panel = figure.spec["concat"][0];
     EXPECT_EQ(panel["layer"].size(), 3U) << "line, intervals, points";
     const auto rows = panel["data"]["values"].get<std::string>();
