@@ -118,9 +118,7 @@ batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechani
 /// Writes the model and its Table I as files.
 void write_model(const batch::BatchFit& fit, const TextTable& table, const batch::BatchOptions& options) {
     const batch::WriteGate::Pass pass(*options.gate);
-    for (const auto* name : batch::table_names) {
-        write_file_atomically(options.out / name, cli::table_text(table, name));
-    }
+    for (const auto* name : batch::table_names) write_file_atomically(options.out / name, cli::table_text(table, name));
     write_batch_fit(fit, options.out);
 }
 

@@ -95,9 +95,8 @@ int fit(const cli::StageCall& call) {
         auto json = cli::to_json(fitted.model);
         if (reports) cli::add_errors_json(json, fitted.model, *reports);
         if (robust) cli::add_loss_json(json, fitted);
-        for (const auto phase : flight::all_phases) {
+        for (const auto phase : flight::all_phases)
             if (choices) cli::add_order_json(json, phase, (*choices)[phase]);
-        }
         cli::print(cli::json_text(json));
     } else if (call.output) {
         cli::print(to_text(table));

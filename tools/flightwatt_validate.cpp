@@ -58,9 +58,7 @@ std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call,
 std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
     const auto text = call.maybe<std::string>("covariate");
     if (!text) return {};
-    if (call.has("until")) {
-        throw UsageError("--covariate is for predictions before the flight: give it or --until");
-    }
+    if (call.has("until")) throw UsageError("--covariate is for predictions before the flight: give it or --until");
     if (*text == "all") return {mechanical::all_covariates.begin(), mechanical::all_covariates.end()};
     std::vector<std::string> names;
     boost::algorithm::split(names, *text, [](char c) { return c == ','; });
@@ -70,9 +68,7 @@ std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
         if (!covariate) {
             throw UsageError(fmt::format("--covariate {}: expected all, {}", name, mechanical::covariate_names()));
         }
-        if (std::ranges::find(covariates, *covariate) == covariates.end()) {
-            covariates.push_back(*covariate);
-        }
+        if (std::ranges::find(covariates, *covariate) == covariates.end()) covariates.push_back(*covariate);
     }
     return covariates;
 }

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include <boost/algorithm/string/replace.hpp>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace flightwatt {

@@ -31,8 +31,7 @@ struct CsvTable {
 
 enum class CsvHeader { present, absent };
 
-/// Throws InputError (file:line:column) for an empty file, a row of another length than the header, or an
-/// open quote.
+/// Throws InputError (file:line:column) for an empty file, a row of another length than the header, or an open quote.
 CsvTable read_csv(const std::filesystem::path& path, CsvHeader header = CsvHeader::present);
 CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header = CsvHeader::present);
 

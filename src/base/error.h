@@ -16,8 +16,7 @@ struct Location {
 /// "file:line:column", without the parts that are unknown.
 std::string to_string(const Location& where);
 
-/// An input that cannot be used (exit code 3). The message says what was found and expected; the hint how
-/// to mend it.
+/// An input that cannot be used (exit code 3). The message says what was found and expected; the hint how to mend it.
 class InputError : public std::runtime_error {
   public:
     InputError(Location where, const std::string& message, std::string hint = "");

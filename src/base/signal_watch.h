@@ -13,9 +13,8 @@ std::string signal_name(int signal);
 /// SIGINT, SIGTERM and SIGHUP, without those that the program was started to ignore (nohup).
 std::vector<int> ending_signals();
 
-/// While it lives, the ending signals do not end the program but wait here to be asked for: for programs of
-/// one thread that have something to put in order first. Throws OutputError where the system has no more
-/// files.
+/// While it lives, the ending signals do not end the program but wait here to be asked for: for programs of one thread
+/// that have something to put in order first. Throws OutputError where the system has no more files.
 class SignalWatch {
   public:
     SignalWatch();

@@ -57,6 +57,15 @@ std::string path_below(const std::string& path, std::string_view key) {
     return path.empty() ? std::string(key) : path + "." + std::string(key);
 }
 
+std::string describe(NumberRange range) {
+    if (std::isinf(range.low)) return fmt::format("at most {}", range.high);
+    if (std::isinf(range.high)) {
+        return range.low_excluded ? fmt::format("more than {}", range.low) : fmt::format("{} or more", range.low);
+    }
+    return range.low_excluded ? fmt::format("more than {} and at most {}", range.low, range.high)
+                              : fmt::format("{} to {}", range.low, range.high);
+}
+
 }  // namespace
 
 void record_asked_keys(std::set<AskedKey>* asked) { recorded_keys = asked; }
@@ -107,9 +116,8 @@ const toml::node& TomlTable::require(std::string_view key) const {
     if (const auto* node = find(key)) return *node;
     // A misspelt key is more probable than a forgotten one.
     std::vector<std::string> unknown;
-    for (const auto& name : keys()) {
+    for (const auto& name : keys())
         if (!asked_->contains(name)) unknown.push_back(name);
-    }
     const auto near = nearest_word(key, unknown);
     throw InputError(near.empty() ? where() : where(near), fmt::format("has no key '{}'", key),
                      near.empty() ? "" : fmt::format("'{}' is here; was that meant?", near));
@@ -213,10 +221,64 @@ void TomlTable::refuse_keys_except(std::initializer_list<std::string_view> known
 Location TomlTable::where() const { return location_of(file_, table_->source()); }
 
 Location TomlTable::where(std::string_view key) const {
-    for (const auto& [name, node] : *table_) {
+    for (const auto& [name, node] : *table_)
         if (name.str() == key) return location_of(file_, name.source());
-    }
     return where();
+}
+
+void require_in(NumberRange range, double value, std::string_view name, const Location& where, std::string_view hint) {
+    const bool above_low = range.low_excluded ? value > range.low : value >= range.low;
+    if (above_low && value <= range.high) return;
+    throw InputError(where, fmt::format("{} = {}, expected {}", name, value, describe(range)), std::string(hint));
+}
+
+double number_in(NumberRange range, const TomlTable& table, std::string_view key, std::string_view hint) {
+    const double value = table.number(key);
+    require_in(range, value, key, table.where(key), hint);
+    return value;
+}
+
+std::optional<double> optional_number_in(NumberRange range, const TomlTable& table, std::string_view key,
+                                         std::string_view hint) {
+    const auto value = table.optional_number(key);
+    if (value) require_in(range, *value, key, table.where(key), hint);
+    return value;
+}
+
+double number_in_or(NumberRange range, const TomlTable& table, std::string_view key, double otherwise) {
+    return optional_number_in(range, table, key).value_or(otherwise);
+}
+
+std::uint64_t count_in(const TomlTable& table, std::string_view key, std::uint64_t least) {
+    constexpr double largest_exact = 9007199254740992.0;  // 2^53: beyond, not every whole number is a double
+    const double value = table.number(key);
+    if (value != std::floor(value) || value > largest_exact) {
+        throw InputError(table.where(key), fmt::format("{} = {}, expected a whole number", key, value));
+    }
+    if (value < static_cast<double>(least)) {
+        throw InputError(table.where(key),
+                         fmt::format("{} = {}, expected a whole number, {} or more", key, value, least));
+    }
+    return static_cast<std::uint64_t>(value);
+}
+
+std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least, std::uint64_t otherwise) {
+    return table.has(key) ? count_in(table, key, least) : otherwise;
+}
+
+std::string format_line() { return fmt::format("format = {}\n", format_version); }
+
+void require_known_format(const TomlTable& root) {
+    const double format = root.optional_number("format").value_or(format_version);
+    if (format < 1.0 || format != std::floor(format)) {
+        throw InputError(root.where("format"), fmt::format("format = {} is no version of a format", format),
+                         fmt::format("expected a whole number from 1 to {}", format_version));
+    }
+    if (format <= format_version) return;
+    throw InputError(
+        root.where("format"),
+        fmt::format("format = {} is newer than this program, which reads formats up to {}", format, format_version),
+        "use a newer FlightWatt, or write the file with this one");
 }
 
 }  // namespace flightwatt

@@ -3,8 +3,10 @@
 #include "base/error.h"
 
 #include <compare>
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -86,5 +88,41 @@ TomlTable parse_toml(std::string_view text, const std::string& file);
 
 /// The word among `known` that `word` was probably meant to be; empty if none is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
+
+/// The numbers that a key may have.
+struct NumberRange {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool low_excluded = false;
+};
+
+constexpr NumberRange at_least(double low) { return {low, std::numeric_limits<double>::infinity(), false}; }
+constexpr NumberRange more_than(double low) { return {low, std::numeric_limits<double>::infinity(), true}; }
+constexpr NumberRange at_most(double high) { return {-std::numeric_limits<double>::infinity(), high, false}; }
+constexpr NumberRange between(double low, double high) { return {low, high, false}; }
+constexpr NumberRange more_than_up_to(double low, double high) { return {low, high, true}; }
+
+/// Throws InputError at `where`, for `name` = `value`, unless the value is in the range; NaN is not.
+void require_in(NumberRange range, double value, std::string_view name, const Location& where,
+                std::string_view hint = "");
+
+double number_in(NumberRange range, const TomlTable& table, std::string_view key, std::string_view hint = "");
+std::optional<double> optional_number_in(NumberRange range, const TomlTable& table, std::string_view key,
+                                         std::string_view hint = "");
+double number_in_or(NumberRange range, const TomlTable& table, std::string_view key, double otherwise);
+
+/// A whole number of at least `least`, and small enough that a double holds it exactly.
+std::uint64_t count_in(const TomlTable& table, std::string_view key, std::uint64_t least = 0);
+std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least, std::uint64_t otherwise);
+
+/// Version of the file formats that FlightWatt writes, and the newest that it reads.
+inline constexpr int format_version = 1;
+
+/// The line of TOML that says so: "format = 1\n".
+std::string format_line();
+
+/// Checks `format` of a file of ours, which may be absent (files of version 0.1 have none). Throws InputError
+/// for a format that is newer than this program, or is none.
+void require_known_format(const TomlTable& root);
 
 }  // namespace flightwatt

@@ -19,9 +19,8 @@ std::size_t utf8_length(std::string_view text) {
     else if (byte(0) >= 0xF0 && byte(0) < 0xF5)
         length = 4;
     if (length == 0 || length > text.size()) return 0;
-    for (std::size_t i = 1; i < length; ++i) {
+    for (std::size_t i = 1; i < length; ++i)
         if ((byte(i) & 0xC0) != 0x80) return 0;
-    }
     // Overlong forms, surrogates and what lies beyond Unicode.
     const bool bad = (byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xED && byte(1) > 0x9F) ||
                      (byte(0) == 0xF0 && byte(1) < 0x90) || (byte(0) == 0xF4 && byte(1) > 0x8F);

@@ -58,9 +58,7 @@ std::string_view unfinished_ending(std::string_view file) {
 bool is_left_over(std::string_view file, const std::set<std::string>& names) {
     const auto whole = file.substr(0, file.size() - unfinished_ending(file).size());
     for (const std::string_view ending : {record_ending, series_ending, phases_ending}) {
-        if (file.ends_with(ending)) {
-            return !names.contains(std::string(file.substr(0, file.size() - ending.size())));
-        }
+        if (file.ends_with(ending)) return !names.contains(std::string(file.substr(0, file.size() - ending.size())));
         if (whole.ends_with(ending)) return true;
     }
     return false;

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/format_version.h"
+#include "base/toml_reader.h"
 #include "batch/batch_files.h"
 
 #include <utility>
@@ -94,9 +94,7 @@ BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const m
 
 void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
     Json bands = Json::object();
-    for (const auto phase : flight::all_phases) {
-        bands[std::string(to_string(phase))] = band_json(fit.bands[phase]);
-    }
+    for (const auto phase : flight::all_phases) bands[std::string(to_string(phase))] = band_json(fit.bands[phase]);
     const Json json{{"format", format_version},
                     {"options", options_json(fit.options)},
                     {"exclude", fit.excluded},

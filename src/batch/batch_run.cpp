@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/fingerprint.h"
 #include "batch/batch_files.h"
-#include "batch/flight_record.h"
 #include "batch/write_guard.h"
 #include "flight/load_flight.h"
 #include "flight/phases_file.h"

@@ -54,11 +54,10 @@ class WriteGate {
     bool closed_ = false;
 };
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP end the program within a second, whatever its threads are
-/// computing: the gate is closed, `farewell` is called with the signal, in a thread of its own, and the exit
-/// code is 128 + the signal, as shells expect. A second signal ends it at once. Signals that the program was
-/// started to ignore (nohup) stay ignored. To be made before other threads are, which inherit that the
-/// signals are blocked.
+/// While it lives, SIGINT, SIGTERM and SIGHUP end the program within a second, whatever its threads are computing: the
+/// gate is closed, `farewell` is called with the signal, in a thread of its own, and the exit code is 128 + the signal,
+/// as shells expect. A second signal ends it at once. Signals that the program was started to ignore (nohup) stay
+/// ignored. To be made before other threads are, which inherit that the signals are blocked.
 class Interruption {
   public:
     Interruption(WriteGate& gate, std::function<void(int signal)> farewell);

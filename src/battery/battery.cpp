@@ -1,8 +1,7 @@
 #include "battery/battery.h"
 
-#include "base/format_version.h"
 #include "base/piecewise_linear.h"
-#include "base/toml_numbers.h"
+#include "base/toml_reader.h"
 #include "base/toml_text.h"
 
 #include <algorithm>

@@ -46,11 +46,10 @@ struct BatteryIdentification {
     std::vector<IdentifiedFlight> flights;
 };
 
-/// Identifies the Thévenin circuit of a battery from flights. The fullest flight, by its resting voltage,
-/// begins at 100 %; the others' initial charge is where their resting voltage lies on the curve. The curve
-/// has as many equal segments as Akaike's criterion prefers, counting samples by the autocorrelation
-/// of the residuals, and falls throughout. Throws NoAnswerError where the flights determine no such circuit,
-/// and as capacity_of does.
+/// Identifies the Thévenin circuit of a battery from flights. The fullest flight, by its resting voltage, begins at
+/// 100 %; the others' initial charge is where their resting voltage lies on the curve. The curve has as many equal
+/// segments as Akaike's criterion prefers, counting samples by the autocorrelation of the residuals, and falls
+/// throughout. Throws NoAnswerError where the flights determine no such circuit, and as capacity_of does.
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options);
 
 /// At every sample of a record; the state of charge may fall below 0 where the capacity is too small.

@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "compute/qos_range.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,9 +59,7 @@ double thin_plate(double squared_distance) {
 MatrixXd kernel(const MatrixXd& a, const MatrixXd& b) {
     MatrixXd matrix(a.rows(), b.rows());
     for (Index i = 0; i < a.rows(); ++i) {
-        for (Index j = 0; j < b.rows(); ++j) {
-            matrix(i, j) = thin_plate((a.row(i) - b.row(j)).squaredNorm());
-        }
+        for (Index j = 0; j < b.rows(); ++j) matrix(i, j) = thin_plate((a.row(i) - b.row(j)).squaredNorm());
     }
     return matrix;
 }

@@ -30,9 +30,8 @@ LeaveOneOut summarize_errors(std::string method, std::vector<double> error_w, co
 std::vector<double> interpolate_thin_plate(AxisScale scale, const QosPoints& known, const std::vector<double>& power_w,
                                            const QosPoints& at);
 
-/// Finds each node from the others, all by one solution (Rippa, Adv. Comput. Math. 11, 1999); std::nullopt if
-/// one node less does not determine the spline. Axes stay scaled by all nodes and by the points `at` that are
-/// to be found later.
+/// Finds each node from the others, all by one solution (Rippa, Adv. Comput. Math. 11, 1999); std::nullopt if one node
+/// less does not determine the spline. Axes stay scaled by all nodes and by the points `at` that are to be found later.
 std::optional<LeaveOneOut> leave_one_out(AxisScale scale, const QosPoints& known, const std::vector<double>& power_w,
                                          const QosPoints& at = {});
 

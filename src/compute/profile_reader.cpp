@@ -112,9 +112,7 @@ PowerProfile profile_with_header(CsvTable table, const ProfileNaming& naming) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto& row = table.rows[i];
         // Of a single sample there is no error.
-        if (error && !row.cells[*error].text.empty()) {
-            nodes[i].standard_error_w = cell_number(table, row, *error);
-        }
+        if (error && !row.cells[*error].text.empty()) nodes[i].standard_error_w = cell_number(table, row, *error);
         if (source) nodes[i].is_measured = row.cells[*source].text != interpolated;
     }
     return make_power_profile(table.file, parameters, std::move(nodes));

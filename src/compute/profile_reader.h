@@ -26,8 +26,7 @@ struct ProfileNaming {
 ///   - a CSV without header (powprofiler's and gnuplot's), names from `naming.columns`
 ///   - powprofiler layer 1, the recording of one configuration: constant power, its mean
 ///   - powprofiler .cfg with [combinations]: each node is the mean of a layer 1 file
-/// Throws InputError for a file that is none of these, names that do not fit, and what make_power_profile
-/// refuses.
+/// Throws InputError for a file that is none of these, names that do not fit, and what make_power_profile refuses.
 PowerProfile read_power_profile(const std::filesystem::path& path, const ProfileNaming& naming = {});
 
 }  // namespace flightwatt::compute

@@ -1,8 +1,7 @@
 #include "compute/profile_specification.h"
 
 #include "base/atomic_file.h"
-#include "base/format_version.h"
-#include "base/toml_numbers.h"
+#include "base/toml_reader.h"
 #include "compute/qos_range.h"
 
 #include <algorithm>

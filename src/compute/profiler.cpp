@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "compute/profile_interpolation.h"
 #include "compute/qos_range.h"
 #include "compute/sensors/open_sampler.h"
 
@@ -74,8 +73,7 @@ void do_run(ProfileRun& run, const ProfileSpecification& specification, const Pr
     write_layer1(run, options.folder);
 }
 
-/// A meter takes its time to start, which is none of the first run's. Throws NoAnswerError for one that says
-/// nothing.
+/// A meter takes its time to start, which is none of the first run's. Throws NoAnswerError for one that says nothing.
 void await_meter(PowerSampler& sampler, const ProfilerOptions& options) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::seconds patience(30);
@@ -181,9 +179,8 @@ ProfileOutcome profile(const ProfileSpecification& specification, const Profiler
     do_runs(outcome.runs, specification, options, sampler);
     if (specification.idle_s > 0.0) outcome.idle = idle_of(outcome.runs);
     std::vector<PowerTrace> traces;
-    for (const auto& run : outcome.runs) {
+    for (const auto& run : outcome.runs)
         if (run.status == RunStatus::ok) traces.push_back(run.trace);
-    }
     outcome.jitter = jitter_of(traces);
     for (std::size_t i = 0; i < specification.components.size(); ++i) {
         outcome.components.push_back(estimate_component(specification.components[i], i, outcome.runs));

@@ -39,8 +39,7 @@ enum class AxisScale {
     rank    ///< by their place among the values that occur: fits ranges that double
 };
 
-/// Points in the unit cube, each axis scaled by the values that occur on it. An
-/// axis with one value is 0.
+/// Points in the unit cube, each axis scaled by the values that occur on it. An axis with one value is 0.
 QosPoints unit_points(const QosPoints& points, AxisScale scale);
 
 /// `count` of the points, as indices in the order chosen: first the corners of their range, then always the

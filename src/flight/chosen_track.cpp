@@ -1,7 +1,6 @@
 #include "flight/chosen_track.h"
 
 #include "base/error.h"
-#include "flight/flight_series.h"
 #include "flight/sources/power_source.h"
 
 #include <algorithm>
@@ -26,9 +25,8 @@ Track first_that_varies(const FlightSeries& series, std::string_view name, const
 }
 
 Track first_of(const FlightSeries& series, std::string_view name) {
-    for (const auto& track : series.tracks) {
+    for (const auto& track : series.tracks)
         if (track.name == name && !track.empty()) return track;
-    }
     return {};
 }
 

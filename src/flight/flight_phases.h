@@ -22,9 +22,8 @@ constexpr std::string_view to_string(Phase phase) {
 
 /// The phase of that name; std::nullopt if there is none.
 constexpr std::optional<Phase> phase_from(std::string_view name) {
-    for (const auto phase : all_phases) {
+    for (const auto phase : all_phases)
         if (to_string(phase) == name) return phase;
-    }
     return std::nullopt;
 }
 

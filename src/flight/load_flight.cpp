@@ -29,9 +29,7 @@ std::string census(const FlightFile& file) {
 
 telemetry::TelemetryLog read_log(const FlightFile& file) {
     std::optional<telemetry::LogConfiguration> configuration;
-    if (const auto& text = file.log_text()) {
-        configuration = telemetry::parse_log_configuration(*text, file.log_file());
-    }
+    if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
     return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
 }
 

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <optional>
-#include <string>
 
 #include <fmt/format.h>
 

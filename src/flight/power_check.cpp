@@ -4,7 +4,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/chosen_track.h"
-#include "flight/flight_series.h"
 #include "flight/phase_statistics.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/sources/power_source.h"
@@ -82,8 +81,7 @@ std::vector<std::size_t> resting_samples(const FlightSeries& series, const Power
     return indices;
 }
 
-/// The autopilot switches loads on the ground too (a burst after landing): the middle half of the samples is
-/// idle.
+/// The autopilot switches loads on the ground too (a burst after landing): the middle half of the samples is idle.
 std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, const std::vector<std::size_t>& resting) {
     constexpr std::size_t enough = 10;
     if (current_a.empty() || resting.size() < enough) return std::nullopt;
@@ -106,8 +104,7 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, co
     return idle;
 }
 
-/// How far a rising counter ran back in flight, over what it counted there. On the ground a pack may be
-/// changed.
+/// How far a rising counter ran back in flight, over what it counted there. On the ground a pack may be changed.
 double counter_return(const std::vector<double>& counter, const std::vector<SampleRange>& flown) {
     if (counter.empty()) return 0.0;
     double returned = 0.0;
@@ -121,8 +118,7 @@ double counter_return(const std::vector<double>& counter, const std::vector<Samp
     return counted > 0.0 ? returned / counted : returned > 0.0 ? 1.0 : 0.0;
 }
 
-/// Median of |power - voltage * current| over the product, where that is large enough; 0 if it cannot be
-/// compared.
+/// Median of |power - voltage * current| over the product, where that is large enough; 0 if it cannot be compared.
 double power_difference(const PowerRecord& record) {
     if (record.voltage_v.empty() || record.current_a.empty()) return 0.0;
     std::vector<double> differences;
@@ -155,9 +151,8 @@ double loaded_rest_part(const PowerRecord& record, const std::vector<std::size_t
 /// Of the samples' power, whose mean has the same sign.
 double power_sum_in_flight_w(const PowerRecord& record) {
     double sum_w = 0.0;
-    for (const auto& [first, last] : record.flown) {
+    for (const auto& [first, last] : record.flown)
         for (auto i = first; i < last; ++i) sum_w += record.power_w[i];
-    }
     return sum_w;
 }
 

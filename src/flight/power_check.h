@@ -33,12 +33,11 @@ struct PowerReport {
     std::vector<std::string> power_faults;         ///< what cannot be: such a record is not fitted
 };
 
-/// Checks a power record. The closure is over the sorties, lift-off to touchdown (that of a phase stands in
-/// its statistics); the idle current over the rests with the motor off. Power faults are: more than 5 A in a tenth
-/// of the samples at rest with the motor off; power that is not voltage times current (more than 10 % apart,
-/// median, above 1 W); a counter that runs back in flight by more than 5 % of what it counted; an integral
-/// more than 10 % away from the counter; power that is negative on average, or does not change at all, in
-/// flight.
+/// Checks a power record. The closure is over the sorties, lift-off to touchdown (that of a phase stands in its
+/// statistics); the idle current over the rests with the motor off. Power faults are: more than 5 A in a tenth of the
+/// samples at rest with the motor off; power that is not voltage times current (more than 10 % apart, median, above
+/// 1 W); a counter that runs back in flight by more than 5 % of what it counted; an integral more than 10 % away from
+/// the counter; power that is negative on average, or does not change at all, in flight.
 PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 

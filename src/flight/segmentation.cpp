@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "flight/chosen_track.h"
-#include "flight/flight_series.h"
 #include "flight/segmentation/flight_grid.h"
 
 #include <algorithm>
@@ -177,9 +176,7 @@ SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const H
     SortieEdges edges;
     std::size_t lift_off = up;
     while (lift_off > 0 && height[lift_off] > ground_level) --lift_off;
-    if (height[lift_off] <= ground_level) {
-        edges.lift_off_s = crossing_s(grid, begin, height, lift_off, ground_level);
-    }
+    if (height[lift_off] <= ground_level) edges.lift_off_s = crossing_s(grid, begin, height, lift_off, ground_level);
     std::size_t touchdown = down;
     while (touchdown + 1 < count && height[touchdown] > ground_level) ++touchdown;
     if (height[touchdown] <= ground_level) {

@@ -85,8 +85,7 @@ std::size_t place_of(const Track& track) {
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), track.name) - names.begin());
 }
 
-/// Every candidate of every track that the sender's messages tell, in the order of track_names() and of
-/// preference.
+/// Every candidate of every track that the sender's messages tell, in the order of track_names() and of preference.
 std::vector<Track> logged_tracks(const telemetry::SenderLog& sender, bool definitions_assumed) {
     std::vector<Track> tracks;
     for (const auto& [name, message, field, quantity, merge] : field_tracks()) {

@@ -14,8 +14,7 @@ std::vector<telemetry::MessageRequest> flight_messages();
 /// The senders of telemetry, in the order of the log: those that sent more than single events.
 std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log);
 
-/// What the log tells of one aircraft; of one that sent nothing, no tracks. Judges nothing: see
-/// require_power.
+/// What the log tells of one aircraft; of one that sent nothing, no tracks. Judges nothing: see require_power.
 FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id);
 
 }  // namespace flightwatt::flight

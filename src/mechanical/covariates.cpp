@@ -52,9 +52,8 @@ std::optional<double> resting_voltage_v(const flight::FlightSeries& series, doub
 std::string_view to_string(Covariate covariate) { return covariate_texts[static_cast<std::size_t>(covariate)]; }
 
 std::optional<Covariate> covariate_from(std::string_view name) {
-    for (const auto covariate : all_covariates) {
+    for (const auto covariate : all_covariates)
         if (to_string(covariate) == name) return covariate;
-    }
     return std::nullopt;
 }
 

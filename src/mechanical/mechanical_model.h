@@ -63,8 +63,7 @@ struct PhaseSpread {
     double counted_flights = 0.0;              ///< 1 / sum of squared weights: equal flights worth as much
 };
 
-/// How the flights of one phase differ from the model and change meanwhile: what a prediction's interval
-/// needs.
+/// How the flights of one phase differ from the model and change meanwhile: what a prediction's interval needs.
 struct LevelSpread {
     std::size_t flights = 0;     ///< 2 or more: what the standard deviation between them rests on
     double level_sd_w = 0.0;     ///< of the flights' mean powers

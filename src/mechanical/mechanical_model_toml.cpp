@@ -1,5 +1,4 @@
-#include "base/format_version.h"
-#include "base/toml_numbers.h"
+#include "base/toml_reader.h"
 #include "base/toml_text.h"
 #include "mechanical/mechanical_model.h"
 
@@ -188,9 +187,7 @@ FlightContribution read_flight(const TomlTable& table) {
     FlightContribution flight;
     flight.flight = table.string("flight");
     for (const auto phase : flight::all_phases) {
-        if (const auto part = table.optional_table(to_string(phase))) {
-            flight.phases[phase] = read_contribution(*part);
-        }
+        if (const auto part = table.optional_table(to_string(phase))) flight.phases[phase] = read_contribution(*part);
     }
     table.refuse_unknown_keys();
     return flight;

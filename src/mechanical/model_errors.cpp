@@ -57,9 +57,7 @@ std::optional<PhaseSpread> flight_envelope(const PhaseFit& fit, std::span<const 
             mean += weights[k] * powers.back();
         }
         double square_sum = 0.0;
-        for (std::size_t k = 0; k < powers.size(); ++k) {
-            square_sum += counts[k] * std::pow(powers[k] - mean, 2);
-        }
+        for (std::size_t k = 0; k < powers.size(); ++k) square_sum += counts[k] * std::pow(powers[k] - mean, 2);
         const auto [low, high] = std::ranges::minmax(powers);
         spread.low_w.push_back(low);
         spread.high_w.push_back(high);

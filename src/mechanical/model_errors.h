@@ -51,11 +51,10 @@ struct CurveBand {
 /// The bands of a fit that was analysed, at 101 times a phase.
 flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis>& analyses);
 
-/// Every phase's curve with what surrounds it, as CSV: two different questions side by side. Columns: phase,
-/// tau, time_s, power_w; standard_error_w, low_95_w, high_95_w: the weighted mean of these flights, given
-/// their noise; flights_low_w, flights_high_w, flights_sd_w: the flights' own curves (the paper's grey band);
-/// population_low_95_w, population_high_95_w: the mean of all flights like these. The last five are empty
-/// where a single flight counts.
+/// Every phase's curve with what surrounds it, as CSV: two different questions side by side. Columns: phase, tau,
+/// time_s, power_w; standard_error_w, low_95_w, high_95_w: the weighted mean of these flights, given their noise;
+/// flights_low_w, flights_high_w, flights_sd_w: the flights' own curves (the paper's grey band); population_low_95_w,
+/// population_high_95_w: the mean of all flights like these. The last five are empty where a single flight counts.
 std::string curves_csv(const ModelFit& fit, const flight::PerPhase<PhaseErrorReport>& reports);
 
 }  // namespace flightwatt::mechanical

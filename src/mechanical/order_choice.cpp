@@ -117,9 +117,7 @@ OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flig
     for (auto& error : std::views::reverse(choice.errors)) {
         if (!error.rms_w) continue;
         compare(error, best_w2);
-        if (error.order < choice.order && *error.behind_best_w2 <= *error.standard_error_w2) {
-            choice.order = error.order;
-        }
+        if (error.order < choice.order && *error.behind_best_w2 <= *error.standard_error_w2) choice.order = error.order;
     }
     return choice;
 }

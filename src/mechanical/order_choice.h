@@ -38,11 +38,10 @@ struct OrderChoice {
 };
 
 /// Chooses a phase's order by cross-validation. Several flights: each is held back in turn and its samples are
-/// predicted by the weighted mean curve of the others. One flight: the phase is cut in up to 20 blocks of
-/// consecutive samples, since neighbours in time know each other's noise, and every fifth block is held back
-/// in turn. Chosen is the lowest order whose mean square error is within one standard error (of the
-/// difference, fold by fold) of the least. options.order is not read; weights by hand count as uniform.
-/// Throws NoAnswerError if no order can be fitted.
+/// predicted by the weighted mean curve of the others. One flight: the phase is cut in up to 20 blocks of consecutive
+/// samples, since neighbours in time know each other's noise, and every fifth block is held back in turn. Chosen is the
+/// lowest order whose mean square error is within one standard error (of the difference, fold by fold) of the least.
+/// options.order is not read; weights by hand count as uniform. Throws NoAnswerError if no order can be fitted.
 OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options,
                          const WeightOptions& weights);
 

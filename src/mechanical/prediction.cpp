@@ -43,9 +43,7 @@ LawLevel level_by_law(const PhaseModel& model, const FlightProgress& flown, Leve
         }
         return level_at(*model.airspeed_law, *flown.airspeed_cubed_m3_per_s3);
     }
-    if (!model.level_law) {
-        throw NoAnswerError("the model has no level law: it was fitted without --level-covariate");
-    }
+    if (!model.level_law) throw NoAnswerError("the model has no level law: it was fitted without --level-covariate");
     const auto covariate = model.level_law->covariate;
     if (const auto& value = flown.covariates[covariate]) return level_at(*model.level_law, *value);
     throw NoAnswerError(

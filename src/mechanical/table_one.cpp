@@ -3,7 +3,6 @@
 #include "base/number.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/mechanical_model.h"
 
 #include <algorithm>
 #include <string_view>

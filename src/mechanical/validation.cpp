@@ -155,9 +155,8 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     std::vector<ValidatedFlight> validated;
     for (const auto& excluded : flights) {
         std::vector<FlightSamples> others;
-        for (const auto& other : flights) {
+        for (const auto& other : flights)
             if (&other != &excluded) others.push_back(other.samples);
-        }
         validated.push_back(validate_flight(excluded, others, options, covariates));
     }
     return validated;

@@ -39,9 +39,8 @@ struct ValidatedFlight {
 ///   airspeed_cubed   cruise: the LevelLaw of airspeed_cubed at the airspeed that was flown, as if it had been
 ///                    known; other phases as constant_mean; only if the flight and two others measured airspeed
 ///   by_NAME          cruise: power_by_covariate, for each of `covariates`; other phases as constant_mean
-/// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without
-/// airspeed_cubed and covariates) say of the rest of the cruise is added to what was measured until then, and
-/// beside them
+/// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without airspeed_cubed
+/// and covariates) say of the rest of the cruise is added to what was measured until then, and beside them
 ///   in_flight            predict_rest by the curve
 ///   in_flight_constant   predict_rest by the curve's mean
 ///   in_flight_airspeed   predict_rest by the airspeed so far
@@ -63,8 +62,7 @@ struct ModelScore {
 std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, const std::string& model,
                                    std::optional<flight::Phase> phase);
 
-/// A flight's measured and predicted energy in a phase, or in the whole; std::nullopt where it was not
-/// predicted.
+/// A flight's measured and predicted energy in a phase, or in the whole; std::nullopt where it was not predicted.
 struct PredictedEnergy {
     double measured_wh = 0.0;
     EnergyEstimate estimate;

@@ -1,7 +1,6 @@
 #include "mission/disturbance.h"
 
-#include "base/format_version.h"
-#include "base/toml_numbers.h"
+#include "base/toml_reader.h"
 #include "mission/file/schedule_toml.h"
 
 #include <array>

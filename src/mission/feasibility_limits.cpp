@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
@@ -63,8 +62,7 @@ FeasibilityLimit limit_at(double value, const Mission& at, const Mission& beyond
     return most;
 }
 
-/// Whether the schedule fits into a cruise; what else is wrong with a mission was seen when it was first
-/// read.
+/// Whether the schedule fits into a cruise; what else is wrong with a mission was seen when it was first read.
 std::optional<Mission> if_it_fits(const MissionOfCruise& mission_of, double cruise_s) {
     try {
         return with_minimum_energy_schedule(mission_of(cruise_s));

@@ -1,7 +1,6 @@
 #include "mission/mission_summary.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include <fmt/format.h>

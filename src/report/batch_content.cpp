@@ -1,7 +1,6 @@
 #include "report/batch_content.h"
 
 #include "batch/batch_files.h"
-#include "batch/flight_record.h"
 
 #include <algorithm>
 #include <iterator>

@@ -27,9 +27,8 @@ struct ReportBattery {
     std::string no_answer;                             ///< why it was not identified
 };
 
-/// Identifies the battery from the flights that have measured current and voltage: from `most` of them,
-/// spread evenly, where there are more (the work grows with their square). Throws UsageError as
-/// identify_battery.
+/// Identifies the battery from the flights that have measured current and voltage: from `most` of them, spread evenly,
+/// where there are more (the work grows with their square). Throws UsageError as identify_battery.
 ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
                                   std::size_t most);
 

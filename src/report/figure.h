@@ -29,9 +29,8 @@ struct Figure {               // NOLINT(bugprone-exception-escape): of nlohmann'
 /// The figure with the start of its specification: schema and description.
 Figure new_figure(std::string id, std::string caption, std::string description);
 
-/// A table of a figure as Vega-Lite's inline CSV, a third of the size of JSON's rows. Columns of numbers come
-/// first. What is not finite becomes an empty cell (a gap in a line). Six digits are more than a screen
-/// shows.
+/// A table of a figure as Vega-Lite's inline CSV, a third of the size of JSON's rows. Columns of numbers come first.
+/// What is not finite becomes an empty cell (a gap in a line). Six digits are more than a screen shows.
 class FigureData {
   public:
     FigureData(std::initializer_list<std::string> numbers, std::initializer_list<std::string> texts = {});

@@ -105,9 +105,8 @@ std::string edges_html(const ReportFlight& flight) {
 
 double seconds_in_air(const ReportFlight& flight) {
     double time_s = 0.0;
-    for (const auto& sortie : flight.phases.sorties) {
+    for (const auto& sortie : flight.phases.sorties)
         for (const auto& span : sortie.phases) time_s += span.duration_s();
-    }
     return time_s;
 }
 
@@ -118,9 +117,7 @@ void add_flight(Section& section, const ReportFlight& flight, const std::optiona
         fmt::format("<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{:.0f} s in the air</span></summary>\n",
                     id, is_open ? " open" : "", escaped(flight.name), seconds_in_air(flight));
     section.html += paragraph("From " + flight.log, "soft");
-    if (!flight.warnings.empty()) {
-        section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
-    }
+    if (!flight.warnings.empty()) section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
     add_figure(section, flight_figure(flight, model, id + "-power"));
     section.html += edges_html(flight);
     if (auto track = track_figure(flight, id + "-track")) add_figure(section, std::move(*track));

@@ -18,9 +18,7 @@ bool is_number_or_dash(std::string_view cell) {
 std::vector<bool> text_columns(const TextTable& table) {
     std::vector<bool> is_text(table.header.size(), false);
     for (const auto& row : table.rows) {
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            is_text[c] = is_text[c] || !is_number_or_dash(row[c]);
-        }
+        for (std::size_t c = 0; c < row.size(); ++c) is_text[c] = is_text[c] || !is_number_or_dash(row[c]);
     }
     return is_text;
 }

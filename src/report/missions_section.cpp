@@ -65,9 +65,8 @@ TextTable ranking_of(std::vector<mission::MissionSummary> summaries) {
         {"utility", "utility"},
         {"probability_below_reserve", "chance of landing below the reserve"}};
     auto table = comparison_table(ranked(std::move(summaries)));
-    for (auto& name : table.header) {
+    for (auto& name : table.header)
         if (const auto word = words.find(name); word != words.end()) name = word->second;
-    }
     return table;
 }
 
@@ -199,9 +198,8 @@ Section plan_section(Missions missions) {
         "bound is proven: no schedule in slots that keeps the reserve has more.");
     section.html += table_html(plans_table(missions), {"Planned missions", false, {}});
     std::size_t number = 0;
-    for (const auto& simulated : missions) {
+    for (const auto& simulated : missions)
         if (simulated.planned) add_plan(section, simulated, missions, ++number);
-    }
     return section;
 }
 

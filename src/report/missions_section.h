@@ -14,9 +14,8 @@ namespace flightwatt::report {
 /// or more. `missions` is not empty.
 std::vector<Section> mission_sections(std::span<const SimulatedMission> missions, const PublishedFigures& published);
 
-/// The missions whose schedules were planned: their utility and what is proven of it, beside the other
-/// missions with the same flight, software and battery, and what runs when. Without figures where none was
-/// planned.
+/// The missions whose schedules were planned: their utility and what is proven of it, beside the other missions with
+/// the same flight, software and battery, and what runs when. Without figures where none was planned.
 Section plan_section(std::span<const SimulatedMission> missions);
 
 }  // namespace flightwatt::report

@@ -23,9 +23,8 @@ struct SimulatedMission {
     std::optional<PlannedSchedule> planned = std::nullopt;  ///< of a mission that gave no schedule
 };
 
-/// Runs the missions, planned first where they are yet to be, with as many rows a curve as a screen shows.
-/// The curve of a mission whose power the battery cannot deliver ends there. The report flies missions
-/// nowhere else.
+/// Runs the missions, planned first where they are yet to be, with as many rows a curve as a screen shows. The curve of
+/// a mission whose power the battery cannot deliver ends there. The report flies missions nowhere else.
 std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::AnyMission>& missions);
 
 /// What a configuration runs: "detection fps 10, encryption key_bits 240", or "nothing".

@@ -14,8 +14,7 @@ namespace flightwatt::synthetic {
 /// A float as Paparazzi's OCaml server prints what came over the air: "235.", "-0.", "-3e-06", "12.421459".
 std::string ocaml_float(double value);
 
-/// One line of a .data file: "335.149 20 ENERGY 69 11.704956 ...\n". A message without fields keeps a
-/// trailing blank.
+/// One line of a .data file: "335.149 20 ENERGY 69 11.704956 ...\n". A message without fields keeps a trailing blank.
 std::string data_line(double time_s, std::string_view sender, std::string_view message,
                       const std::vector<std::string>& fields);
 
@@ -28,8 +27,7 @@ struct LogDocument {
     std::vector<telemetry::MessageDefinition> telemetry;
 };
 
-/// A well-formed .log: configuration, the aircraft with its flight plan and current sensor, message
-/// definitions.
+/// A well-formed .log: configuration, the aircraft with its flight plan and current sensor, message definitions.
 std::string to_log_xml(const LogDocument& document);
 
 /// Everything that a message can tell at one moment.

@@ -53,8 +53,7 @@ void read_protocol(const pugi::xml_node& protocol, LogConfiguration& configurati
     }
 }
 
-/// The end of the tag that opens at `begin` (at its '>'), passing over quoted values and their escaped
-/// quotes.
+/// The end of the tag that opens at `begin` (at its '>'), passing over quoted values and their escaped quotes.
 std::size_t tag_end(std::string_view text, std::size_t begin) {
     char quote = '\0';
     for (std::size_t i = begin; i < text.size(); ++i) {

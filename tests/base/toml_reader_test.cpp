@@ -1,6 +1,9 @@
 #include "base/toml_reader.h"
 
 #include "base/toml_text.h"
+#include "helpers/rejected.h"
+
+#include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -71,6 +74,68 @@ TEST(TomlText, ReplacesWhatIsNotUtf8) {
 TEST(NearestWord, FindsMisspellingsAndNothingElse) {
     EXPECT_EQ(nearest_word("landng", {"takeoff", "cruise", "landing"}), "landing");
     EXPECT_EQ(nearest_word("elephant", {"takeoff", "cruise", "landing"}), "");
+}
+
+const auto numbers = parse_toml("minus = -1\nzero = 0\nhalf = 0.5\nthree = 3\nhuge = 1e300\n", "m.toml");
+
+template <typename Read>
+std::string message(const Read& read) {
+    return test::rejected(read);
+}
+
+TEST(TomlNumbers, ReadsWhatIsInTheRange) {
+    EXPECT_EQ(number_in(at_least(0.0), numbers, "zero"), 0.0);
+    EXPECT_EQ(number_in(more_than(0.0), numbers, "half"), 0.5);
+    EXPECT_EQ(number_in(between(-1.0, 0.0), numbers, "minus"), -1.0);
+    EXPECT_EQ(number_in(more_than_up_to(0.0, 3.0), numbers, "three"), 3.0);
+    EXPECT_EQ(optional_number_in(at_least(0.0), numbers, "none"), std::nullopt);
+    EXPECT_EQ(number_in_or(at_least(0.0), numbers, "none", 7.0), 7.0);
+    EXPECT_EQ(number_in_or(at_least(0.0), numbers, "three", 7.0), 3.0);
+    EXPECT_EQ(count_in(numbers, "three", 3), 3U);
+    EXPECT_EQ(count_in_or(numbers, "none", 2, 5), 5U);
+}
+
+TEST(TomlNumbers, SaysWhatIsExpectedWhereTheKeyStands) {
+    EXPECT_EQ(message([] { number_in(at_least(0.0), numbers, "minus"); }),
+              "m.toml:1:1: minus = -1, expected 0 or more");
+    EXPECT_EQ(message([] { number_in(more_than(0.0), numbers, "zero", "as of a scale"); }),
+              "m.toml:2:1: zero = 0, expected more than 0; as of a scale");
+    EXPECT_EQ(message([] { optional_number_in(between(0.0, 1.0), numbers, "three"); }),
+              "m.toml:4:1: three = 3, expected 0 to 1");
+    EXPECT_EQ(message([] { number_in_or(more_than_up_to(0.0, 1.0), numbers, "zero", 1.0); }),
+              "m.toml:2:1: zero = 0, expected more than 0 and at most 1");
+    EXPECT_EQ(message([] { number_in(at_most(1.0), numbers, "three"); }), "m.toml:4:1: three = 3, expected at most 1");
+    EXPECT_EQ(message([] { count_in(numbers, "half"); }), "m.toml:3:1: half = 0.5, expected a whole number");
+    EXPECT_EQ(message([] { count_in(numbers, "minus"); }),
+              "m.toml:1:1: minus = -1, expected a whole number, 0 or more");
+    EXPECT_EQ(message([] { count_in_or(numbers, "three", 4, 9); }),
+              "m.toml:4:1: three = 3, expected a whole number, 4 or more");
+    EXPECT_EQ(message([] { count_in(numbers, "huge"); }), "m.toml:5:1: huge = 1e+300, expected a whole number");
+}
+
+TEST(TomlNumbers, NotANumberIsInNoRange) {
+    EXPECT_EQ(message([] { require_in(at_least(0.0), std::nan(""), "x", {"f"}); }), "f: x = nan, expected 0 or more");
+}
+
+std::string refusal(const std::string& text) {
+    return test::rejected([&] { require_known_format(parse_toml(text, "m.toml")); });
+}
+
+TEST(FormatVersion, IsOptionalAndKnown) {
+    EXPECT_EQ(refusal(""), "");
+    EXPECT_EQ(refusal(format_line()), "");
+    const auto root = parse_toml(format_line(), "m.toml");
+    require_known_format(root);
+    EXPECT_NO_THROW(root.refuse_unknown_keys());
+}
+
+TEST(FormatVersion, RefusesNewerOnesAndNonsense) {
+    EXPECT_EQ(refusal("format = 2"),
+              "m.toml:1:1: format = 2 is newer than this program, which reads formats up to 1; use a newer "
+              "FlightWatt, or write the file with this one");
+    EXPECT_NE(refusal("format = 0").find("expected a whole number from 1 to 1"), std::string::npos);
+    EXPECT_NE(refusal("format = 0.5").find("is no version"), std::string::npos);
+    EXPECT_NE(refusal("format = \"1\"").find("m.toml:1:1"), std::string::npos);
 }
 
 }  // namespace

@@ -27,10 +27,9 @@ struct CircuitFit {
     double rms_v = 0.0;
 };
 
-/// The fit of least squares with these knots. Given the time constant all else is linear (variable
-/// projection: Golub and Pereyra 1973), so that one alone is searched for: on a grid from two usual intervals
-/// to a quarter of the longest record, then by Brent's method. Throws NoAnswerError where the records do not
-/// determine the curve or the resistance.
+/// The fit of least squares with these knots. Given the time constant all else is linear (variable projection: Golub
+/// and Pereyra 1973), so that one alone is searched for: on a grid from two usual intervals to a quarter of the longest
+/// record, then by Brent's method. Throws NoAnswerError where the records do not determine the curve or the resistance.
 CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector<double>& knots_ah);
 
 /// Derivatives of the fitted voltages, one row a used sample: by the voltages at the knots, resistance,

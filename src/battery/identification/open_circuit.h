@@ -9,10 +9,9 @@
 
 namespace flightwatt::battery {
 
-/// The open-circuit voltage that lithium-polymer packs are commonly said to have, a cell: 4.20 V full, 3.84 V
-/// half, 3.27 V empty (the voltage chart that sellers of packs print, e.g.
-/// blog.ampow.com/lipo-voltage-chart). Packs differ from it by some 30 mV; it stands in only for what no
-/// flight has shown.
+/// The open-circuit voltage that lithium-polymer packs are commonly said to have, a cell: 4.20 V full, 3.84 V half,
+/// 3.27 V empty (the voltage chart that sellers of packs print, e.g. blog.ampow.com/lipo-voltage-chart). Packs differ
+/// from it by some 30 mV; it stands in only for what no flight has shown.
 inline constexpr double lipo_chart_uncertainty_v = 0.03;
 
 /// [V] a cell at a state of charge, 0 to 100.
@@ -39,9 +38,8 @@ struct Capacity {
     std::optional<Interval> interval_ah;  ///< of a chart's: the chart 30 mV a cell off
 };
 
-/// The capacity of a battery whose open-circuit voltage was followed from full down. Throws UsageError if the
-/// given one is less than a flight drew, and NoAnswerError if none is given and the flights hardly drew
-/// anything.
+/// The capacity of a battery whose open-circuit voltage was followed from full down. Throws UsageError if the given one
+/// is less than a flight drew, and NoAnswerError if none is given and the flights hardly drew anything.
 Capacity capacity_of(const CircuitFit& fit, int cells, std::optional<double> given_ah);
 
 /// The fitted curve over state of charge, full at its first knot; below its last one it goes on in parallel

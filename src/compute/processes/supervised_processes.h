@@ -19,11 +19,10 @@ struct EndedCommand {
 /// "exit code 3", "killed by SIGSEGV", "cannot be started: No such file or directory".
 std::string to_string(const EndedCommand& ended);
 
-/// Commands (no shell) that run at the same time, each in a process group of its own, below a supervisor: a
-/// process of ours that adopts whatever they fork, also what takes itself away with setsid(). When this
-/// object goes, or the program ends in whatever way, the supervisor ends all of them: SIGTERM first, SIGKILL
-/// after the patience. To be used by programs of one thread. Throws OutputError if the system has no more
-/// processes or files.
+/// Commands (no shell) that run at the same time, each in a process group of its own, below a supervisor: a process of
+/// ours that adopts whatever they fork, also what takes itself away with setsid(). When this object goes, or the
+/// program ends in whatever way, the supervisor ends all of them: SIGTERM first, SIGKILL after the patience. To be used
+/// by programs of one thread. Throws OutputError if the system has no more processes or files.
 class SupervisedProcesses {
   public:
     SupervisedProcesses(const std::vector<std::vector<std::string>>& commands, const SupervisionOptions& options);

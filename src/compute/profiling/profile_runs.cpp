@@ -161,9 +161,8 @@ void write_runs(const std::vector<ProfileRun>& runs, const std::filesystem::path
     CsvWriter csv({"component", "configuration", "repeat", "status", "note", "samples", "duration_s", "power_w",
                    "standard_error_w", "energy_j", "interval_mean_s", "interval_sd_s", "interval_max_s", "layer1",
                    "fingerprint"});
-    for (const auto& run : runs) {
+    for (const auto& run : runs)
         if (run.is_done) add_row(csv, run);
-    }
     write_file_atomically(folder / runs_name, csv.text());
 }
 

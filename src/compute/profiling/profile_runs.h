@@ -38,9 +38,8 @@ struct ProfileRun {
 std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
                                      const std::vector<std::vector<std::size_t>>& chosen);
 
-/// Marks the runs that an earlier call did with the same fingerprint, status ok, as done, with what they
-/// measured. Others, also those that failed, are to be done again. A runs.csv that cannot be read counts as
-/// none.
+/// Marks the runs that an earlier call did with the same fingerprint, status ok, as done, with what they measured.
+/// Others, also those that failed, are to be done again. A runs.csv that cannot be read counts as none.
 void recall_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& folder);
 
 /// The files of a run: its layer 1 if it has power.

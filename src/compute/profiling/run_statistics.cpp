@@ -12,9 +12,7 @@ namespace {
 
 std::vector<double> intervals_of(const PowerTrace& run) {
     std::vector<double> intervals_s;
-    for (std::size_t i = 1; i < run.time_s.size(); ++i) {
-        intervals_s.push_back(run.time_s[i] - run.time_s[i - 1]);
-    }
+    for (std::size_t i = 1; i < run.time_s.size(); ++i) intervals_s.push_back(run.time_s[i] - run.time_s[i - 1]);
     return intervals_s;
 }
 
@@ -85,9 +83,7 @@ PowerEstimate combine_repeats(const std::vector<PowerEstimate>& repeats) {
         own_squares += repeat.standard_error_w * repeat.standard_error_w;
     }
     double squares = 0.0;
-    for (const auto& repeat : repeats) {
-        squares += (repeat.power_w - all.power_w) * (repeat.power_w - all.power_w);
-    }
+    for (const auto& repeat : repeats) squares += (repeat.power_w - all.power_w) * (repeat.power_w - all.power_w);
     const double between = repeats.size() < 2 ? 0.0 : std::sqrt(squares / (count - 1.0) / count);
     all.standard_error_w = std::sqrt(own_squares) / count;
     // fmax: of repeats that are single samples only the spread between them is known.

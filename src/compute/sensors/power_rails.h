@@ -33,10 +33,9 @@ std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, c
 /// rail_name_0, in_power0_input [mW], else in_voltage0_input [mV] times in_current0_input [mA].
 std::vector<PowerRail> iio_rails(const std::filesystem::path& sysfs);
 
-/// TI INA3221 through the kernel's hwmon driver (Orin, Xavier under L4T from 34;
-/// Documentation/hwmon/ina3221): class/hwmon/hwmon3 whose name is ina3221, and
-/// bus/i2c/drivers/ina3221/1-0040/hwmon/hwmon3, with in1_label, in1_input [mV] times curr1_input [mA];
-/// channels with in1_enable 0 are passed over.
+/// TI INA3221 through the kernel's hwmon driver (Orin, Xavier under L4T from 34; Documentation/hwmon/ina3221):
+/// class/hwmon/hwmon3 whose name is ina3221, and bus/i2c/drivers/ina3221/1-0040/hwmon/hwmon3, with in1_label, in1_input
+/// [mV] times curr1_input [mA]; channels with in1_enable 0 are passed over.
 std::vector<PowerRail> hwmon_rails(const std::filesystem::path& sysfs);
 
 /// Batteries and supplies: class/power_supply/BAT0 with power_now [uW], else voltage_now [uV] times

@@ -1,6 +1,6 @@
 #include "compute/sensors/power_sampler.h"
 
-#include "base/toml_numbers.h"
+#include "base/toml_reader.h"
 
 #include <algorithm>
 

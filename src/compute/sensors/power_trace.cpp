@@ -101,9 +101,7 @@ PowerTrace trace_of_layer1(const CsvTable& table, std::optional<double> interval
     }
     PowerTrace trace;
     trace.power_w = layer1_power_w(table);
-    for (std::size_t i = 0; i < trace.power_w.size(); ++i) {
-        trace.time_s.push_back(static_cast<double>(i) * *interval_s);
-    }
+    for (std::size_t i = 0; i < trace.power_w.size(); ++i) trace.time_s.push_back(static_cast<double>(i) * *interval_s);
     return trace;
 }
 
@@ -111,9 +109,8 @@ PowerTrace trace_of_layer1(const CsvTable& table, std::optional<double> interval
 std::string first_line(const std::string& text) {
     std::istringstream lines(text);
     std::string line;
-    while (std::getline(lines, line)) {
+    while (std::getline(lines, line))
         if (!line.empty() && line.front() != '#') return line;
-    }
     return "";
 }
 

@@ -4,7 +4,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/chosen_track.h"
-#include "flight/flight_series.h"
 
 #include <algorithm>
 #include <array>
@@ -100,8 +99,7 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
     for (std::size_t begin = 0; begin + window <= grid.size(); ++begin) {
         if (is_still(begin, begin + window, options.rest_height_m)) mark(begin, begin + window);
     }
-    // The log may begin just before lift-off or end just after touchdown: there less time does, within less
-    // height.
+    // The log may begin just before lift-off or end just after touchdown: there less time does, within less height.
     const auto edge = grid.steps(0.3 * options.rest_s) + 1;
     if (edge <= grid.size()) {
         if (is_still(0, edge, 0.3 * options.rest_height_m)) mark(0, edge);

@@ -1,7 +1,6 @@
 #include "flight/series_file/front_matter.h"
 
 #include "base/error.h"
-#include "base/format_version.h"
 #include "base/number.h"
 #include "base/toml_reader.h"
 #include "base/toml_text.h"
@@ -58,9 +57,8 @@ telemetry::SkippedLines read_skipped(const TomlTable& table) {
 
 CurrentOrigin read_origin(const TomlTable& table) {
     const auto text = table.string("current_origin");
-    for (const auto origin : origins) {
+    for (const auto origin : origins)
         if (to_string(origin) == text) return origin;
-    }
     throw InputError(table.where("current_origin"), fmt::format("current_origin is '{}'", text),
                      "expected 'measured by a sensor', 'computed from throttle' or 'unknown'");
 }
@@ -96,9 +94,7 @@ FrontMatter read_matter(const TomlTable& table) {
     series.planned_ground_altitude_m = table.optional_number("planned_ground_altitude_m");
     series.lacks_log = table.optional_boolean("lacks_log").value_or(false);
     if (table.has("notes")) series.notes = table.strings("notes");
-    if (const auto names = table.optional_table("block_names")) {
-        series.block_names = read_block_names(*names);
-    }
+    if (const auto names = table.optional_table("block_names")) series.block_names = read_block_names(*names);
     for (const auto& assumed : table.tables("assumed_definition")) {
         series.assumed_definitions.push_back({assumed.string("text"), assumed.number("since_s")});
         assumed.refuse_unknown_keys();

@@ -41,10 +41,9 @@ struct Position {
     double longitude_deg = 0.0;
 };
 
-/// The position on WGS 84 of UTM coordinates as Paparazzi logs them: the north has no false origin, so it is
-/// negative in the south. NaN where one of them is NaN or the zone is none of 1 to 60. Krueger's series to
-/// the third order (Karney, Transverse Mercator with an accuracy of a few nanometers, J. Geodesy 85, 2011):
-/// better than a millimetre.
+/// The position on WGS 84 of UTM coordinates as Paparazzi logs them: the north has no false origin, so it is negative
+/// in the south. NaN where one of them is NaN or the zone is none of 1 to 60. Krueger's series to the third order
+/// (Karney, Transverse Mercator with an accuracy of a few nanometers, J. Geodesy 85, 2011): better than a millimetre.
 Position position_of_utm(double east_m, double north_m, double zone) {
     if (!(zone >= 1.0 && zone <= 60.0) || !std::isfinite(east_m) || !std::isfinite(north_m)) {
         return {unknown, unknown};
@@ -218,9 +217,8 @@ void add_device_message(std::vector<Track>& tracks, const MessageTable* table,
                         std::initializer_list<const char*> id_fields) {
     if (table == nullptr) return;
     DeviceMessage message{*table, {}};
-    for (const auto* field : id_fields) {
+    for (const auto* field : id_fields)
         if (const auto* column = table->column(field)) message.ids.push_back(column);
-    }
     const auto* voltage = voltage_of(*table);
     const auto* current = current_of(*table);
     if (const auto* power = first_column(*table, {"power"}, Quantity::watt)) {

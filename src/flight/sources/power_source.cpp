@@ -1,7 +1,5 @@
 #include "flight/sources/power_source.h"
 
-#include "flight/flight_series.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -45,8 +43,7 @@ void for_each_pair(const Track& a, const Track& b, Visit&& visit) {
     }
 }
 
-/// True if most samples are nowhere near voltage times current: another layout of the message than was
-/// assumed.
+/// True if most samples are nowhere near voltage times current: another layout of the message than was assumed.
 bool contradicts(const Track& power, const Track& product) {
     std::size_t compared = 0;
     std::size_t apart = 0;

@@ -79,9 +79,8 @@ Scaling scaled(std::span<const PhaseSamples> flights) {
     const double deviation_w = std::sqrt(square_sum / count);
     const bool varies = deviation_w > constant_level * largest;
     if (varies) scaling.unit_w = deviation_w;
-    for (auto& flight : scaling.flights) {
+    for (auto& flight : scaling.flights)
         for (double& value : flight.value) value = varies ? value / deviation_w : 0.0;
-    }
     return scaling;
 }
 
@@ -93,9 +92,7 @@ FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
 }
 
 JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range) {
-    if (order > 0) {
-        return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range));
-    }
+    if (order > 0) return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range));
     // The values less their means are 0 but for noise, whatever the frequency.
     JointFit joint;
     joint.theta_rad = std::clamp(units::rad_per_turn, range.low_rad, range.high_rad);

@@ -18,9 +18,8 @@ double mean_power_w(const PhaseSamples& samples) {
 double median_gap(std::vector<double> tau) {
     std::sort(tau.begin(), tau.end());
     std::vector<double> gaps;
-    for (std::size_t i = 1; i < tau.size(); ++i) {
+    for (std::size_t i = 1; i < tau.size(); ++i)
         if (tau[i] > tau[i - 1]) gaps.push_back(tau[i] - tau[i - 1]);
-    }
     return gaps.empty() ? 0.0 : median(std::move(gaps));
 }
 

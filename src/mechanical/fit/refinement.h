@@ -22,9 +22,8 @@ enum class Loss {
 constexpr std::string_view to_string(Loss loss) { return loss == Loss::huber ? "huber" : "none"; }
 
 constexpr std::optional<Loss> loss_from(std::string_view name) {
-    for (const auto loss : {Loss::none, Loss::huber}) {
+    for (const auto loss : {Loss::none, Loss::huber})
         if (name == to_string(loss)) return loss;
-    }
     return std::nullopt;
 }
 

@@ -2,10 +2,7 @@
 
 #include "base/error.h"
 #include "flight/chosen_track.h"
-#include "flight/flight_series.h"
 #include "flight/phase_statistics.h"
-#include "flight/segmentation.h"
-#include "mechanical/covariates.h"
 
 #include <algorithm>
 #include <cmath>

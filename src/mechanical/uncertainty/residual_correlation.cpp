@@ -37,9 +37,8 @@ double expected_ratio(const FlightResiduals& flight, double autocorrelation) {
     const Eigen::MatrixXd spread = correlated(correlation, used);
     const Eigen::MatrixXd neighbours = neighbour_sums(flight, used);
     double trace = 0.0;  // of L R
-    for (std::size_t j = 1; j < flight.tau.size(); ++j) {
+    for (std::size_t j = 1; j < flight.tau.size(); ++j)
         if (are_neighbours(flight, j)) trace += correlation[j];
-    }
     const Eigen::MatrixXd within = used.transpose() * spread;
     const double products = trace - 2.0 * neighbours.cwiseProduct(spread).sum() +
                             (used.transpose() * neighbours).cwiseProduct(within).sum();

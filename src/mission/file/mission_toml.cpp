@@ -1,6 +1,5 @@
 #include "base/atomic_file.h"
-#include "base/format_version.h"
-#include "base/toml_numbers.h"
+#include "base/toml_reader.h"
 #include "compute/profile_reader.h"
 #include "mission/file/planning_toml.h"
 #include "mission/file/schedule_toml.h"

@@ -1,4 +1,4 @@
-#include "base/format_version.h"
+#include "base/toml_reader.h"
 #include "base/toml_text.h"
 #include "mission/mission_file.h"
 

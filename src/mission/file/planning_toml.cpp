@@ -1,6 +1,6 @@
 #include "mission/file/planning_toml.h"
 
-#include "base/toml_numbers.h"
+#include "base/toml_reader.h"
 
 #include <algorithm>
 #include <functional>

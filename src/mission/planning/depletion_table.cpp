@@ -240,28 +240,4 @@ std::optional<double> soc_after(const DepletionTable& table, std::span<const Tab
     return soc_percent;
 }
 
-SlotDepletions make_slot_depletions(const DepletionTable& table, std::span<const TabledSegment> slots) {
-    SlotDepletions depletions;
-    depletions.slots = slots.size();
-    depletions.choices = table.configurations.size();
-    depletions.initial_soc_percent = table.initial_soc_percent;
-    depletions.percent.reserve(depletions.slots * depletions.choices);
-    for (auto slot : slots)
-        for (slot.configuration = 0; slot.configuration < depletions.choices; ++slot.configuration)
-            depletions.percent.push_back(soc_depletion_percent(table, slot));
-    return depletions;
-}
-
-double soc_after(const SlotDepletions& depletions, std::span<const std::uint16_t> choices) {
-    if (choices.size() != depletions.slots)
-        throw std::invalid_argument("soc_after: the number of choices is not that of the slots");
-    double depleted_percent = 0.0;
-    const double* of_slot = depletions.percent.data();
-    for (const auto choice : choices) {
-        depleted_percent += of_slot[choice];
-        of_slot += depletions.choices;
-    }
-    return depletions.initial_soc_percent - depleted_percent;
-}
-
 }  // namespace flightwatt::mission

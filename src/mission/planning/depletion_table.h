@@ -10,16 +10,14 @@
 
 namespace flightwatt::mission {
 
-/// The voltage before the series resistor over a mission: straight lines between points, the ends' values
-/// beyond them.
+/// The voltage before the series resistor over a mission: straight lines between points, the ends' values beyond them.
 struct VoltageCourse {
     std::vector<double> time_s;  ///< of the mission, rising strictly
     std::vector<double> voltage_v;
     double error_v = 0.0;  ///< what the straight lines may be off, by how they bend from one to the next
 };
 
-/// The course of a mission with a schedule, simulated as if there was no cut-off; none if the battery does
-/// not last.
+/// The course of a mission with a schedule, simulated as if there was no cut-off; none if the battery does not last.
 std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission, const Schedule& schedule);
 
 /// State of charge [points] that the battery has lost since a phase began, at evenly spread times, while one
@@ -74,20 +72,5 @@ double soc_depletion_percent(const DepletionTable& table, const TabledSegment& s
 /// State of charge after a whole schedule, as if the battery went on below empty. None where the table does not hold:
 /// it charges, depends on the state, or cannot be delivered.
 std::optional<double> soc_after(const DepletionTable& table, std::span<const TabledSegment> schedule);
-
-/// Where many schedules share their slots: the depletion by every configuration in each.
-struct SlotDepletions {
-    std::size_t slots = 0;
-    std::size_t choices = 0;      ///< the configurations of the table
-    std::vector<double> percent;  ///< slots x choices
-    double initial_soc_percent = 100.0;
-};
-
-/// Ignores slots[i].configuration.
-SlotDepletions make_slot_depletions(const DepletionTable& table, std::span<const TabledSegment> slots);
-
-/// Final state of charge of the schedule that runs choices[i] in slot i; minus infinity where that cannot be delivered.
-/// Not for a table that charges or depends on the state. Throws std::invalid_argument for too few or many choices.
-double soc_after(const SlotDepletions& depletions, std::span<const std::uint16_t> choices);
 
 }  // namespace flightwatt::mission

@@ -19,10 +19,9 @@ struct RunningChoice {
     double since_s = 0.0;
 };
 
-/// One choice a slot, of most utility and with costs within the budget: a multiple-choice knapsack. After a
-/// change the new choice is kept for at least `dwell_s`, or until the next fixed slot if that is sooner. A run
-/// that contains a fixed slot may be of any length; the end of the last slot does not excuse a run that
-/// started too late.
+/// One choice a slot, of most utility and with costs within the budget: a multiple-choice knapsack. After a change the
+/// new choice is kept for at least `dwell_s`, or until the next fixed slot if that is sooner. A run that contains a
+/// fixed slot may be of any length; the end of the last slot does not excuse a run that started too late.
 struct MultipleChoiceKnapsack {
     std::vector<KnapsackSlot> slots;
     std::vector<double> utility_per_s;  ///< of every choice

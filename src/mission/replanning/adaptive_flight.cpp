@@ -2,7 +2,6 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mission/planning/planner.h"
 #include "mission/simulation/load_segments.h"
 
 #include <algorithm>

@@ -153,16 +153,12 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
     const auto& cruise = bands[flight::Phase::cruise];
     if (!cruise.time_s.empty()) drawn.push_back(curve_names()[mean_band]);
     if (!cruise.flights_low_w.empty()) drawn.push_back(curve_names()[flights_envelope]);
-    if (!published.power[flight::Phase::cruise].time_s.empty()) {
-        drawn.push_back(curve_names()[published_curve]);
-    }
+    if (!published.power[flight::Phase::cruise].time_s.empty()) drawn.push_back(curve_names()[published_curve]);
     auto panels = VegaJson::array();
     for (const auto phase : flight::all_phases) {
         auto layers = band_layers(bands[phase], drawn);
         layers.push_back(model_layer(model.phases[phase], drawn));
-        if (!published.power[phase].time_s.empty()) {
-            layers.push_back(published_layer(published.power[phase], drawn));
-        }
+        if (!published.power[phase].time_s.empty()) layers.push_back(published_layer(published.power[phase], drawn));
         panels.push_back({{"title", phase_word(phase)}, {"width", 200}, {"height", 230}, {"layer", layers}});
     }
     auto figure = new_figure(id, model_caption(model, published), model_described(model));

@@ -20,9 +20,7 @@ constexpr auto map_soc_title = "final state of charge [%]";
 std::vector<double> with_thirds(const std::vector<double>& profiled) {
     std::vector<double> nodes{profiled.front()};
     for (std::size_t i = 1; i < profiled.size(); ++i) {
-        for (int third = 1; third <= 3; ++third) {
-            nodes.push_back(std::lerp(profiled[i - 1], profiled[i], third / 3.0));
-        }
+        for (int third = 1; third <= 3; ++third) nodes.push_back(std::lerp(profiled[i - 1], profiled[i], third / 3.0));
     }
     return nodes;
 }

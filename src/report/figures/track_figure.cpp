@@ -66,8 +66,7 @@ Square square_around(const ReportFlight& flight, const GroundTrack& track) {
             std::max(1.0, margin * std::max(wide_m, high_m) / 2.0)};
 }
 
-/// The track between two times in pieces: where power samples, whose clock it is on, are missing, nobody
-/// knows it.
+/// The track between two times in pieces: where power samples, whose clock it is on, are missing, nobody knows it.
 std::vector<Line> pieces(const GroundTrack& track, double start_s, double end_s) {
     const double gap_s = flight::gap_threshold_s(track.time_s);
     std::vector<Line> lines;

@@ -63,21 +63,6 @@ TEST(DepletionTable, AgreesWithRungeKuttaOnRandomSchedules) {
     }
 }
 
-TEST(DepletionTable, SumsSlotsAsItSumsSegments) {
-    std::mt19937 random(4);
-    auto mission = paper_mission("phased");
-    mission.battery = {"", 3.6, 0.02, 6.0};
-    mission.schedule = random_schedule(mission, random);
-    const auto table = make_depletion_table(mission, configurations_of(mission.schedule));
-    const auto segments = tabled(mission.schedule, table);
-    const auto depletions = make_slot_depletions(table, segments);
-    std::vector<std::uint16_t> choices;
-    for (const auto& segment : segments) choices.push_back(static_cast<std::uint16_t>(segment.configuration));
-    EXPECT_NEAR(soc_after(depletions, choices), *soc_after(table, segments), 1e-12);
-    choices.pop_back();
-    EXPECT_THROW(soc_after(depletions, choices), std::invalid_argument);
-}
-
 TEST(DepletionTable, SaysItsError) {
     auto mission = paper_mission("phased");
     mission.battery = {"", 3.6, 0.02, 6.0};
