@@ -5,6 +5,7 @@
 #include "flight/series_file.h"
 #include "helpers/document.h"
 #include "helpers/test_paths.h"
+#include "mechanical/covariates.h"
 #include "mechanical/mechanical_model.h"
 #include "mission/disturbance.h"
 #include "mission/mission_file.h"
@@ -50,19 +51,34 @@ std::string kind_of(const std::string& file) {
     return "";
 }
 
-/// A folder with all examples as files, KIND_NUMBER.toml, and what they name.
+void write(const std::filesystem::path& file, const std::string& text) {
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+}
+
+/// A folder with all examples as files, KIND_NUMBER.toml, and what they name. Those that name a covariate stand there
+/// once for each: a reader asks for the one that the model follows.
 std::vector<std::filesystem::path> write_examples(const std::filesystem::path& folder) {
-    std::filesystem::create_directory_symlink(source_dir() / "fits", folder / "fits");
+    const std::string example_covariate = "wind_m_per_s";
     std::vector<std::filesystem::path> files;
-    std::size_t number = 0;
-    for (const auto& page : pages()) {
-        for (const auto& example : page.examples) {
-            if (!sections.contains(example.kind)) continue;
-            files.push_back(folder / (example.kind + "_" + std::to_string(++number) + ".toml"));
-            std::ofstream(files.back()) << example.text;
-            if (example.kind == "model") {
-                std::filesystem::create_directory(folder / "mechanical");
-                std::ofstream(folder / "wind-model.toml") << example.text;
+    for (const auto covariate : mechanical::all_covariates) {
+        const auto below = folder / to_string(covariate);
+        const auto with_covariate = [&](const std::string& text) {
+            return std::regex_replace(text, std::regex(example_covariate), std::string(to_string(covariate)));
+        };
+        std::filesystem::create_directories(below);
+        std::filesystem::create_directory_symlink(source_dir() / "fits", below / "fits");
+        for (const auto& page : pages()) {
+            for (const auto& example : page.examples) {
+                if (!sections.contains(example.kind)) continue;
+                if (example.kind == "model") {
+                    std::filesystem::create_directories(below / "mechanical");
+                    write(below / "wind-model.toml", with_covariate(example.text));
+                }
+                const bool follows = example.text.find(example_covariate) != std::string::npos;
+                if (!follows && to_string(covariate) != example_covariate) continue;
+                files.push_back(below / (example.kind + "_" + std::to_string(files.size()) + ".toml"));
+                write(files.back(), with_covariate(example.text));
             }
         }
     }
@@ -147,7 +163,7 @@ TEST(TomlKeys, HaveUnitDefaultAndExample) {
     }
     for (const auto& key : documented_keys()) {
         EXPECT_FALSE(key.unit.empty() || key.fallback.empty()) << "line " << key.line << ": " << key.key;
-        const bool is_any_name = key.key == "NAME" || key.key == "PARAMETER";
+        const bool is_any_name = key.key == "NAME" || key.key == "NUMBER" || key.key == "PARAMETER";
         EXPECT_TRUE(is_any_name || examples[key.section].find(key.key) != std::string::npos)
             << "line " << key.line << ": no example of " << key.section << " shows " << key.key;
     }
