@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -58,6 +59,7 @@ void expect_columns(const std::filesystem::path& file, const std::string& sectio
     std::stringstream cells(header);
     std::size_t count = 0;
     for (std::string column; std::getline(cells, column, ','); ++count) {
+        column = std::regex_replace(column, std::regex("\\.[0-9]+$"), "");  // another candidate of the name
         const bool documented = std::any_of(formats().begin(), formats().end(), [&](const DocumentedKey& key) {
             return key.section == section && (key.key == column || path_matches(key.key, column));
         });

@@ -56,7 +56,8 @@ TEST(SegmentJson, HoldsPhasesEdgesAndThePowerCheck) {
     EXPECT_EQ(spans[1]["duration_s"], cruise.duration_s());
     EXPECT_EQ(spans[0]["end_s"], spans[1]["start_s"]);
     EXPECT_EQ(json["sorties"][0]["edges"].size(), 4U);
-    EXPECT_TRUE(json["not_flights"].empty());
+    ASSERT_EQ(json["not_flights"].size(), 1U);
+    EXPECT_EQ(json["not_flights"][0]["what"], phases.ground_events[0].what);
     EXPECT_EQ(json["warnings"][0], "a warning");
     EXPECT_GT(json["power"]["idle_current"]["samples"], 0);
 }
