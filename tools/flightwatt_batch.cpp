@@ -159,8 +159,8 @@ int run_over_logs(const cli::StageCall& call) {
     auto options = read_batch_options(call, fit_options);
     const auto published = cli::read_published(call);
     const auto logs = batch::find_logs(call.inputs);
-    std::vector<std::string> names;
-    for (const auto& log : logs) names.push_back(log.flight);
+    std::vector<std::string> names(logs.size());
+    std::ranges::transform(logs, names.begin(), &batch::LogFile::flight);
     cli::refuse_unknown_flights(options.load, names);
     make_directories(options.out);
     const batch::FolderLock lock(options.out);

@@ -16,8 +16,8 @@ std::filesystem::path program_folder() {
 
 std::filesystem::path program_files(const std::string& name, const char* variable, const std::string& what) {
     const char* named = std::getenv(variable);
-    const auto folder = named != nullptr ? std::filesystem::path(named)
-                                         : program_folder().parent_path() / "share" / "flightwatt" / name;
+    auto folder = named != nullptr ? std::filesystem::path(named)
+                                   : program_folder().parent_path() / "share" / "flightwatt" / name;
     if (std::filesystem::is_directory(folder)) return folder;
     throw InputError({folder.string()}, what + " are not there",
                      fmt::format("{} can name the project's folder {}/", variable, name));

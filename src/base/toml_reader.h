@@ -75,7 +75,7 @@ struct AskedKey {
     std::string file;
     std::string table;  ///< its path in the file; empty for the file itself
     std::string key;
-    auto operator<=>(const AskedKey&) const = default;
+    auto operator<=>(const AskedKey&) const = default;  // NOLINT(modernize-use-nullptr): it takes the 0 of "< 0"
 };
 
 /// From now on every key that any reader asks for is put into `asked`, until this is called with nullptr. For

@@ -38,7 +38,7 @@ std::vector<double> values_on(const QosPoints& points, std::size_t axis) {
 std::vector<double> evenly_spaced(double from, double to, double step) {
     std::vector<double> values;
     const double steps = std::floor((to - from) / step + rounding);
-    for (double i = 0.0; i <= steps; ++i) values.push_back(rounded(from + i * step));
+    for (int i = 0; i <= steps; ++i) values.push_back(rounded(from + i * step));
     return values;
 }
 

@@ -105,8 +105,8 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
 
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
     if (candidates.size() == 1) return std::move(candidates.front());
-    std::vector<bool> has_flown;
-    for (const auto& series : candidates) has_flown.push_back(flew(series));
+    std::vector<bool> has_flown(candidates.size());
+    std::transform(candidates.begin(), candidates.end(), has_flown.begin(), flew);
     const bool any = std::find(has_flown.begin(), has_flown.end(), true) != has_flown.end();
     std::vector<std::string> ids;
     std::size_t last = 0;

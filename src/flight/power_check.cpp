@@ -85,11 +85,11 @@ std::vector<std::size_t> resting_samples(const FlightSeries& series, const Power
 std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, const std::vector<std::size_t>& resting) {
     constexpr std::size_t enough = 10;
     if (current_a.empty() || resting.size() < enough) return std::nullopt;
-    std::vector<double> values;
-    for (const auto i : resting) values.push_back(current_a[i]);
+    std::vector<double> values(resting.size());
+    std::ranges::transform(resting, values.begin(), [&](auto i) { return current_a[i]; });
     const double middle = upper_median(values);
-    std::vector<double> distances;
-    for (const double value : values) distances.push_back(std::abs(value - middle));
+    std::vector<double> distances(values.size());
+    std::ranges::transform(values, distances.begin(), [&](double value) { return std::abs(value - middle); });
     const double reach = 5.0 * std::max(upper_median(std::move(distances)), 1e-6);  // beyond 3 sigma is no idling
     std::erase_if(values, [&](double value) { return std::abs(value - middle) > reach; });
     IdleCurrent idle;

@@ -8,7 +8,6 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <ranges>
 
 #include <fmt/format.h>
 
@@ -102,7 +101,8 @@ OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flig
     choice.folds = folds.size();
     const bool by_hand = weights.weighting == Weighting::by_hand;
     const WeightOptions weighting{by_hand ? Weighting::uniform : weights.weighting, {}};
-    for (auto tried = options; const int order : std::views::iota(0, highest_tried_order + 1)) {
+    auto tried = options;
+    for (int order = 0; order <= highest_tried_order; ++order) {
         tried.order = order;
         choice.errors.push_back(error_of(phase, folds, tried, weighting));
     }
@@ -114,10 +114,11 @@ OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flig
     }
     choice.order = choice.best = best->order;
     const auto best_w2 = best->mean_square_w2;
-    for (auto& error : std::views::reverse(choice.errors)) {
-        if (!error.rms_w) continue;
-        compare(error, best_w2);
-        if (error.order < choice.order && *error.behind_best_w2 <= *error.standard_error_w2) choice.order = error.order;
+    for (auto error = choice.errors.rbegin(); error != choice.errors.rend(); ++error) {
+        if (!error->rms_w) continue;
+        compare(*error, best_w2);
+        if (error->order < choice.order && *error->behind_best_w2 <= *error->standard_error_w2)
+            choice.order = error->order;
     }
     return choice;
 }

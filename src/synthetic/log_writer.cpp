@@ -187,8 +187,8 @@ Report report_of(const MessageRow& row) {
         definition.fields.push_back({parts[0], parts[1], parts.size() > 2 ? parts[2] : "", "", {}});
     }
     const auto fields = [words = split(row.values, ' ')](const Moment& moment) {
-        std::vector<std::string> values;
-        for (const auto& word : words) values.push_back(value_of(word, moment));
+        std::vector<std::string> values(words.size());
+        std::ranges::transform(words, values.begin(), [&](const auto& word) { return value_of(word, moment); });
         return values;
     };
     return {row.period_s, std::move(definition), fields};

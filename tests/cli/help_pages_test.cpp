@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 
 std::filesystem::path folder_with_pages() {
-    const auto folder = test::scratch_dir() / "pages";
+    auto folder = test::scratch_dir() / "pages";
     make_directories(folder);
     write_file_atomically(folder / "missions.md", "Above.\n\n# Mission files\n\nKeys.\n## More\n");
     write_file_atomically(folder / "battery.md", "# Batteries\n");

@@ -22,7 +22,7 @@ TEST(SeriesFile, LosesNothingOfAnyLog) {
     for (const auto& log : test::all_logs()) {
         SCOPED_TRACE(log.string());
         const telemetry::DataFile data(log);
-        for (auto series : test::all_series(data.text(), test::configuration_of(log))) {
+        for (const auto& series : test::all_series(data.text(), test::configuration_of(log))) {
             if (power_track(series).empty()) continue;
             const auto text = to_csv(series);
             const auto again = parse_series_csv(text, series.file);

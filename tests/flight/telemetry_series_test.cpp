@@ -117,7 +117,7 @@ TEST(TelemetrySeries, UsesAltitudeThatVaries) {
 class ReadFlight : public testing::Test {
   protected:
     std::filesystem::path write(const std::string& name, const std::string& text) {
-        const auto path = folder_ / name;
+        auto path = folder_ / name;
         std::ofstream(path, std::ios::binary) << text;
         return path;
     }

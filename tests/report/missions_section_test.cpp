@@ -19,7 +19,7 @@ using testing::HasSubstr;
 std::vector<SimulatedMission> simulated(const std::vector<std::string>& names) {
     std::vector<mission::AnyMission> missions;
     for (const auto& name : names) missions.push_back(paper_mission(name));
-    return simulate_for_report(std::move(missions));
+    return simulate_for_report(missions);
 }
 
 TEST(QosMap, IsThePapersGridAndEndsWhereTheMissionsEnd) {

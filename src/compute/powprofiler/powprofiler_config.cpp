@@ -5,7 +5,6 @@
 #include "base/units.h"
 #include "compute/qos_range.h"
 
-#include <ranges>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -133,8 +132,9 @@ PowprofilerConfig read_powprofiler_config(const std::filesystem::path& path) {
     PowprofilerConfig config;
     std::string_view section;
     Location where{path.string()};
-    for (const auto& part : std::views::split(content, '\n')) {
-        const std::string_view whole(part.begin(), part.end());
+    for (std::size_t begin = 0; begin < content.size();) {
+        const auto whole = std::string_view(content).substr(begin, content.find('\n', begin) - begin);
+        begin += whole.size() + 1;
         const auto line = trimmed(whole.substr(0, whole.find('#')));
         ++where.line;
         if (line.empty()) continue;

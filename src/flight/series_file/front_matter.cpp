@@ -19,8 +19,8 @@ namespace {
 constexpr std::array origins{CurrentOrigin::unknown, CurrentOrigin::sensor, CurrentOrigin::throttle};
 
 std::string strings(const std::vector<std::string>& texts) {
-    std::vector<std::string> quoted;
-    for (const auto& text : texts) quoted.push_back(toml_string(text));
+    std::vector<std::string> quoted(texts.size());
+    std::ranges::transform(texts, quoted.begin(), toml_string);
     return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 

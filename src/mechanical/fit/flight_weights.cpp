@@ -73,8 +73,8 @@ std::vector<double> by_agreement(const PhaseFit& fit) {
     double usual = median(distances);
     if (usual == 0.0) usual = mean(distances);
     if (usual == 0.0) return equal;
-    std::vector<double> weights;
-    for (const double distance : distances) weights.push_back(usual / (distance + usual));
+    std::vector<double> weights(distances.size());
+    std::ranges::transform(distances, weights.begin(), [&](double distance) { return usual / (distance + usual); });
     return normalised(std::move(weights));
 }
 

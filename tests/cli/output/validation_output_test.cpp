@@ -33,7 +33,7 @@ TEST(ScoresTable, HasTheScoreOfEveryPhaseAndModel) {
 
 TEST(FlightsTable, HasMeasuredAndPredictedEnergyOfEachFlight) {
     const auto table = flights_table(validated());
-    EXPECT_EQ(table.rows.size(), 4 * 4 * model_names(validated()).size());
+    EXPECT_EQ(table.rows.size(), std::size_t{4} * 4 * model_names(validated()).size());
     for (const auto& row : table.rows) {
         EXPECT_NEAR(std::stod(row[5]) - std::stod(row[3]), std::stod(row[6]), 1.1e-3) << "the error";
         if (row[1] == "landing") {
