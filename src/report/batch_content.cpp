@@ -35,8 +35,7 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         content.flights.push_back(std::move(flight));
     }
     // Readers look at the first ones first.
-    std::ranges::stable_partition(content.flights,
-                                  [](const ReportFlight& flight) { return flight.unusable_power.empty(); });
+    std::ranges::stable_sort(content.flights, {}, [](const auto& flight) { return !flight.unusable_power.empty(); });
     return content;
 }
 

@@ -80,9 +80,8 @@ void tell(int events, Event event) {
     sigset_t none;
     sigemptyset(&none);
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
-    std::vector<char*> arguments;
-    for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
+    std::vector<char*> arguments(words.size() + 1);  // and a null pointer
+    std::ranges::transform(words, arguments.begin(), [](auto& word) { return const_cast<char*>(word.c_str()); });
     ::execvp(arguments.front(), arguments.data());
     tell(events, {Event::Kind::not_started, command, errno, 0, {}});
     ::_exit(cannot_execute);
