@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "compute/profile_reader.h"
+#include "helpers/grid_points.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
@@ -62,15 +63,8 @@ TEST(LeaveOneOut, SummarizesTheNodesThatWereFound) {
 
 TEST(LeaveOneOut, OfNoNodeIsZero) { EXPECT_EQ(summarize_errors("m", {std::nan("")}, {1.0}).rms_w, 0.0); }
 
-using Points = std::vector<std::vector<double>>;
-
-Points grid(const std::vector<double>& xs, const std::vector<double>& ys) {
-    Points points;
-    for (const double x : xs) {
-        for (const double y : ys) points.push_back({x, y});
-    }
-    return points;
-}
+using test::grid;
+using test::Points;
 
 TEST(ThinPlate, IsAPlaneWhereTheNodesLieOnOneAndExactAtAnyNodes) {
     const auto known = grid({0, 1, 3, 4}, {0, 2, 5});

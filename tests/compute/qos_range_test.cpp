@@ -1,5 +1,7 @@
 #include "compute/qos_range.h"
 
+#include "helpers/grid_points.h"
+
 #include <string>
 #include <vector>
 
@@ -43,15 +45,8 @@ TEST(WithQos, ReplacesTheParametersAlone) {
     EXPECT_EQ(with_qos("awk '{print $1}' {fsp}", parameters, {5.8, 32.0}), "awk '{print $1}' {fsp}");
 }
 
-using Points = std::vector<std::vector<double>>;
-
-Points grid(const std::vector<double>& xs, const std::vector<double>& ys) {
-    Points points;
-    for (const double x : xs) {
-        for (const double y : ys) points.push_back({x, y});
-    }
-    return points;
-}
+using test::grid;
+using test::Points;
 
 TEST(SpreadNodes, TakesCornersFirstThenTheFarthest) {
     const auto points = grid({1, 2, 4, 8, 16}, {0, 1, 2, 3, 4});
