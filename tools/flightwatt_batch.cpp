@@ -142,7 +142,7 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
     const auto& model = fit.model;
     const auto table = cli::table_of(model, published);
     write_model(fit, table, options);
-    warn_of_bounds(call, model);
+    warn_of_model(call, model);
     if (call.json)
         cli::print(cli::json_text(summary_json(flights, model)));
     else

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -38,7 +39,9 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
             if (!loaded.exclusion.empty()) {
                 throw InputError({file}, fmt::format("{}: {}", loaded.series.flight, loaded.exclusion));
             }
-            records.push_back(battery::discharge_record(loaded.series));
+            auto found = battery::discharge_records(loaded.series);
+            for (const auto& text : found.notes) cli::warn(call, fmt::format("{}: {}", file, text));
+            std::ranges::move(found.records, std::back_inserter(records));
         } catch (const InputError& error) {
             if (call.inputs.size() == 1) throw;
             cli::warn(call, fmt::format("excluded: {}", error.what()));

@@ -81,6 +81,7 @@ int compare_missions(const cli::StageCall& call) {
     std::vector<mission::AnyMission> missions;
     missions.reserve(call.inputs.size());
     for (const auto& file : call.inputs) missions.push_back(mission::read_mission(file, {true, std::nullopt}));
+    for (const auto& mission : missions) cli::warn_of_setup(call, setup_of(mission));
     std::vector<mission::Simulation> simulations;
     std::vector<mission::MissionSummary> summaries;
     for (const auto& mission : missions) {

@@ -89,7 +89,7 @@ int fit(const cli::StageCall& call) {
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
     if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, *reports));
     cli::write_result(call, to_toml(fitted.model));
-    warn_of_bounds(call, fitted.model);
+    warn_of_model(call, fitted.model);
     warn_of_given_frequencies(call, fitted.model);
     if (call.json) {
         auto json = cli::to_json(fitted.model);

@@ -68,6 +68,7 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
         throw InputError({setup_of(mission).file}, "the mission has a schedule already: there is nothing to plan",
                          "add [plan], and what [[schedule]] says is fixed and the rest planned");
     }
+    cli::warn_of_setup(call, *problem);
     const auto plan = plan_mission(*problem, probability(call));
     if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
     const auto text = describe(plan, *problem);

@@ -8,6 +8,7 @@
 #include "cli/stage.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_series.h"
+#include "mechanical/model_check.h"
 #include "mechanical/prediction.h"
 
 #include <algorithm>
@@ -57,6 +58,7 @@ mechanical::MechanicalModel read_spread_model(const cli::StageCall& call) {
     if (!call.has("model")) throw UsageError("no model given: expected --model MODEL.toml");
     const auto file = call.get<std::string>("model");
     auto model = mechanical::read_mechanical_model(file);
+    for (const auto& warning : model_warnings(model)) cli::warn(call, fmt::format("{}: {}", file, warning));
     for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) {
         if (model.phases[phase].level_spread) continue;
         throw InputError({file}, fmt::format("[{}] has no spread: how much flights differ", to_string(phase)),

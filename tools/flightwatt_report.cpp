@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "cli/numeric_options.h"
 #include "cli/output/fit_output.h"
+#include "cli/output/mission_output.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
@@ -36,6 +37,7 @@ ReportInputs read_inputs(const cli::StageCall& call) {
     for (const auto& input : call.inputs) {
         if (!std::filesystem::is_directory(input)) {
             inputs.missions.push_back(mission::read_mission(input, {true, std::nullopt}));
+            cli::warn_of_setup(call, setup_of(inputs.missions.back()));
             continue;
         }
         if (inputs.out) {

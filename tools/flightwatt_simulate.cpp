@@ -40,6 +40,7 @@ void sample(const cli::StageCall& call, const mission::PreparedMission& prepared
 int simulate_mission(const cli::StageCall& call) {
     const auto text = read_file(call.inputs.front());
     const auto mission = mission::parse_mission(text, call.inputs.front());
+    cli::warn_of_setup(call, setup_of(mission));
     const auto disturbed_by = cli::read_disturb_option(call, setup_of(mission));
     const auto prepared = prepare(mission);
     mission::SimulationSteps steps;

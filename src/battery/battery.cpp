@@ -3,6 +3,7 @@
 #include "base/piecewise_linear.h"
 #include "base/toml_reader.h"
 #include "base/toml_text.h"
+#include "base/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -175,6 +176,29 @@ Battery read_battery(const std::filesystem::path& path) {
     const auto root = read_toml(path);
     require_known_format(root);
     return battery_from(root);
+}
+
+std::vector<std::string> battery_warnings(const Battery& battery) {
+    constexpr double least_v = 2.5;
+    constexpr double greatest_v = 60.0;
+    constexpr double least_ah = 0.05;
+    constexpr double greatest_ah = 200.0;
+    constexpr double least_limit_w = 1.0;
+    std::vector<std::string> warnings;
+    const auto full_v = open_circuit_voltage_v(battery, units::percent_per_whole);
+    if (full_v < least_v || full_v > greatest_v) {
+        warnings.push_back(fmt::format("battery: {:.4g} V when full is {}: is its unit V?", full_v,
+                                       full_v < least_v ? "less than one cell's" : "more than 14 LiPo cells'"));
+    }
+    if (battery.capacity_ah < least_ah || battery.capacity_ah > greatest_ah) {
+        warnings.push_back(fmt::format("battery: {:.4g} Ah is the capacity of no small drone's pack: is its unit Ah?",
+                                       battery.capacity_ah));
+    }
+    if (const double limit_w = power_limit_w(battery); limit_w < least_limit_w) {
+        warnings.push_back(
+            fmt::format("battery: it cannot deliver more than {:.3g} W: is resistance_ohm in ohm?", limit_w));
+    }
+    return warnings;
 }
 
 std::string to_toml(const Battery& battery) {

@@ -85,6 +85,10 @@ double internal_current_a(const Battery& battery, double power_w, const BatteryS
 Battery read_battery(const std::filesystem::path& path);
 Battery battery_from(const TomlTable& table);
 
+/// What no pack of a small drone has, a line each: a full voltage of less than 2.5 V or of more than 14 LiPo cells (60
+/// V), a capacity of less than 0.05 or more than 200 Ah (mAh, mostly), a power limit below 1 W.
+std::vector<std::string> battery_warnings(const Battery& battery);
+
 /// The battery as read_battery reads it.
 std::string to_toml(const Battery& battery);
 

@@ -153,7 +153,8 @@ BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
     const double highest_v =
         std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
     result.cells = options.cells.value_or(lipo_cells(highest_v));
-    result.capacity = capacity_of(aligned.fit, result.cells, options.capacity_ah);
+    result.capacity =
+        capacity_of(aligned.fit, result.errors.open_circuit_standard_error_v.back(), result.cells, options.capacity_ah);
     const auto extended = extended_curve(aligned.fit, result.errors.open_circuit_standard_error_v,
                                          result.capacity.value_ah, result.cells);
     result.known_down_to_percent = extended.known_down_to_percent;

@@ -78,6 +78,18 @@ PowerProfile make_power_profile(const std::string& file, const std::vector<std::
     return profile;
 }
 
+std::string negative_power_warning(const PowerProfile& profile) {
+    if (profile.power_w.empty()) return "";
+    const auto least = std::ranges::min_element(profile.power_w);
+    if (*least >= 0.0) return "";
+    const auto node = grid_point(profile.axes, static_cast<std::size_t>(least - profile.power_w.begin()));
+    const auto at = profile.parameters.empty() ? "" : " at " + spell_qos(profile.parameters, node, " = ", ", ");
+    return fmt::format(
+        "{}: {:.3g} W{}: software that gives power back does not exist; within the noise of the profile "
+        "it is 0",
+        profile.file, *least, at);
+}
+
 void require_in_range(const PowerProfile& profile, std::size_t parameter, double value, const Location& where) {
     const auto& axis = profile.axes.at(parameter);
     if (value >= axis.front() && value <= axis.back()) return;

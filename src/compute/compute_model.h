@@ -42,6 +42,9 @@ void require_in_range(const PowerProfile& profile, std::size_t parameter, double
 /// Throws InputError, placed in the profile, if a value is out of range.
 double power_w(const PowerProfile& profile, const std::vector<double>& qos);
 
+/// "PROFILE: -0.2 W at fps = 3: ..." where a node's power is negative; empty if none is.
+std::string negative_power_warning(const PowerProfile& profile);
+
 /// A piece of on-board software.
 struct Component {
     std::string name;

@@ -1,7 +1,9 @@
 #include "flight/chosen_track.h"
 
 #include "base/error.h"
+#include "flight/sources/device_sum.h"
 #include "flight/sources/power_source.h"
+#include "flight/sources/wild_samples.h"
 
 #include <algorithm>
 
@@ -13,56 +15,88 @@ namespace {
 
 constexpr auto any_source = [](const Track&) { return true; };
 
-template <typename Accept = decltype(any_source)>
-Track first_that_varies(const FlightSeries& series, std::string_view name, const Accept& accept = any_source) {
-    const Track* constant = nullptr;
-    for (const auto& track : series.tracks) {
-        if (track.name != name || track.empty() || !track.device.empty() || !accept(track)) continue;
-        if (!is_constant(track)) return track;
-        if (constant == nullptr) constant = &track;
-    }
-    return constant == nullptr ? Track{} : *constant;
+/// A track as it is taken, and what of the log is not: samples that are left out, sources passed over.
+struct Choice {
+    Track track = {};
+    std::vector<std::string> said = {};
+};
+
+/// Leaves out what cannot be.
+Choice sound_choice(const FlightSeries& series, const Track& candidate) {
+    const bool of_power = candidate.name == "voltage_v" || candidate.name == "current_a";
+    auto sound =
+        sound_track(candidate, of_power ? contradicted_times(series, candidate.source) : std::vector<double>{});
+    Choice choice{std::move(sound.track), {}};
+    if (!sound.left_out.empty()) choice.said.push_back(std::move(sound.left_out));
+    return choice;
 }
 
-Track first_of(const FlightSeries& series, std::string_view name) {
+template <typename Accept = decltype(any_source)>
+Choice first_that_varies(const FlightSeries& series, std::string_view name, const Accept& accept = any_source) {
+    Choice constant;
+    for (const auto& track : series.tracks) {
+        if (track.name != name || track.empty() || !track.device.empty() || !accept(track)) continue;
+        if (is_constant(track) && !constant.track.empty()) continue;
+        auto sound = sound_choice(series, track);
+        if (sound.track.empty()) {
+            constant.said.insert(constant.said.end(), sound.said.begin(), sound.said.end());
+        } else if (!is_constant(sound.track)) {
+            sound.said.insert(sound.said.begin(), constant.said.begin(), constant.said.end());
+            return sound;
+        } else if (constant.track.empty()) {
+            constant.track = std::move(sound.track);
+            constant.said.insert(constant.said.end(), sound.said.begin(), sound.said.end());
+        }
+    }
+    return constant;
+}
+
+Choice first_of(const FlightSeries& series, std::string_view name) {
     for (const auto& track : series.tracks)
-        if (track.name == name && !track.empty()) return track;
+        if (track.name == name && !track.empty()) return sound_choice(series, track);
     return {};
 }
 
-Track throttle(const FlightSeries& series) {
+Choice throttle(const FlightSeries& series) {
     const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
     auto found = first_that_varies(series, "throttle_percent", [&](const Track& track) { return !is_thrust(track); });
-    return found.empty() ? first_that_varies(series, "throttle_percent", is_thrust) : found;
+    return found.track.empty() ? first_that_varies(series, "throttle_percent", is_thrust) : found;
 }
 
 /// The pack's current, or else the sum of what its consumers report.
-Track current(const FlightSeries& series) {
+Choice current(const FlightSeries& series) {
     auto found = first_that_varies(series, "current_a");
-    if (found.empty()) found = summed_over_devices(series, "current_a", "ESC");
-    return found.empty() ? summed_over_devices(series, "current_a", "POWER_DEVICE") : found;
+    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
+        if (!found.track.empty()) break;
+        found.track = sum_over_devices(series, "current_a", message).track;
+    }
+    return found;
 }
 
-Track charge(const FlightSeries& series) {
+Choice charge(const FlightSeries& series) {
     const bool exchanged = energy_and_power_are_exchanged(series);
     auto found = first_that_varies(series, "charge_ah", [&](const Track& track) {
         return exchanged ? track.source != "ENERGY.energy" : track.source != power_read_as_energy;
     });
-    if (found.source == power_read_as_energy) found.source = "ENERGY.energy";
+    if (found.track.source == power_read_as_energy) found.track.source = "ENERGY.energy";
+    return found;
+}
+
+/// Any track but power, which has reasons of its own.
+Choice choose(const FlightSeries& series, std::string_view name) {
+    if (name == "current_a") return current(series);
+    if (name == "charge_ah") return charge(series);
+    if (name == "throttle_percent") return throttle(series);
+    if (name == "ground_speed_m_per_s") return first_of(series, name);
+    auto found = first_that_varies(series, name);
+    if (name == "airspeed_m_per_s" && is_constant(found.track)) found.track = {};
     return found;
 }
 
 }  // namespace
 
 Track chosen_track(const FlightSeries& series, std::string_view name) {
-    if (name == "power_w") return choose_power(series).power_w;
-    if (name == "current_a") return current(series);
-    if (name == "charge_ah") return charge(series);
-    if (name == "throttle_percent") return throttle(series);
-    if (name == "ground_speed_m_per_s") return first_of(series, name);
-    auto found = first_that_varies(series, name);
-    if (name == "airspeed_m_per_s" && is_constant(found)) return {};
-    return found;
+    return name == "power_w" ? choose_power(series).power_w : choose(series, name).track;
 }
 
 std::vector<double> chosen_at(const FlightSeries& series, std::string_view name, const std::vector<double>& time_s) {
@@ -104,6 +138,11 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
     for (const auto& reason : power.passed_over) {
         warnings.push_back(fmt::format("{}: power is taken from {}", reason, power.power_w.source));
     }
+    warnings.insert(warnings.end(), power.left_out.begin(), power.left_out.end());
+    for (const auto& name : track_names()) {
+        if (name == "power_w") continue;
+        for (auto& said : choose(series, name).said) warnings.push_back(std::move(said));
+    }
     for (const auto& skip : series.skipped) warnings.push_back(describe(skip));
     if (series.lacks_log && series.assumed_definitions.empty()) warnings.emplace_back("no .log beside it");
     warnings.insert(warnings.end(), series.notes.begin(), series.notes.end());
@@ -115,7 +154,7 @@ void require_power(const FlightSeries& series, const std::string& holds) {
         throw InputError({series.file},
                          fmt::format("its clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
                                      restart->to_s, series.aircraft_id, restart->message),
-                         "it holds several recordings: split it where the time begins anew");
+                         "it holds several recordings, or one over another: split it where the time begins anew");
     }
     const auto power = choose_power(series);
     if (!power.power_w.empty()) return;

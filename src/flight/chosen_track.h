@@ -14,8 +14,9 @@ namespace flightwatt::flight {
 /// that has values. Exceptions: of airspeed one that varies or none (without a sensor it is constant); of
 /// ground speed the first; of throttle a rotorcraft's thrust comes last; of current and power the sum over
 /// devices where no message tells the whole. Power is the first that measures something (is not 0 throughout)
-/// and is not contradicted by voltage times current. Empty if the log has none. `source` says where it is
-/// from: "ENERGY.voltage * ENERGY.current", "ESC, summed over 4 devices".
+/// and is not contradicted by voltage times current. Samples that cannot be are left out, and said in warnings_of: those
+/// beyond physical bounds (physical_bounds.h), of power, voltage and current where the message contradicts itself, and
+/// lonely spikes (docs/methods.md). Empty if the log has none. `source` says where it is from: "ENERGY.voltage * ENERGY.current", "ESC, summed over 4 devices".
 Track chosen_track(const FlightSeries& series, std::string_view name);
 
 /// The track of that name at other times, linear between its points and constant outside; `time_s` must rise.
@@ -31,7 +32,7 @@ std::map<std::string, std::string> sources_of(const FlightSeries& series);
 /// Above sea level, from the log's NAVIGATION_REF, else as planned; 0 where altitudes are above the ground.
 std::optional<double> ground_altitude_m(const FlightSeries& series);
 
-/// What a user should know: assumed layouts, sources passed over, skipped lines.
+/// What a user should know: assumed layouts, sources passed over, samples left out, skipped lines.
 std::vector<std::string> warnings_of(const FlightSeries& series);
 
 /// Throws InputError where the clock began anew, or where no power was measured: it says what was looked at

@@ -48,7 +48,7 @@ bool is_constant(const Track& track);
 
 using telemetry::CurrentOrigin;
 
-/// The log's clock began anew: what stands behind is another recording.
+/// The log's clock began anew: what stands behind is another recording, or lies over the first.
 struct ClockRestart {
     double known_s = 0.0;  ///< a log that ends before this time shows nothing of it
     double from_s = 0.0;

@@ -133,7 +133,8 @@ LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
     if (can_segment) loaded.power = check_power_record(series, loaded.phases, options.segmentation);
     if (options.correct_idle_offset) correct_idle_offset(series, loaded.power.idle);
     loaded.warnings = warnings_of(series);
-    loaded.warnings.insert(loaded.warnings.end(), loaded.phases.warnings.begin(), loaded.phases.warnings.end());
+    for (const auto* more : {&loaded.phases.warnings, &loaded.power.warnings})
+        loaded.warnings.insert(loaded.warnings.end(), more->begin(), more->end());
     loaded.series = std::move(series);
     loaded.exclusion = exclusion_of(loaded, options);
     return loaded;

@@ -31,7 +31,7 @@ struct LoadedFlight {
     FlightPhases phases;
     PowerReport power;                  ///< as measured, before any correction
     std::string exclusion = {};         ///< why the flight is not to be used; empty if it is
-    std::vector<std::string> warnings;  ///< of the series and the segmentation
+    std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
 };
 
 /// A log with its .log, or a series CSV, in memory: mapped once for all who read it. Throws InputError for a

@@ -73,15 +73,14 @@ PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, dou
         if (interval_s > gap_s) ++statistics.gaps;
         last_s = until_s;
     };
-    double sum_w = 0.0;
     for (auto i = first_at_or_after(time_s, start_s); i < time_s.size() && time_s[i] <= end_s; ++i) {
         count_gap(time_s[i]);
-        sum_w += power.value[i];
         ++statistics.samples;
     }
     count_gap(end_s);
-    if (statistics.samples > 0) statistics.mean_power_w = sum_w / static_cast<double>(statistics.samples);
-    statistics.energy_wh = units::wh_from_joule(integrated(time_s, power.value, start_s, end_s));
+    const double energy_j = integrated(time_s, power.value, start_s, end_s);
+    statistics.energy_wh = units::wh_from_joule(energy_j);
+    if (end_s > start_s) statistics.mean_power_w = energy_j / (end_s - start_s);
     if (const auto counter = chosen_at(series, "energy_wh", time_s); !counter.empty()) {
         statistics.counter_energy_wh =
             interpolate_clamped(time_s, counter, end_s) - interpolate_clamped(time_s, counter, start_s);

@@ -11,7 +11,7 @@ namespace flightwatt::flight {
 /// What was measured between two times.
 struct PhaseStatistics {
     std::size_t samples = 0;                  ///< power samples in [start, end]
-    double mean_power_w = 0.0;                ///< of these samples; 0 without any
+    double mean_power_w = 0.0;                ///< the energy over the duration; 0 of no duration
     double energy_wh = 0.0;                   ///< integral of the power, linear between samples
     std::optional<double> counter_energy_wh;  ///< what the on-board counter counted meanwhile
     std::size_t gaps = 0;                     ///< times without a sample, longer than three usual intervals

@@ -5,7 +5,8 @@
 #include "base/units.h"
 #include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
-#include "flight/segmentation/flight_grid.h"
+#include "flight/power_record/power_record.h"
+#include "flight/power_record/power_warnings.h"
 #include "flight/sources/power_source.h"
 
 #include <algorithm>
@@ -24,62 +25,6 @@ constexpr double faulty_power_difference = 0.10;
 constexpr double compared_power_w = 1.0;  // below, rounding and offsets rule
 constexpr double faulty_counter_return = 0.05;
 constexpr double faulty_rest_part = 0.10;  // of the samples at rest
-constexpr double faulty_closure_percent = 10.0;
-
-/// The samples [first, last).
-struct SampleRange {
-    std::size_t first;
-    std::size_t last;
-};
-
-/// What the power's sensor and counters say, on the clock of the power samples; empty where not logged.
-struct PowerRecord {
-    std::vector<double> time_s;
-    std::vector<double> power_w;
-    std::vector<double> voltage_v;
-    std::vector<double> current_a;
-    std::vector<double> charge_ah;
-    std::vector<double> energy_wh;
-    std::vector<double> throttle_percent;
-    std::vector<SampleRange> flown;  ///< the samples of each sortie
-};
-
-PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
-    auto power = power_track(series);
-    const auto on_clock = [&](const char* name) { return chosen_at(series, name, power.time_s); };
-    PowerRecord record;
-    record.voltage_v = on_clock("voltage_v");
-    record.current_a = on_clock("current_a");
-    record.charge_ah = on_clock("charge_ah");
-    record.energy_wh = on_clock("energy_wh");
-    record.throttle_percent = on_clock("throttle_percent");
-    record.time_s = std::move(power.time_s);
-    record.power_w = std::move(power.value);
-    const auto& time_s = record.time_s;
-    for (const auto& sortie : phases.sorties) {
-        const auto first = std::lower_bound(time_s.begin(), time_s.end(), sortie.start_s());
-        const auto last = std::upper_bound(first, time_s.end(), sortie.end_s());
-        record.flown.push_back(
-            {static_cast<std::size_t>(first - time_s.begin()), static_cast<std::size_t>(last - time_s.begin())});
-    }
-    return record;
-}
-
-/// Indices of the power samples at rest with the motor off.
-std::vector<std::size_t> resting_samples(const FlightSeries& series, const PowerRecord& record,
-                                         const SegmentationOptions& options) {
-    std::vector<std::size_t> indices;
-    if (record.throttle_percent.empty()) return indices;
-    const auto grid = make_grid(series);
-    const auto rests = find_rests(grid, options);
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        const auto at = static_cast<std::size_t>((record.time_s[i] - grid.start_s) / grid.step_s);
-        const bool resting = std::any_of(rests.begin(), rests.end(),
-                                         [&](const GridSpan& rest) { return at >= rest.begin && at < rest.end; });
-        if (resting && record.throttle_percent[i] <= options.idle_throttle_percent) indices.push_back(i);
-    }
-    return indices;
-}
 
 /// The autopilot switches loads on the ground too (a burst after landing): the middle half of the samples is idle.
 std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, const std::vector<std::size_t>& resting) {
@@ -209,7 +154,9 @@ PowerReport check_power_record(const FlightSeries& series, const FlightPhases& p
     const auto record = record_of(series, phases);
     const auto& time_s = record.time_s;
     const auto resting = resting_samples(series, record, options);
-    report.idle = idle_current(record.current_a, resting);
+    const auto at_rest = idle_current(record.current_a, resting);
+    const bool motor_known = !record.throttle_percent.empty();
+    if (motor_known) report.idle = at_rest;
     report.energy_closure_percent = closure_percent(time_s, record.power_w, record.energy_wh, phases);
     report.charge_closure_percent = closure_percent(time_s, record.current_a, record.charge_ah, phases);
     const double gap_s = gap_threshold_s(time_s);
@@ -219,7 +166,8 @@ PowerReport check_power_record(const FlightSeries& series, const FlightPhases& p
             if (interval_s > gap_s) report.gaps.push_back({time_s[i - 1], interval_s});
         }
     }
-    report.power_faults = power_faults_of(record, resting, report);
+    report.power_faults = power_faults_of(record, motor_known ? resting : std::vector<std::size_t>{}, report);
+    report.warnings = power_warnings_of({record, phases, report, at_rest});
     return report;
 }
 

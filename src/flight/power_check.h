@@ -23,6 +23,9 @@ struct PowerGap {
     double duration_s = 0.0;
 };
 
+/// An integral that is further away from the on-board counter is a fault.
+inline constexpr double faulty_closure_percent = 10.0;
+
 /// How far a power record can be trusted.
 struct PowerReport {
     CurrentOrigin origin = CurrentOrigin::unknown;
@@ -31,13 +34,15 @@ struct PowerReport {
     std::optional<double> charge_closure_percent;  ///< the same of current and the charge counter
     std::vector<PowerGap> gaps;                    ///< within the sorties
     std::vector<std::string> power_faults;         ///< what cannot be: such a record is not fitted
+    std::vector<std::string> warnings;             ///< what is doubtful, though it can be
 };
 
 /// Checks a power record. The closure is over the sorties, lift-off to touchdown (that of a phase stands in its
 /// statistics); the idle current over the rests with the motor off. Power faults are: more than 5 A in a tenth of the
 /// samples at rest with the motor off; power that is not voltage times current (more than 10 % apart, median, above
 /// 1 W); a counter that runs back in flight by more than 5 % of what it counted; an integral more than 10 % away from
-/// the counter; power that is negative on average, or does not change at all, in flight.
+/// the counter; power that is negative on average, or does not change at all, in flight. The warnings and their
+/// thresholds stand in docs/methods.md.
 PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 

@@ -1,12 +1,11 @@
 #include "flight/telemetry_series.h"
 
 #include "base/units.h"
+#include "flight/sources/clock_check.h"
 #include "flight/sources/made_tracks.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -113,28 +112,6 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
     series.current_origin = aircraft.current_origin;
 }
 
-/// Times may come a little late; a jump back of a minute is another log, or another boot, behind the first
-/// one. Of all that show it, the pair of times that shows it first.
-std::optional<ClockRestart> restart_in(const telemetry::MessageTable& table) {
-    constexpr double late_s = 60.0;
-    double latest_s = -std::numeric_limits<double>::infinity();
-    const bool none = std::none_of(table.time_s.begin(), table.time_s.end(), [&](double time_s) {
-        latest_s = std::max(latest_s, time_s);
-        return latest_s - time_s > late_s;
-    });
-    std::optional<ClockRestart> restart;
-    if (none) return restart;
-    std::set<double> seen_s;
-    for (const double time_s : table.time_s) {
-        const auto first = seen_s.upper_bound(time_s + late_s);
-        if (first != seen_s.end() && (!restart || *first < restart->known_s)) {
-            restart = {*first, *seen_s.rbegin(), time_s, table.message};
-        }
-        seen_s.insert(time_s);
-    }
-    return restart;
-}
-
 }  // namespace
 
 std::vector<telemetry::MessageRequest> flight_messages() {
@@ -180,12 +157,7 @@ FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string
                                      [&](const telemetry::SenderLog& s) { return s.id == aircraft_id; });
     if (sender == log.senders.end()) return series;
     series.tracks = logged_tracks(*sender, !log.configuration);
-    for (const auto& table : sender->tables) {
-        const auto restart = restart_in(table);
-        if (restart && (!series.clock_restart || restart->known_s < series.clock_restart->known_s)) {
-            series.clock_restart = restart;
-        }
-    }
+    series.clock_restart = clock_restart_in(*sender);
     return series;
 }
 

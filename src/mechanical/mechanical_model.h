@@ -37,6 +37,9 @@ struct FrequencyRange {
     FrequencyBound at_bound = FrequencyBound::none;
 };
 
+/// What a fit's autocorrelation is at most: there the errors are no more than a bound.
+inline constexpr double highest_autocorrelation = 0.99;
+
 /// How well the noise of the samples lets a phase's averaged coefficients be known: standard errors of the
 /// weighted mean of these very flights, weights and durations taken as given. How flights differ is another
 /// question: see PhaseSpread.
@@ -53,6 +56,8 @@ struct PhaseErrors {
     double condition = 0.0;          ///< of the basis on the samples, columns of length 1; the worst flight's
     double autocorrelation = 0.0;    ///< of the noise of samples one median gap apart
     double effective_samples = 0.0;  ///< independent samples that would tell the mean as well
+    /// The errors are those of the flights' own differences, since the noise's autocorrelation is at its bound.
+    bool from_flights = false;
 };
 
 /// How the flights' own curves differ over the phase, at evenly spread parts of it from begin to end.

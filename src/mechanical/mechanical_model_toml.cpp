@@ -42,6 +42,7 @@ PhaseErrors read_errors(const TomlTable& table, std::size_t order) {
     errors.condition = number_in(at_least(1.0), table, "condition");
     errors.autocorrelation = number_in(between(0.0, 1.0), table, "autocorrelation");
     errors.effective_samples = not_negative(table, "effective_samples");
+    errors.from_flights = table.optional_boolean("from_flights").value_or(false);
     table.refuse_unknown_keys();
     return errors;
 }
@@ -74,7 +75,8 @@ std::string errors_toml(const PhaseErrors& errors) {
            fmt::format("curve_w = {}\ndegrees_of_freedom = {}\nr2 = {}\ncondition = {}\n", toml_real(errors.curve_w),
                        toml_real(errors.degrees_of_freedom), toml_real(errors.r2), toml_real(errors.condition)) +
            fmt::format("autocorrelation = {}\neffective_samples = {}\n", toml_real(errors.autocorrelation),
-                       toml_real(errors.effective_samples));
+                       toml_real(errors.effective_samples)) +
+           (errors.from_flights ? "from_flights = true\n" : "");
 }
 
 std::string spread_toml(const PhaseSpread& spread) {

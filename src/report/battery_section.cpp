@@ -6,6 +6,7 @@
 #include "report/figures/flight_figures.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
@@ -32,7 +33,9 @@ void add_record(ReportBattery& battery, const ReportFlight& flight) {
         return;
     }
     try {
-        battery.records.push_back(battery::discharge_record(flight.series));
+        auto found = battery::discharge_records(flight.series);
+        for (const auto& note : found.notes) battery.notes.push_back(fmt::format("{}: {}", flight.name, note));
+        std::ranges::move(found.records, std::back_inserter(battery.records));
     } catch (const InputError& error) {
         battery.excluded.push_back({flight.name, reason_of(error, flight.name)});
     }
@@ -158,6 +161,7 @@ Section battery_section(const ReportBattery& battery) {
     } else {
         section.html += paragraph("The battery was not identified: " + battery.no_answer + ".", "warning");
     }
+    if (!battery.notes.empty()) section.html += list_html(battery.notes);
     section.html += excluded_html(battery);
     return section;
 }

@@ -21,7 +21,8 @@ struct ExcludedFlight {
 struct ReportBattery {
     std::vector<battery::DischargeRecord> records;  ///< of the flights that it rests on
     std::vector<ExcludedFlight> excluded;
-    std::size_t usable = 0;  ///< flights that could be used; more than records where their number is limited
+    std::vector<std::string> notes;  ///< packs that were changed within a log, counters that began anew
+    std::size_t usable = 0;          ///< flights that could be used; more than records where their number is limited
     std::optional<battery::BatteryIdentification> identified;
     std::vector<battery::LeftOutCheck> leave_one_out;  ///< one a record, or empty
     std::string no_answer;                             ///< why it was not identified

@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/validation_output.h"
+#include "mechanical/model_check.h"
 #include "report/figures/flight_figures.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
     Section section{id, "Mechanical model: " + valid_utf8(model.model.name)};
     section.html += paragraph(model.origin, "soft");
     if (!model.model.description.empty()) section.html += paragraph(model.model.description);
+    for (const auto& warning : model_warnings(model.model)) section.html += paragraph(warning, "warning");
     add_figure(section, model_figure(model.model, model.bands, published, id + "-curves"));
     if (model.table_one) {
         section.html += "<h3>Table I</h3>\n";

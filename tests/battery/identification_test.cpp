@@ -33,7 +33,7 @@ std::map<std::string, std::size_t> held(const Battery& pack, const SyntheticDisc
         for (std::size_t f = 0; f < flights; ++f) {
             auto flown = settings;
             flown.duration_s -= 150.0 * static_cast<double>(f);
-            records.push_back(discharge_record(synthetic_discharge(pack, flown, seed + 1000 * f)));
+            records.push_back(test::discharge_record(synthetic_discharge(pack, flown, seed + 1000 * f)));
         }
         IdentificationOptions options;
         options.capacity_ah = pack.capacity_ah;
@@ -84,7 +84,7 @@ TEST(Identification, FindsItselfWithoutNoise) {
     clean.voltage_step_v = clean.current_step_a = 1e-9;
     auto pack = known_pack();
     pack.thevenin->open_circuit = {{0.0, 100.0}, {10.2, 12.4}};
-    const std::vector records{discharge_record(synthetic_discharge(pack, clean, 3))};
+    const std::vector records{test::discharge_record(synthetic_discharge(pack, clean, 3))};
     const auto found = identify_battery(records, {2.4, 3, "clean"});
     EXPECT_NEAR(found.fit.resistance_ohm, 0.08, 1e-4);
     EXPECT_NEAR(found.fit.rc_resistance_ohm, 0.05, 2e-4);
@@ -101,8 +101,8 @@ TEST(Identification, FindsItselfWithoutNoise) {
 TEST(Identification, AlignsFlightsByTheirRestingVoltage) {
     SyntheticDischarge late;
     late.initial_charge_ah = 0.4;
-    const std::vector records{discharge_record(synthetic_discharge(known_pack(), {}, 1)),
-                              discharge_record(synthetic_discharge(known_pack(), late, 2))};
+    const std::vector records{test::discharge_record(synthetic_discharge(known_pack(), {}, 1)),
+                              test::discharge_record(synthetic_discharge(known_pack(), late, 2))};
     const auto found = identify_battery(records, {2.4, {}, ""});
     EXPECT_EQ(found.flights[0].initial_charge_ah, 0.0);
     EXPECT_NEAR(found.flights[1].initial_charge_ah, 0.4, 0.02);
@@ -117,7 +117,7 @@ TEST(Identification, AlignsFlightsByTheirRestingVoltage) {
 TEST(Identification, ForetellsAFlightWithinItsNoise) {
     std::vector<DischargeRecord> records;
     for (const std::uint64_t seed : {1, 2, 3}) {
-        records.push_back(discharge_record(synthetic_discharge(known_pack(), {}, seed)));
+        records.push_back(test::discharge_record(synthetic_discharge(known_pack(), {}, seed)));
     }
     const double noise_v = std::hypot(SyntheticDischarge{}.voltage_noise_v, 0.006 / std::sqrt(12.0));
     for (const auto& check : leave_each_out(records, {2.4, {}, ""})) {
@@ -132,7 +132,7 @@ TEST(Identification, SaysWhereNoRcPairIsSeen) {
     pack.thevenin->rc_resistance_ohm = 0.0;
     std::vector<DischargeRecord> records;
     for (const std::uint64_t seed : {1, 2, 3}) {
-        records.push_back(discharge_record(synthetic_discharge(pack, {}, seed)));
+        records.push_back(test::discharge_record(synthetic_discharge(pack, {}, seed)));
     }
     const auto found = identify_battery(records, {2.4, {}, ""});
     EXPECT_EQ(found.errors.rc_resistance_ohm.low, 0.0);
@@ -145,7 +145,7 @@ TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
     // 12.5 V falling by 1.4 V over 3.2 Ah behind 0.06 ohm, and no RC pair.
     std::vector<DischargeRecord> records;
     for (const auto* name : {"01", "02", "03", "04", "05", "06"}) {
-        records.push_back(discharge_record(
+        records.push_back(test::discharge_record(
             flight::read_flight(test::source_dir() / "logs" / (std::string("opterra_synthetic_") + name + ".data"))));
     }
     const auto found = identify_battery(records, {3.2, {}, ""});
@@ -166,7 +166,7 @@ TEST(Identification, ForetellsRealFlights) {
     std::vector<DischargeRecord> records;
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
         records.push_back(
-            discharge_record(flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
+            test::discharge_record(flight::read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
         EXPECT_GT(records.back().resting_voltage_v, 12.3);  // a pack of 11.1 V that starts full
     }
     for (const auto& check : leave_each_out(records, {})) {

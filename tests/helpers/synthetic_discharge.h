@@ -1,6 +1,6 @@
 #pragma once
 
-#include "battery/battery.h"
+#include "battery/identification.h"
 #include "helpers/sample_columns.h"
 
 #include <cmath>
@@ -92,6 +92,11 @@ inline battery::Battery known_pack() {
     circuit.rc_time_constant_s = 35.0;
     pack.thevenin = circuit;
     return pack;
+}
+
+/// The one record of a log in which one pack was flown.
+inline battery::DischargeRecord discharge_record(const flight::FlightSeries& series) {
+    return battery::discharge_records(series).records.at(0);
 }
 
 }  // namespace flightwatt::test

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "battery/identification/pack_changes.h"
 #include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 
@@ -9,12 +10,11 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::battery {
 namespace {
 
-constexpr double load_part = 0.15;  // of the greatest current: less is rest, with electronics on
-constexpr double least_load_a = 0.2;
 constexpr double rest_s = 30.0;
 constexpr double idle_throttle_percent = 5.0;
 constexpr double flight_throttle_percent = 20.0;
@@ -22,11 +22,19 @@ constexpr double idle_current_a = 1.0;   // more than electronics draw
 constexpr double fine_counter_a = 0.05;  // error of a mean current by the counter's resolution
 constexpr std::size_t least_samples = 50;
 
-void require_channels(const flight::FlightSeries& series, const DischargeRecord& record) {
+constexpr auto needed = "a battery is identified from measured voltage and current";
+
+void require_samples(const flight::FlightSeries& series, std::size_t samples) {
+    if (samples >= least_samples) return;
+    throw InputError({series.file},
+                     fmt::format("{}: has {} samples, expected at least {}", series.flight, samples, least_samples),
+                     needed);
+}
+
+void require_channels(const flight::FlightSeries& series, const PackRecord& record) {
     const auto refuse = [&](const std::string& reason, const std::string& hint) {
         throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason), hint);
     };
-    constexpr auto needed = "a battery is identified from measured voltage and current";
     if (series.current_origin == flight::CurrentOrigin::throttle) {
         refuse(
             "its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), not measured: it says "
@@ -35,24 +43,12 @@ void require_channels(const flight::FlightSeries& series, const DischargeRecord&
     }
     if (record.voltage_v.empty()) refuse("has no voltage", needed);
     if (record.current_a.empty()) refuse("has no current", needed);
-    if (record.time_s.size() < least_samples) {
-        refuse(fmt::format("has {} samples, expected at least {}", record.time_s.size(), least_samples), needed);
-    }
+    require_samples(series, record.time_s.size());
     for (const auto& [name, values] : {std::pair{"voltage", &record.voltage_v}, {"current", &record.current_a}}) {
         const auto [low, high] = std::minmax_element(values->begin(), values->end());
         if (*low == *high) refuse(fmt::format("its {} is {} throughout", name, *low), needed);
     }
     if (*std::ranges::min_element(record.voltage_v) <= 0.0) refuse("its voltage is not positive throughout", needed);
-}
-
-/// Charge drawn by the trapezoids of the current [Ah].
-std::vector<double> integrated_charge_ah(const DischargeRecord& record) {
-    std::vector<double> charge(record.time_s.size(), 0.0);
-    for (std::size_t i = 1; i < charge.size(); ++i) {
-        const double mean_a = (record.current_a[i - 1] + record.current_a[i]) / 2.0;
-        charge[i] = charge[i - 1] + units::ah_from_coulomb(mean_a * (record.time_s[i] - record.time_s[i - 1]));
-    }
-    return charge;
 }
 
 /// The least difference between two of the values that is none of rounding.
@@ -71,7 +67,7 @@ double least_difference(std::vector<double> values) {
 void add_charge(const std::vector<double>& counter_ah, DischargeRecord& record) {
     const auto& time_s = record.time_s;
     const bool counted = !counter_ah.empty() && counter_ah.back() > counter_ah.front();
-    record.charge_ah = counted ? counter_ah : integrated_charge_ah(record);
+    record.charge_ah = counted ? counter_ah : integrated_charge_ah(record.time_s, record.current_a);
     for (auto& charge : record.charge_ah) charge -= counted ? counter_ah.front() : 0.0;
     // A counter in whole mAh says little of a single interval, but bridges gaps.
     const bool fine = counted && units::coulomb_from_ah(least_difference(counter_ah)) <
@@ -109,7 +105,7 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     double greatest_a = 0.0;
     for (std::size_t i = 0; i < record.used.size(); ++i)
         if (record.used[i]) greatest_a = std::max(greatest_a, record.current_a[i]);
-    const double load_a = std::max(least_load_a, load_part * greatest_a);
+    const double load_a = least_load_of(greatest_a);
     std::size_t end = 0;
     while (end < record.current_a.size() && record.current_a[end] < load_a) ++end;
     if (end == 0 || end == record.current_a.size()) {
@@ -128,20 +124,42 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     record.resting_current_a = median_of(std::move(currents_a));
 }
 
-}  // namespace
-
-DischargeRecord discharge_record(const flight::FlightSeries& series) {
-    DischargeRecord record;
-    record.flight = series.flight;
-    record.time_s = power_track(series).time_s;
-    record.voltage_v = chosen_at(series, "voltage_v", record.time_s);
-    record.current_a = chosen_at(series, "current_a", record.time_s);
-    require_channels(series, record);
-    add_charge(chosen_at(series, "charge_ah", record.time_s), record);
-    mark_used(chosen_at(series, "throttle_percent", record.time_s), record);
+void fill_record(const flight::FlightSeries& series, const PackRecord& part, DischargeRecord& record) {
+    require_samples(series, part.time_s.size());
+    record.time_s = part.time_s;
+    record.voltage_v = part.voltage_v;
+    record.current_a = part.current_a;
+    add_charge(part.counter_ah, record);
+    mark_used(part.throttle_percent, record);
     add_rest(series, record);
     record.resolution_v = least_difference(record.voltage_v);
-    return record;
+}
+
+}  // namespace
+
+DischargeRecords discharge_records(const flight::FlightSeries& series) {
+    PackRecord whole;
+    whole.time_s = power_track(series).time_s;
+    whole.voltage_v = chosen_at(series, "voltage_v", whole.time_s);
+    whole.current_a = chosen_at(series, "current_a", whole.time_s);
+    require_channels(series, whole);
+    whole.counter_ah = chosen_at(series, "charge_ah", whole.time_s);
+    whole.throttle_percent = chosen_at(series, "throttle_percent", whole.time_s);
+    DischargeRecords found;
+    const auto parts = split_at_pack_changes(std::move(whole), found.notes);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        DischargeRecord record;
+        record.flight = p == 0 ? series.flight : fmt::format("{}#{}", series.flight, p + 1);
+        try {
+            fill_record(series, parts[p], record);
+            found.records.push_back(std::move(record));
+        } catch (const InputError& error) {
+            if (parts.size() == 1) throw;
+            found.notes.push_back(fmt::format("pack {} is not used: {}", p + 1, error.what()));
+        }
+    }
+    if (found.records.empty()) throw InputError({series.file}, fmt::format("{}", fmt::join(found.notes, "; ")));
+    return found;
 }
 
 std::ptrdiff_t used_samples(const DischargeRecord& record) { return std::ranges::count(record.used, true); }

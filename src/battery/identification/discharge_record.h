@@ -22,13 +22,19 @@ struct DischargeRecord {
     double resolution_v = 0.0;           ///< least difference between two voltages
 };
 
-/// Takes the record from a flight. The charge is the on-board counter's, or the current's integral where there is none;
+/// The discharges of a log: one, or one a pack where it was changed on the ground.
+struct DischargeRecords {
+    std::vector<DischargeRecord> records;  ///< NAME, NAME#2, ...
+    std::vector<std::string> notes;        ///< changes of the pack, counters that began anew, what is not used
+};
+
+/// Takes the records from a log, cut where the pack was changed (pack_changes.h). The charge is the on-board counter's, or the current's integral where there is none;
 /// so is the mean current where the counter is fine enough, and across gaps in any case. The battery rests until the
 /// current first exceeds 15 % of its greatest; its resting voltage and current are the medians of the last 30 s of
 /// that. Samples with more than 1 A while the throttle idles are not used: the autopilot's current has bursts on the
 /// ground that the voltage knows nothing of. Throws InputError, naming the flight, where voltage or current is missing
-/// or constant, where the current was computed from throttle, and where the log does not begin at rest.
-DischargeRecord discharge_record(const flight::FlightSeries& series);
+/// or constant, where the current was computed from throttle, and where no record begins at rest.
+DischargeRecords discharge_records(const flight::FlightSeries& series);
 
 std::ptrdiff_t used_samples(const DischargeRecord& record);
 

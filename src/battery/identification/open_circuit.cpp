@@ -1,6 +1,7 @@
 #include "battery/identification/open_circuit.h"
 
 #include "base/piecewise_linear.h"
+#include "base/statistics.h"
 #include "base/units.h"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ std::string to_string(CapacityOrigin origin) {
     return names.at(static_cast<std::size_t>(origin));
 }
 
-Capacity capacity_of(const CircuitFit& fit, int cells, std::optional<double> given_ah) {
+Capacity capacity_of(const CircuitFit& fit, double last_error_v, int cells, std::optional<double> given_ah) {
     const double drawn_ah = fit.knots_ah.back();
     if (given_ah) {
         if (*given_ah < drawn_ah) {
@@ -61,9 +62,9 @@ Capacity capacity_of(const CircuitFit& fit, int cells, std::optional<double> giv
                         "with --capacity",
                         drawn_ah, last_v));
     }
+    const double reach_v = normal_half_width() * std::hypot(lipo_chart_uncertainty_v, last_error_v / cells);
     return {chart_capacity_ah(drawn_ah, last_v), CapacityOrigin::chart,
-            Interval{chart_capacity_ah(drawn_ah, last_v - lipo_chart_uncertainty_v),
-                     chart_capacity_ah(drawn_ah, last_v + lipo_chart_uncertainty_v)}};
+            Interval{chart_capacity_ah(drawn_ah, last_v - reach_v), chart_capacity_ah(drawn_ah, last_v + reach_v)}};
 }
 
 ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,

@@ -35,12 +35,14 @@ std::string to_string(CapacityOrigin origin);
 struct Capacity {
     double value_ah = 0.0;
     CapacityOrigin origin = CapacityOrigin::given;
-    std::optional<Interval> interval_ah;  ///< of a chart's: the chart 30 mV a cell off
+    /// 95 %, of a chart's: normal errors of the voltage at the end and of the chart, 30 mV a cell (1 sd).
+    std::optional<Interval> interval_ah;
 };
 
-/// The capacity of a battery whose open-circuit voltage was followed from full down. Throws UsageError if the given one
+/// The capacity of a battery whose open-circuit voltage was followed from full down; `last_error_v` is the standard
+/// error of the voltage at the last knot. Throws UsageError if the given one
 /// is less than a flight drew, and NoAnswerError if none is given and the flights hardly drew anything.
-Capacity capacity_of(const CircuitFit& fit, int cells, std::optional<double> given_ah);
+Capacity capacity_of(const CircuitFit& fit, double last_error_v, int cells, std::optional<double> given_ah);
 
 /// The fitted curve over state of charge, full at its first knot; below its last one it goes on in parallel
 /// to the LiPo chart of that many cells.

@@ -11,8 +11,9 @@ namespace flightwatt::cli {
 std::string describe(const battery::Capacity& capacity) {
     auto text = fmt::format("capacity {:.3g} Ah ({})", capacity.value_ah, to_string(capacity.origin));
     if (!capacity.interval_ah) return text;
-    return text + fmt::format(", {:.3g} to {:.3g} Ah if the pack is 30 mV a cell off the chart",
-                              capacity.interval_ah->low, capacity.interval_ah->high);
+    return text + fmt::format(", {:.3g} to {:.3g} Ah in 95 % if packs differ from the chart by {:.0f} mV a cell (1 sd)",
+                              capacity.interval_ah->low, capacity.interval_ah->high,
+                              units::mv_from_v(battery::lipo_chart_uncertainty_v));
 }
 
 TextTable parameters_table(const battery::BatteryIdentification& identified) {

@@ -11,7 +11,7 @@
 /// What `flightwatt battery` says of an identified battery.
 namespace flightwatt::cli {
 
-/// "capacity 4.2 Ah (chart), 3.9 to 4.5 Ah if ...".
+/// "capacity 4.2 Ah (chart), 3.6 to 5.1 Ah in 95 % if ...".
 std::string describe(const battery::Capacity& capacity);
 
 /// One row a resistance or time constant, with its 95 % interval.

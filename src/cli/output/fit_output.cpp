@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "cli/output/json_text.h"
+#include "mechanical/model_check.h"
 #include "mechanical/model_fit.h"
 
 #include <algorithm>
@@ -43,7 +44,8 @@ nlohmann::ordered_json to_json(const mechanical::PhaseModel& phase, const mechan
             {"r2", errors.r2},
             {"condition", errors.condition},
             {"autocorrelation", errors.autocorrelation},
-            {"effective_samples", errors.effective_samples}};
+            {"effective_samples", errors.effective_samples},
+            {"from_flights", errors.from_flights}};
 }
 
 nlohmann::ordered_json to_json(const mechanical::FrequencyProfile& profile) {
@@ -120,10 +122,11 @@ nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
         }
         json["flights"].push_back({{"flight", flight.flight}, {"weights", weights}});
     }
+    json["warnings"] = model_warnings(model);
     return json;
 }
 
-void warn_of_bounds(const StageCall& call, const mechanical::MechanicalModel& model) {
+void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         if (!fitted.range || fitted.range->at_bound == mechanical::FrequencyBound::none) continue;
@@ -133,6 +136,7 @@ void warn_of_bounds(const StageCall& call, const mechanical::MechanicalModel& mo
                                fitted.range->at_bound == mechanical::FrequencyBound::low ? fitted.range->low_rad
                                                                                          : fitted.range->high_rad));
     }
+    for (const auto& warning : model_warnings(model)) warn(call, warning);
 }
 
 void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,

@@ -29,8 +29,8 @@ std::string table_text(const TextTable& table, const std::filesystem::path& file
 /// The fitted model as the stages' JSON.
 nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model);
 
-/// Warns of a frequency at the edge of what it could be.
-void warn_of_bounds(const StageCall& call, const mechanical::MechanicalModel& model);
+/// Warns of a frequency at the edge of what it could be, and of what model_warnings says.
+void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& model);
 
 /// Adds errors, frequency_profile and spread to each phase of the stage's JSON.
 void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,

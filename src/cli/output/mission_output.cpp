@@ -3,6 +3,11 @@
 #include "base/error.h"
 #include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
+#include "mechanical/model_check.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -53,6 +58,14 @@ std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, 
 std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, const mission::MissionSetup& mission) {
     const auto file = call.maybe<std::string>("disturb");
     return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
+}
+
+void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission) {
+    auto warnings = battery_warnings(mission.battery);
+    if (mission.mechanical) std::ranges::copy(model_warnings(*mission.mechanical), std::back_inserter(warnings));
+    for (const auto& component : mission.compute.components)
+        if (auto text = negative_power_warning(component.profile); !text.empty()) warnings.push_back(std::move(text));
+    for (const auto& warning : warnings) warn(call, fmt::format("{}: {}", mission.name, warning));
 }
 
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary) {

@@ -26,6 +26,9 @@ std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, 
 /// What --disturb says of a mission.
 std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, const mission::MissionSetup& mission);
 
+/// Warns of what no drone has: negative power of the model or of a profile, a battery of another unit.
+void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission);
+
 /// The summary as simulate and compare print it; null stands for "never".
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary);
 

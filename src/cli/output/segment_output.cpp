@@ -100,6 +100,7 @@ std::string power_text(const flight::FlightSeries& series, const flight::PowerRe
     for (const auto& gap : power.gaps) longest_s = std::max(longest_s, gap.duration_s);
     text += fmt::format("gaps in flight: {}, the longest {:.1f} s\n", power.gaps.size(), longest_s);
     for (const auto& fault : power.power_faults) text += fmt::format("power fault: {}\n", fault);
+    for (const auto& warning : power.warnings) text += fmt::format("doubtful: {}\n", warning);
     return text;
 }
 

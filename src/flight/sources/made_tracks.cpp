@@ -1,6 +1,7 @@
 #include "flight/sources/made_tracks.h"
 
 #include "base/units.h"
+#include "flight/sources/device_sum.h"
 #include "flight/sources/power_source.h"
 
 #include <algorithm>
@@ -196,20 +197,42 @@ struct DeviceMessage {
     std::vector<const Column*> ids;
 };
 
+/// Row by row of one device; the second, third ... report of one time are tracks of their own, not merged.
+void add_device(std::vector<Track>& tracks, const std::string& id, const Track& as, const MessageTable& table,
+                const std::vector<std::pair<double, double>>& rows) {
+    std::vector<MessageTable> reports;
+    std::vector<std::vector<double>> values;
+    double last_s = unknown;
+    std::size_t report = 0;
+    for (const auto& [time_s, value] : rows) {
+        report = time_s == last_s ? report + 1 : 0;
+        last_s = time_s;
+        if (report == reports.size()) {
+            reports.push_back({table.message, {}, {}});
+            values.emplace_back();
+        }
+        reports[report].time_s.push_back(time_s);
+        values[report].push_back(value);
+    }
+    for (std::size_t r = 0; r < reports.size(); ++r) {
+        tracks.push_back(as_track(as.name, as.source, reports[r], values[r], Merge::mean));
+        tracks.back().device = r == 0 ? id : fmt::format("{}{}{}", id, report_mark, r + 1);
+    }
+}
+
 void add_devices(std::vector<Track>& tracks, const DeviceMessage& message, const char* name, const std::string& source,
                  const std::vector<double>& column_values) {
-    std::map<std::vector<double>, std::pair<std::vector<double>, std::vector<double>>> rows;
+    std::map<std::vector<double>, std::vector<std::pair<double, double>>> rows;
     for (std::size_t i = 0; i < column_values.size(); ++i) {
         std::vector<double> id;
         for (const auto* column : message.ids) id.push_back(column->values[i]);
         if (std::any_of(id.begin(), id.end(), [](double part) { return std::isnan(part); })) continue;
-        auto& [times, values] = rows[id];
-        times.push_back(message.table.time_s[i]);
-        values.push_back(column_values[i]);
+        rows[id].emplace_back(message.table.time_s[i], column_values[i]);
     }
-    for (const auto& [id, row] : rows) {
-        tracks.push_back(as_track(name, source, {"", row.first, {}}, row.second, Merge::mean));
-        tracks.back().device = id.empty() ? "all" : fmt::format("{}", fmt::join(id, "/"));
+    for (auto& [id, of_device] : rows) {
+        std::ranges::stable_sort(of_device, {}, &std::pair<double, double>::first);
+        const auto text = id.empty() ? std::string("all") : fmt::format("{}", fmt::join(id, "/"));
+        add_device(tracks, text, {.name = name, .source = source}, message.table, of_device);
     }
 }
 

@@ -1,9 +1,12 @@
 #include "flight/sources/power_source.h"
 
+#include "flight/sources/device_sum.h"
+#include "flight/sources/wild_samples.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
+#include <iterator>
+#include <utility>
 
 namespace flightwatt::flight {
 namespace {
@@ -28,10 +31,12 @@ const Track* find_product(const FlightSeries& series, std::string_view message) 
     });
 }
 
-/// A track that no message of a log names: a user's CSV, which is believed.
-const Track* plain_power(const FlightSeries& series) {
-    return find_power(
-        series, [](const Track& track) { return track.device.empty() && track.source.find('.') == std::string::npos; });
+/// A track that no message of a log names: a user's CSV.
+const Track* find_plain(const FlightSeries& series, std::string_view name) {
+    const auto found = std::ranges::find_if(series.tracks, [&](const Track& track) {
+        return track.name == name && track.device.empty() && track.source.find('.') == std::string::npos;
+    });
+    return found == series.tracks.end() ? nullptr : &*found;
 }
 
 /// Calls visit(a, b) for the values of both tracks at the times that they share.
@@ -66,16 +71,34 @@ std::size_t samples_near(const Track& power, const Track& product) {
     return near;
 }
 
+/// Voltage times current of a user's CSV.
+Track plain_product(const FlightSeries& series) {
+    Track product;
+    const auto* voltage = find_plain(series, "voltage_v");
+    const auto* current = find_plain(series, "current_a");
+    if (voltage == nullptr || current == nullptr || voltage->time_s != current->time_s) return product;
+    product.time_s = voltage->time_s;
+    for (std::size_t i = 0; i < voltage->value.size(); ++i)
+        product.value.push_back(voltage->value[i] * current->value[i]);
+    return product;
+}
+
 bool measures_something(const Track& power) {
     return power.time_s.size() >= 2 &&
            std::any_of(power.value.begin(), power.value.end(), [](double value) { return value != 0.0; });
 }
 
 /// Takes a candidate if it measures something, or says why not.
-bool take(const Track& candidate, PowerChoice& choice) {
-    if (measures_something(candidate)) {
-        choice.power_w = candidate;
+bool take(const Track& candidate, PowerChoice& choice, const std::vector<double>& contradicted_s = {}) {
+    auto sound = sound_track(candidate, contradicted_s);
+    if (measures_something(sound.track)) {
+        choice.power_w = std::move(sound.track);
+        if (!sound.left_out.empty()) choice.left_out.push_back(std::move(sound.left_out));
         return true;
+    }
+    if (sound.track.empty() && !sound.left_out.empty()) {
+        choice.passed_over.push_back(std::move(sound.left_out));
+        return false;
     }
     choice.passed_over.push_back(candidate.source +
                                  (candidate.time_s.size() < 2 ? " has no two finite values" : " is 0 throughout"));
@@ -104,37 +127,30 @@ bool energy_and_power_are_exchanged(const FlightSeries& series) {
     return exchanged >= 10 && exchanged > 2 * samples_near(*as_read, *product);
 }
 
-Track summed_over_devices(const FlightSeries& series, std::string_view name, std::string_view message) {
-    std::vector<const Track*> devices;
-    for (const auto& track : series.tracks) {
-        const bool is_device = track.name == name && !track.device.empty() && !track.empty() &&
-                               track.source.substr(0, track.source.find('.')) == message;
-        if (is_device) devices.push_back(&track);
+std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source) {
+    if (source.find('.') == std::string_view::npos) {
+        const auto* power = find_plain(series, "power_w");
+        return power == nullptr ? std::vector<double>{} : contradicted_times(*power, plain_product(series));
     }
-    if (devices.empty()) return {};
-    std::stable_sort(devices.begin(), devices.end(),
-                     [](const Track* a, const Track* b) { return a->time_s.size() > b->time_s.size(); });
-    Track sum = *devices.front();
-    for (std::size_t d = 1; d < devices.size(); ++d) {
-        const auto more = resample(*devices[d], sum.time_s);
-        for (std::size_t i = 0; i < more.size(); ++i) sum.value[i] += more[i];
-    }
-    sum.device.clear();
-    sum.source = fmt::format("{}, summed over {} devices", sum.source, devices.size());
-    return sum;
+    const auto* product = find_product(series, source.substr(0, source.find('.') + 1));
+    if (product == nullptr || !source.starts_with("ENERGY.")) return {};
+    return contradicted_times(energy_power(series), *product);
 }
 
 PowerChoice choose_power(const FlightSeries& series) {
     PowerChoice choice;
-    if (const auto* plain = plain_power(series)) {
-        choice.power_w = *plain;
+    if (const auto* plain = find_plain(series, "power_w")) {
+        // Believed even where it is 0 throughout.
+        auto sound = sound_track(*plain, contradicted_times(series, plain->source));
+        choice.power_w = std::move(sound.track);
+        if (!sound.left_out.empty()) choice.left_out.push_back(std::move(sound.left_out));
         return choice;
     }
     const auto* product = find_product(series, "ENERGY.");
     if (const auto power = energy_power(series); !power.source.empty()) {
         if (product != nullptr && contradicts(power, *product)) {
             choice.passed_over.emplace_back("ENERGY.power is not voltage times current");
-        } else if (take(power, choice)) {
+        } else if (take(power, choice, contradicted_times(series, power.source))) {
             return choice;
         }
     }
@@ -146,8 +162,11 @@ PowerChoice choose_power(const FlightSeries& series) {
         if (bat != nullptr && take(*bat, choice)) return choice;
     }
     for (const auto* message : {"ESC", "POWER_DEVICE"}) {
-        const auto sum = summed_over_devices(series, "power_w", message);
-        if (!sum.source.empty() && take(sum, choice)) return choice;
+        auto sum = sum_over_devices(series, "power_w", message);
+        if (!sum.ambiguity.empty()) choice.passed_over.push_back(std::move(sum.ambiguity));
+        if (sum.track.source.empty() || !take(sum.track, choice)) continue;
+        std::ranges::move(sum.notes, std::back_inserter(choice.left_out));
+        return choice;
     }
     return choice;
 }

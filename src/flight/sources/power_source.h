@@ -12,16 +12,17 @@ namespace flightwatt::flight {
 struct PowerChoice {
     Track power_w;                         ///< empty if there is none
     std::vector<std::string> passed_over;  ///< "ENERGY.power is 0 throughout"
+    std::vector<std::string> left_out;     ///< which samples of it are not used, and why
 };
 
 /// ENERGY.power, else voltage times current (ENERGY, then BAT), else the ESCs' or power devices' sum. A
 /// source that reads 0 throughout measures nothing and is passed over, one that voltage times current
-/// contradicts has another layout than was assumed.
+/// contradicts has another layout than was assumed. Samples that cannot be are left out (wild_samples.h).
 PowerChoice choose_power(const FlightSeries& series);
 
-/// Sum over the devices of `message` that report `name` one at a time, on the clock of the one that reports
-/// most; empty if none does. `source` says of how many.
-Track summed_over_devices(const FlightSeries& series, std::string_view name, std::string_view message);
+/// The times, rising, at which the message of `source` ("ENERGY.current"; a user's CSV has no message) contradicts
+/// itself: its power is not its voltage times its current.
+std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source);
 
 /// The 4-field ENERGY without a .log, so that the order of its last two fields was assumed: whether they fit
 /// the other way round (power is voltage times current). Its tracks are then those of source

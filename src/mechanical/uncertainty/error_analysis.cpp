@@ -1,6 +1,7 @@
 #include "mechanical/uncertainty/error_analysis.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/uncertainty/residual_correlation.h"
 
@@ -185,6 +186,32 @@ void fill_standard_errors(ErrorAnalysis& analysis, double duration_s) {
     }
 }
 
+/// Where the autocorrelation stands at its bound, so do the errors. The flights' own coefficients about their mean tell
+/// that mean's error too, with all that tells flights apart: where they say less, that is taken.
+void take_errors_of_flights(ErrorAnalysis& analysis, const PhaseFit& fit, std::span<const double> weights,
+                            const Eigen::MatrixXd& curve) {
+    if (std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }) < 2) return;
+    const double squares = std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(curve.rows(), curve.cols());
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const Eigen::VectorXd apart = coefficients_of(fit.flights[i].fourier) - analysis.coefficients_w;
+        covariance.bottomRightCorner(apart.size(), apart.size()) +=
+            weights[i] * squares / (1.0 - squares) * apart * apart.transpose();
+    }
+    auto& errors = analysis.errors;
+    const double curve_w = std::sqrt(std::max(0.0, curve.cwiseProduct(covariance).sum()));
+    const double degrees_of_freedom = std::max(1.0, 1.0 / squares - 1.0);
+    if (curve_w * student_t_half_width(degrees_of_freedom) >=
+        errors.curve_w * student_t_half_width(errors.degrees_of_freedom)) {
+        return;
+    }
+    analysis.covariance = covariance;
+    errors.curve_w = curve_w;
+    errors.degrees_of_freedom = degrees_of_freedom;
+    errors.frequency_is_given = true;
+    errors.from_flights = true;
+}
+
 }  // namespace
 
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
@@ -225,6 +252,7 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
                                     ? std::max(1.0, curve_variance * curve_variance / variance_of_variance)
                                     : std::max(1.0, errors.effective_samples);
     analysis.free_theta_rad = std::sqrt(std::max(0.0, theta_variance));
+    if (errors.autocorrelation >= highest_autocorrelation) take_errors_of_flights(analysis, fit, weights, curve);
     fill_standard_errors(analysis, mean.duration_s);
     return analysis;
 }

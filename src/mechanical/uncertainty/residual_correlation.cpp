@@ -7,7 +7,6 @@ namespace flightwatt::mechanical {
 namespace {
 
 constexpr double widest_neighbours = 1.5;  ///< samples further apart than so many steps are none
-constexpr double highest_autocorrelation = 0.99;
 
 bool are_neighbours(const FlightResiduals& flight, std::size_t j) {
     return flight.tau[j] - flight.tau[j - 1] <= widest_neighbours * flight.step;

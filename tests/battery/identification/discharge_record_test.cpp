@@ -19,7 +19,7 @@ using test::synthetic_discharge;
 test::SampleColumns flight() { return test::discharge_columns(known_pack(), {}, 7); }
 
 DischargeRecord record_of(const test::SampleColumns& columns) {
-    return discharge_record(test::series_of(columns, "synthetic_7"));
+    return test::discharge_record(test::series_of(columns, "synthetic_7"));
 }
 
 TEST(DischargeRecord, TakesWhatTheLogSays) {
@@ -91,13 +91,13 @@ TEST(DischargeRecord, RefusesByNameAndReason) {
         change(columns);
         auto series = test::series_of(columns, "synthetic_7");
         series.file = "f.data";
-        return rejected([&] { discharge_record(series); });
+        return rejected([&] { test::discharge_record(series); });
     };
     const std::string hint = "; a battery is identified from measured voltage and current";
     EXPECT_EQ(of([](test::SampleColumns&) {}), "");
     auto computed = test::series_of(flight(), "synthetic_7");
     computed.current_origin = flight::CurrentOrigin::throttle;
-    EXPECT_EQ(rejected([&] { discharge_record(computed); }),
+    EXPECT_EQ(rejected([&] { test::discharge_record(computed); }),
               "synthetic_7: synthetic_7: its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), "
               "not measured: it says nothing of the battery; use flights with a current sensor");
     EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v.clear(); }), "f.data: synthetic_7: has no voltage" + hint);

@@ -52,22 +52,25 @@ TEST(LipoCells, AreAsManyAsTheRestingVoltageNeeds) {
 }
 
 TEST(OpenCircuit, TakesTheCapacityThatIsGivenOrFlown) {
-    EXPECT_EQ(capacity_of(fit_down_to(3.8), 3, 2.2).value_ah, 2.2);
-    EXPECT_EQ(capacity_of(fit_down_to(3.8), 3, 2.2).origin, CapacityOrigin::given);
-    EXPECT_THROW(capacity_of(fit_down_to(3.8), 3, 1.1), UsageError);
-    const auto flown = capacity_of(fit_down_to(3.4), 3, std::nullopt);
+    EXPECT_EQ(capacity_of(fit_down_to(3.8), 0.0, 3, 2.2).value_ah, 2.2);
+    EXPECT_EQ(capacity_of(fit_down_to(3.8), 0.0, 3, 2.2).origin, CapacityOrigin::given);
+    EXPECT_THROW(capacity_of(fit_down_to(3.8), 0.0, 3, 1.1), UsageError);
+    const auto flown = capacity_of(fit_down_to(3.4), 0.0, 3, std::nullopt);
     EXPECT_EQ(flown.value_ah, 1.2);
     EXPECT_EQ(flown.origin, CapacityOrigin::flown);
 }
 
 TEST(OpenCircuit, ReadsTheCapacityOffTheChartOtherwise) {
-    const auto half = capacity_of(fit_down_to(3.84), 3, std::nullopt);
+    const auto half = capacity_of(fit_down_to(3.84), 0.0, 3, std::nullopt);
     EXPECT_EQ(half.origin, CapacityOrigin::chart);
     EXPECT_NEAR(half.value_ah, 2.4, 1e-9);
     ASSERT_TRUE(half.interval_ah);
-    EXPECT_NEAR(half.interval_ah->low, 1.2 / (100.0 - lipo_chart_soc_percent(3.81)) * 100.0, 1e-9);
-    EXPECT_GT(half.interval_ah->high, 2.6);
-    EXPECT_THROW(capacity_of(fit_down_to(4.19), 3, std::nullopt), NoAnswerError);
+    EXPECT_NEAR(half.interval_ah->low, 1.2 / (100.0 - lipo_chart_soc_percent(3.84 - 1.96 * 0.03)) * 100.0, 1e-3);
+    EXPECT_GT(half.interval_ah->high, 2.9);
+    const auto unsure = capacity_of(fit_down_to(3.84), 3.0 * 0.03, 3, std::nullopt);  // the voltage as much as the chart
+    EXPECT_LT(unsure.interval_ah->low, half.interval_ah->low);
+    EXPECT_GT(unsure.interval_ah->high, half.interval_ah->high);
+    EXPECT_THROW(capacity_of(fit_down_to(4.19), 0.0, 3, std::nullopt), NoAnswerError);
 }
 
 TEST(OpenCircuit, GoesOnInParallelToTheChart) {

@@ -18,7 +18,7 @@ class BatteryOutput : public testing::Test {
         battery::IdentificationOptions options;
         options.capacity_ah = test::known_pack().capacity_ah;
         for (const std::uint64_t seed : {1U, 2U}) {
-            records_.push_back(battery::discharge_record(test::synthetic_discharge(test::known_pack(), {}, seed)));
+            records_.push_back(test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, seed)));
         }
         identified_ = identify_battery(records_, options);
         checks_ = leave_each_out(records_, options);

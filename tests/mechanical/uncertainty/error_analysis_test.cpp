@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include <Eigen/QR>
 #include <gtest/gtest.h>
@@ -44,6 +46,34 @@ Eigen::MatrixXd textbook_covariance(const Analysed& one) {
                                         .triangularView<Eigen::Upper>()
                                         .solve(Eigen::MatrixXd::Identity(jacobian.cols(), jacobian.cols()));
     return at.residual.squaredNorm() / freedom * inverse * inverse.transpose();
+}
+
+/// Flights whose levels differ by a few times `apart_w`, each with the same swing that is too fast for the series: its
+/// residuals are alike from sample to sample for as long as the phase lasts.
+std::vector<PhaseSamples> swinging_flights(double apart_w) {
+    constexpr int samples = 600;
+    std::vector<PhaseSamples> flights;
+    for (int flight = 0; flight < 4; ++flight) {
+        PhaseSamples made{"f" + std::to_string(flight), 60.0, {}, {}};
+        for (int j = 0; j < samples; ++j) {
+            const double tau = static_cast<double>(j) / (samples - 1);
+            made.tau.push_back(tau);
+            made.power_w.push_back(60.0 + apart_w * flight + 10.0 * std::sin(5.0 * tau) +
+                                   6.0 * std::sin(2.0 * std::numbers::pi * 7.3 * tau));
+        }
+        flights.push_back(std::move(made));
+    }
+    return flights;
+}
+
+TEST(ErrorAnalysis, TakesTheDifferencesOfFlightsWhereTheNoiseTellsLess) {
+    const auto alike = analysed(swinging_flights(0.05), flight::Phase::takeoff).analysis.errors;
+    EXPECT_EQ(alike.autocorrelation, highest_autocorrelation);
+    EXPECT_TRUE(alike.from_flights);
+    EXPECT_NEAR(alike.curve_w, 0.05 * 1.29 / 2.0, 0.01);  // sd of 0, 1, 2, 3 is 1.29
+    EXPECT_NEAR(alike.degrees_of_freedom, 3.0, 1e-9);
+    const auto apart = analysed(swinging_flights(50.0), flight::Phase::takeoff).analysis.errors;
+    EXPECT_FALSE(apart.from_flights);
 }
 
 TEST(ErrorAnalysis, WithoutCorrelationIsTheCovarianceOfTheTextbook) {

@@ -1,0 +1,51 @@
+#include "flight/physical_bounds.h"
+
+#include <algorithm>
+#include <array>
+
+namespace flightwatt::flight {
+namespace {
+
+struct NamedBounds {
+    std::string_view name;
+    PhysicalBounds bounds;
+};
+
+constexpr std::array bounds_by_name{NamedBounds{"altitude_m", {-1e3, 5e4}},
+                                    NamedBounds{"throttle_percent", {-110.0, 110.0}},
+                                    NamedBounds{"voltage_v", {0.0, 500.0}},
+                                    NamedBounds{"current_a", {-2e3, 2e3}},
+                                    NamedBounds{"power_w", {-1e5, 1e5}},
+                                    NamedBounds{"charge_ah", {-1e4, 1e4}},
+                                    NamedBounds{"energy_wh", {-1e5, 1e5}},
+                                    NamedBounds{"ground_speed_m_per_s", {-1.0, 300.0}},
+                                    NamedBounds{"airspeed_m_per_s", {-50.0, 300.0}},
+                                    NamedBounds{"wind_speed_m_per_s", {0.0, 100.0}},
+                                    NamedBounds{"wind_east_m_per_s", {-100.0, 100.0}},
+                                    NamedBounds{"wind_north_m_per_s", {-100.0, 100.0}},
+                                    NamedBounds{"climb_m_per_s", {-300.0, 300.0}}};
+
+}  // namespace
+
+std::optional<PhysicalBounds> physical_bounds(std::string_view track_name) {
+    const auto* const found = std::ranges::find(bounds_by_name, track_name, &NamedBounds::name);
+    return found == bounds_by_name.end() ? std::nullopt : std::optional(found->bounds);
+}
+
+Track within_bounds(const Track& track) {
+    const auto bounds = physical_bounds(track.name);
+    const auto is_within = [&](double value) { return value >= bounds->low && value <= bounds->high; };
+    if (!bounds || std::ranges::all_of(track.value, is_within)) return track;
+    Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
+    constexpr double most_beyond = 0.1;
+    const auto beyond = track.value.size() - static_cast<std::size_t>(std::ranges::count_if(track.value, is_within));
+    if (static_cast<double>(beyond) > most_beyond * static_cast<double>(track.value.size())) return kept;
+    for (std::size_t i = 0; i < track.value.size(); ++i) {
+        if (!is_within(track.value[i])) continue;
+        kept.time_s.push_back(track.time_s[i]);
+        kept.value.push_back(track.value[i]);
+    }
+    return kept;
+}
+
+}  // namespace flightwatt::flight

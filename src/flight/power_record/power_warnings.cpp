@@ -1,0 +1,291 @@
+#include "flight/power_record/power_warnings.h"
+
+#include "base/piecewise_linear.h"
+#include "base/statistics.h"
+#include "base/units.h"
+#include "flight/phase_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr double doubtful_rest_a = 1.0;
+constexpr double doubtful_rest_part = 0.05;
+constexpr double doubtful_closure_percent = 3.0;
+constexpr double doubtful_phase_part = 0.10;       // of the phase's energy,
+constexpr double doubtful_phase_of_flight = 0.02;  // and of the flight's
+constexpr double told_gap_part = 0.02;             // links drop out for seconds all the time
+constexpr double doubtful_gap_part = 0.04;
+constexpr double doubtful_peak_part = 0.03;
+constexpr double doubtful_negative_part = 0.02;
+constexpr std::size_t standing_samples = 30;
+constexpr double doubtful_standing_part = 0.04;
+constexpr double powerless_throttle_percent = 30.0;
+constexpr double powerless_part = 0.05;           // of the median power at such a throttle
+constexpr double doubtful_powerless_part = 0.15;  // of the samples at such a throttle
+constexpr double greatest_pack_v = 60.0;          // 14 LiPo cells
+constexpr double least_pack_v = 2.5;              // one cell, empty
+constexpr double least_voltage_part = 0.55;       // 2.3 V of a cell that began full
+constexpr double least_mean_power_w = 1.0;
+
+/// The record and its energy in flight [J].
+struct FlownPower {
+    const PowerEvidence& evidence;
+    const PowerRecord& record;
+    double energy_j = 0.0;
+    double duration_s = 0.0;
+};
+
+template <typename Visit>
+void for_each_flown(const PowerRecord& record, Visit&& visit) {
+    for (const auto& [first, last] : record.flown)
+        for (auto i = first; i < last; ++i) visit(i);
+}
+
+int percent(double part) { return static_cast<int>(std::lround(part * units::percent_per_whole)); }
+
+using Warnings = std::vector<std::string>;
+
+void warn_of_rest(const FlownPower& flown, Warnings& warnings) {
+    const auto& idle = flown.evidence.at_rest;
+    if (!idle || flown.record.current_a.empty()) return;
+    std::vector<double> currents;
+    for_each_flown(flown.record, [&](std::size_t i) { currents.push_back(flown.record.current_a[i]); });
+    if (currents.empty()) return;
+    const double part = std::abs(idle->mean_a) / std::max(std::abs(mean(currents)), 1e-9);
+    if (std::abs(idle->mean_a) < doubtful_rest_a && part < doubtful_rest_part) return;
+    warnings.push_back(
+        fmt::format("the current is {:.2f} A at rest on the ground, {} % of the mean in flight: what the electronics "
+                    "draw, or an offset of the sensor that its counters share; --correct-idle-offset takes it out",
+                    idle->mean_a, percent(part)));
+}
+
+/// The least step of a counter in flight; 0 if it does not move.
+double counter_resolution(const PowerRecord& record, const std::vector<double>& counter) {
+    double least = 0.0;
+    for (const auto& [first, last] : record.flown) {
+        for (auto i = first + 1; i < last; ++i) {
+            const double step = std::abs(counter[i] - counter[i - 1]);
+            if (step > 1e-9 && (least == 0.0 || step < least)) least = step;
+        }
+    }
+    return least;
+}
+
+double counted(const FlownPower& flown, const std::vector<double>& counter, double start_s, double end_s) {
+    const auto& time_s = flown.record.time_s;
+    return interpolate_clamped(time_s, counter, end_s) - interpolate_clamped(time_s, counter, start_s);
+}
+
+void warn_of_closure(const FlownPower& flown, Warnings& warnings) {
+    const auto& record = flown.record;
+    const auto judge = [&](const char* name, const std::optional<double>& closure, const std::vector<double>& counter) {
+        if (!closure || std::abs(*closure) > faulty_closure_percent) return;
+        double difference = 0.0;
+        for (const auto& sortie : flown.evidence.phases.sorties)
+            difference += counted(flown, counter, sortie.start_s(), sortie.end_s());
+        const double rounding_percent = units::percent_of(2.0 * counter_resolution(record, counter), difference);
+        if (std::abs(*closure) <= doubtful_closure_percent + rounding_percent) return;
+        warnings.push_back(
+            fmt::format("what was measured in flight is {:+.1f} % away from the on-board {} counter", *closure, name));
+    };
+    judge("energy", flown.evidence.report.energy_closure_percent, record.energy_wh);
+    judge("charge", flown.evidence.report.charge_closure_percent, record.charge_ah);
+}
+
+void warn_of_phases(const FlownPower& flown, Warnings& warnings) {
+    const auto& closure = flown.evidence.report.energy_closure_percent;
+    if (!closure || std::abs(*closure) > doubtful_closure_percent) return;  // the whole is told of
+    for (const auto& sortie : flown.evidence.phases.sorties) {
+        for (const auto& span : sortie.phases) {
+            const double measured_j =
+                integrated(flown.record.time_s, flown.record.power_w, span.start.time_s, span.end.time_s);
+            const double counter_j =
+                units::joule_from_wh(counted(flown, flown.record.energy_wh, span.start.time_s, span.end.time_s));
+            const double apart_j = std::abs(measured_j - counter_j);
+            if (apart_j <= doubtful_phase_part * std::abs(counter_j) ||
+                apart_j <= doubtful_phase_of_flight * flown.energy_j) {
+                continue;
+            }
+            warnings.push_back(fmt::format("{} at {:.0f} s: {:.3f} Wh were measured and {:.3f} Wh counted",
+                                           to_string(span.phase), span.start.time_s, units::wh_from_joule(measured_j),
+                                           units::wh_from_joule(counter_j)));
+        }
+    }
+}
+
+/// A gap that begins or ends a sortie hides when that was: no counter helps.
+void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
+    const auto& record = flown.record;
+    const auto& time_s = record.time_s;
+    const double gap_s = gap_threshold_s(time_s);
+    const auto& report = flown.evidence.report;
+    const bool is_counted = report.energy_closure_percent || report.charge_closure_percent;
+    double carried_j = 0.0;
+    double together_s = 0.0;
+    PowerGap longest;
+    std::size_t gaps = 0;
+    for (const auto& sortie : flown.evidence.phases.sorties) {
+        for (std::size_t i = 1; i < time_s.size(); ++i) {
+            const double interval_s = time_s[i] - time_s[i - 1];
+            if (interval_s <= gap_s || time_s[i] <= sortie.start_s() || time_s[i - 1] >= sortie.end_s()) continue;
+            const bool inside = time_s[i - 1] >= sortie.start_s() && time_s[i] <= sortie.end_s();
+            if (inside && is_counted) continue;  // the closure tells
+            const double energy_j = std::abs(record.power_w[i - 1] + record.power_w[i]) / 2.0 * interval_s;
+            if (energy_j < told_gap_part * flown.energy_j) continue;
+            carried_j += energy_j;
+            together_s += interval_s;
+            ++gaps;
+            if (interval_s > longest.duration_s) longest = {time_s[i - 1], interval_s};
+        }
+    }
+    const double part = carried_j / flown.energy_j;
+    if (part <= doubtful_gap_part) return;
+    warnings.push_back(
+        fmt::format("{} gap{} in the power, {:.0f} s in all, the longest {:.0f} s from {:.1f} s on: {} % "
+                    "of the energy is a straight line across, and no counter confirms it",
+                    gaps, gaps == 1 ? "" : "s", together_s, longest.duration_s, longest.start_s, percent(part)));
+}
+
+/// Of single samples that rise above both neighbours by more than half of what was ever held for three samples.
+void warn_of_peaks(const FlownPower& flown, Warnings& warnings) {
+    const auto& record = flown.record;
+    const auto& power_w = record.power_w;
+    const double longest_s = gap_threshold_s(record.time_s);
+    double held_w = 0.0;
+    for (std::size_t i = 2; i < power_w.size(); ++i)
+        held_w = std::max(held_w, std::min({power_w[i - 2], power_w[i - 1], power_w[i]}));
+    double carried_j = 0.0;
+    std::size_t peaks = 0;
+    for_each_flown(record, [&](std::size_t i) {
+        if (i == 0 || i + 1 >= power_w.size()) return;
+        const double above_w = power_w[i] - std::max(power_w[i - 1], power_w[i + 1]);
+        if (above_w <= held_w / 2.0) return;
+        carried_j += above_w * std::min(record.time_s[i + 1] - record.time_s[i - 1], longest_s) / 2.0;
+        ++peaks;
+    });
+    const double part = carried_j / flown.energy_j;
+    if (part <= doubtful_peak_part) return;
+    warnings.push_back(fmt::format("{} single sample{} far above the neighbours carr{} {} % of the energy", peaks,
+                                   peaks == 1 ? "" : "s", peaks == 1 ? "ies" : "y", percent(part)));
+}
+
+void warn_of_standing(const FlownPower& flown, Warnings& warnings) {
+    const auto& record = flown.record;
+    const auto& time_s = record.time_s;
+    const auto& power_w = record.power_w;
+    for (const auto& [first, last] : record.flown) {
+        for (auto begin = first; begin < last;) {
+            auto end = begin + 1;
+            while (end < last && power_w[end] == power_w[begin]) ++end;
+            const double part = power_w[begin] * (time_s[end - 1] - time_s[begin]) / flown.energy_j;
+            if (end - begin >= standing_samples && end - begin < last - first && part > doubtful_standing_part) {
+                warnings.push_back(
+                    fmt::format("power stands still at {:.2f} W from {:.1f} to {:.1f} s: {} % of the energy",
+                                power_w[begin], time_s[begin], time_s[end - 1], percent(part)));
+            }
+            begin = end;
+        }
+    }
+}
+
+void warn_of_negative(const FlownPower& flown, Warnings& warnings) {
+    const auto& record = flown.record;
+    double negative_j = 0.0;
+    std::size_t samples = 0;
+    for_each_flown(record, [&](std::size_t i) {
+        if (record.power_w[i] >= 0.0 || i == 0 || i + 1 >= record.power_w.size()) return;
+        negative_j -= record.power_w[i] * (record.time_s[i + 1] - record.time_s[i - 1]) / 2.0;
+        ++samples;
+    });
+    if (negative_j <= doubtful_negative_part * flown.energy_j) return;
+    warnings.push_back(fmt::format("power is negative in {} samples in flight, {} % of the energy", samples,
+                                   percent(negative_j / flown.energy_j)));
+}
+
+void warn_of_powerless_throttle(const FlownPower& flown, Warnings& warnings) {
+    const auto& record = flown.record;
+    if (record.throttle_percent.empty()) return;
+    std::vector<double> powers;
+    for_each_flown(record, [&](std::size_t i) {
+        if (record.throttle_percent[i] > powerless_throttle_percent) powers.push_back(std::abs(record.power_w[i]));
+    });
+    if (powers.size() < standing_samples) return;
+    auto sorted = powers;
+    std::ranges::sort(sorted);
+    const double limit_w = powerless_part * quantile(sorted, 0.75);
+    const auto without = std::ranges::count_if(powers, [&](double power) { return power <= limit_w; });
+    const double part = static_cast<double>(without) / static_cast<double>(powers.size());
+    if (part <= doubtful_powerless_part) return;
+    warnings.push_back(fmt::format("no power in {} % of the samples in flight with more than {:.0f} % throttle",
+                                   percent(part), powerless_throttle_percent));
+}
+
+/// What was flown before the log began or after it ended is in no sum.
+void warn_of_missing_ends(const FlownPower& flown, Warnings& warnings) {
+    for (const auto& sortie : flown.evidence.phases.sorties) {
+        if (sortie.phases.empty()) continue;
+        const auto& first = sortie.phases.front();
+        const auto& last = sortie.phases.back();
+        const bool begins = first.complete && first.phase == Phase::takeoff;
+        const bool ends = last.complete && last.phase == Phase::landing;
+        if (!begins) {
+            warnings.push_back(
+                fmt::format("the log begins in the air, at {:.0f} s: what was flown before is not in its energy",
+                            sortie.start_s()));
+        }
+        if (!ends) {
+            warnings.push_back(fmt::format(
+                "the log ends in the air, at {:.0f} s: what was flown after is not in its energy", sortie.end_s()));
+        }
+    }
+}
+
+void warn_of_voltage(const FlownPower& flown, Warnings& warnings) {
+    std::vector<double> voltages;
+    if (flown.record.voltage_v.empty()) return;
+    for_each_flown(flown.record, [&](std::size_t i) { voltages.push_back(flown.record.voltage_v[i]); });
+    if (voltages.empty()) return;
+    const auto [low, high] = std::ranges::minmax(voltages);
+    if (high > greatest_pack_v) {
+        warnings.push_back(
+            fmt::format("a voltage of {:.4g} V is that of more than 14 LiPo cells: is its unit V?", high));
+    } else if (high < least_pack_v) {
+        warnings.push_back(fmt::format("a voltage of {:.4g} V is less than a LiPo cell's: is its unit V?", high));
+    } else if (low < least_voltage_part * high) {
+        warnings.push_back(fmt::format("the voltage falls to {:.4g} V from {:.4g} V: no pack stands that", low, high));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> power_warnings_of(const PowerEvidence& evidence) {
+    Warnings warnings;
+    if (evidence.record.time_s.empty()) return warnings;
+    FlownPower flown{evidence, evidence.record};
+    for (const auto& sortie : evidence.phases.sorties) {
+        flown.energy_j += integrated(evidence.record.time_s, evidence.record.power_w, sortie.start_s(), sortie.end_s());
+        flown.duration_s += sortie.end_s() - sortie.start_s();
+    }
+    warn_of_missing_ends(flown, warnings);
+    warn_of_rest(flown, warnings);
+    warn_of_voltage(flown, warnings);
+    if (!(flown.energy_j > 0.0)) return warnings;  // a fault
+    warn_of_closure(flown, warnings);
+    warn_of_phases(flown, warnings);
+    warn_of_gaps(flown, warnings);
+    warn_of_peaks(flown, warnings);
+    warn_of_standing(flown, warnings);
+    warn_of_negative(flown, warnings);
+    warn_of_powerless_throttle(flown, warnings);
+    if (const double mean_w = flown.energy_j / flown.duration_s; mean_w < least_mean_power_w) {
+        warnings.push_back(fmt::format("a mean of {:.3g} W in flight: nothing flies on that; is its unit W?", mean_w));
+    }
+    return warnings;
+}
+
+}  // namespace flightwatt::flight

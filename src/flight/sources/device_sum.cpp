@@ -1,0 +1,163 @@
+#include "flight/sources/device_sum.h"
+
+#include "flight/phase_statistics.h"
+#include "flight/physical_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr double silent_intervals = 5.0;
+constexpr double outside_intervals = 3.0;
+constexpr double hardly_part = 0.01;
+constexpr std::size_t hardly_reports = 3;
+constexpr std::size_t many_reports = 30;
+constexpr double repeated_part = 0.05;  // of a device's reports: less is damage
+constexpr double burst_part = 0.4;      // of the intervals, that are a fifth of the mean or less
+constexpr double short_interval = 0.2;
+
+/// One device, and what it reports more than once at one time.
+struct Device {
+    std::string id;
+    Track track;
+    std::vector<Track> repeated;
+};
+
+std::vector<Device> devices_of(const FlightSeries& series, std::string_view name, std::string_view message) {
+    std::vector<Device> devices;
+    for (const auto& track : series.tracks) {
+        const bool is_device = track.name == name && !track.device.empty() && !track.empty() &&
+                               track.source.substr(0, track.source.find('.')) == message;
+        if (!is_device) continue;
+        const auto id = track.device.substr(0, track.device.find(report_mark));
+        const auto known = std::ranges::find(devices, id, &Device::id);
+        if (known != devices.end()) {
+            known->repeated.push_back(track);
+        } else if (auto sound = within_bounds(track); !sound.empty()) {
+            devices.push_back({id, std::move(sound), {}});
+        }
+    }
+    std::ranges::stable_sort(devices, std::ranges::greater(), [](const Device& d) { return d.track.time_s.size(); });
+    return devices;
+}
+
+/// How many reports came beside others of the same time, and how many of these differ from the first.
+struct Repetition {
+    std::size_t reports = 0;
+    std::size_t differing = 0;
+};
+
+Repetition repetition_of(const Device& device) {
+    Repetition repetition;
+    for (const auto& track : device.repeated) {
+        repetition.reports += track.time_s.size();
+        for (std::size_t i = 0; i < track.time_s.size(); ++i)
+            if (value_at(device.track, track.time_s[i]) != track.value[i]) ++repetition.differing;
+    }
+    return repetition;
+}
+
+bool comes_in_bursts(const Track& track) {
+    if (track.time_s.size() < many_reports) return false;
+    const auto intervals = static_cast<double>(track.time_s.size() - 1);
+    const double mean_s = (track.time_s.back() - track.time_s.front()) / intervals;
+    std::size_t shorter = 0;
+    for (std::size_t i = 1; i < track.time_s.size(); ++i)
+        if (track.time_s[i] - track.time_s[i - 1] <= short_interval * mean_s) ++shorter;
+    return static_cast<double>(shorter) > burst_part * intervals;
+}
+
+/// Whether one id stands for several devices: says so, or what might be.
+void judge_ids(const std::vector<Device>& devices, std::string_view message, DeviceSum& sum) {
+    for (const auto& device : devices) {
+        const auto [reports, differing] = repetition_of(device);
+        if (static_cast<double>(reports) > repeated_part * static_cast<double>(device.track.time_s.size())) {
+            if (2 * differing > reports) {
+                sum.ambiguity = fmt::format("{} {} reports different values at one time: several devices under one id",
+                                            message, device.id);
+            } else if (devices.size() == 1) {
+                sum.notes.push_back(fmt::format(
+                    "{} {} reports up to {} times at one time: doubled lines, or several devices under one id; counted "
+                    "once",
+                    message, device.id, device.repeated.size() + 1));
+            }
+        } else if (devices.size() == 1 && comes_in_bursts(device.track)) {
+            sum.notes.push_back(fmt::format(
+                "{} {} reports in bursts: are these several devices under one id? Taken for one", message, device.id));
+        }
+    }
+}
+
+/// The device's value at t; std::nullopt where it is silent.
+std::optional<double> report_at(const Track& track, double usual_s, double time_s) {
+    const auto after = std::ranges::upper_bound(track.time_s, time_s);
+    const bool begun = after != track.time_s.begin();
+    const double since_s = begun ? time_s - *(after - 1) : 0.0;
+    if (begun && since_s == 0.0) return value_at(track, time_s);
+    if (after == track.time_s.end())
+        return since_s > outside_intervals * usual_s ? std::nullopt : std::optional(track.value.back());
+    const double until_s = *after - time_s;
+    if (!begun) return until_s > outside_intervals * usual_s ? std::nullopt : std::optional(track.value.front());
+    if (since_s + until_s > silent_intervals * usual_s) return std::nullopt;
+    return value_at(track, time_s);
+}
+
+/// Adds a device where it reports, and leaves out the rest.
+void add_device(Track& sum, const Device& device, double clock_s, std::string_view message,
+                std::vector<std::string>& notes) {
+    const double usual_s = std::max(usual_interval_s(device.track.time_s), clock_s);
+    Track both{sum.name, sum.source, sum.device, sum.since_s, {}, {}};
+    std::optional<double> silent_from_s;
+    for (std::size_t i = 0; i < sum.time_s.size(); ++i) {
+        const auto more = report_at(device.track, usual_s, sum.time_s[i]);
+        if (!more) {
+            if (!silent_from_s) silent_from_s = sum.time_s[i];
+            continue;
+        }
+        both.time_s.push_back(sum.time_s[i]);
+        both.value.push_back(sum.value[i] + *more);
+    }
+    if (silent_from_s) {
+        notes.push_back(
+            fmt::format("{} {} is silent at {} of {} times, first at {:.1f} s: the sum over the devices has "
+                        "no value there",
+                        message, device.id, sum.time_s.size() - both.time_s.size(), sum.time_s.size(), *silent_from_s));
+    }
+    sum = std::move(both);
+}
+
+}  // namespace
+
+DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message) {
+    DeviceSum sum;
+    auto devices = devices_of(series, name, message);
+    if (devices.empty()) return sum;
+    const auto most = devices.front().track.time_s.size();
+    const auto hardly_reports_at_all = [&](const Device& device) {
+        const auto reports = device.track.time_s.size();
+        return static_cast<double>(reports) < hardly_part * static_cast<double>(most) ||
+               (reports < hardly_reports && most >= many_reports);
+    };
+    for (const auto& device : devices) {
+        if (!hardly_reports_at_all(device)) continue;
+        sum.notes.push_back(fmt::format("{} {} reports only {} times: it is left out of the sum", message, device.id,
+                                        device.track.time_s.size()));
+    }
+    std::erase_if(devices, hardly_reports_at_all);
+    judge_ids(devices, message, sum);
+    if (!sum.ambiguity.empty()) return sum;
+    sum.track = devices.front().track;
+    const double clock_s = usual_interval_s(sum.track.time_s);
+    for (std::size_t d = 1; d < devices.size(); ++d) add_device(sum.track, devices[d], clock_s, message, sum.notes);
+    sum.track.device.clear();
+    sum.track.source = fmt::format("{}, summed over {} devices", sum.track.source, devices.size());
+    return sum;
+}
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,167 @@
+#include "flight/sources/wild_samples.h"
+
+#include "base/statistics.h"
+#include "flight/physical_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr double contradicting_part = 0.10;
+constexpr double contradicting_w = 1.0;  // power may be a whole number
+constexpr double spike_factor = 3.0;
+constexpr double neighbour_factor = 2.0;
+constexpr double voltage_step = 0.30;
+constexpr double counter_step = 0.01;
+
+struct ComparedPower {
+    double time_s;
+    double difference_w;
+    double larger_w;
+};
+
+std::vector<ComparedPower> compared(const Track& power, const Track& product) {
+    std::vector<ComparedPower> pairs;
+    for (std::size_t i = 0, j = 0; i < power.time_s.size(); ++i) {
+        while (j < product.time_s.size() && product.time_s[j] < power.time_s[i]) ++j;
+        if (j == product.time_s.size() || product.time_s[j] != power.time_s[i]) continue;
+        pairs.push_back({power.time_s[i], std::abs(power.value[i] - product.value[j]),
+                         std::max(std::abs(power.value[i]), std::abs(product.value[j]))});
+    }
+    return pairs;
+}
+
+/// The largest magnitude that was held for three samples.
+double held_magnitude(const std::vector<double>& values) {
+    double held = 0.0;
+    for (std::size_t i = 2; i < values.size(); ++i) {
+        held = std::max(held, std::min({std::abs(values[i - 2]), std::abs(values[i - 1]), std::abs(values[i])}));
+    }
+    return held;
+}
+
+/// The times of all runs [first, last) of one or two samples between two others that are spikes.
+template <typename IsSpike>
+std::vector<double> times_of_runs(const Track& track, const IsSpike& is_spike) {
+    std::vector<double> times_s;
+    for (std::size_t i = 1; i + 1 < track.value.size(); ++i) {
+        for (const std::size_t length : {1U, 2U}) {
+            if (i + length >= track.value.size() || !is_spike(i, i + length)) continue;
+            times_s.insert(times_s.end(), track.time_s.begin() + static_cast<std::ptrdiff_t>(i),
+                           track.time_s.begin() + static_cast<std::ptrdiff_t>(i + length));
+            i += length - 1;
+            break;
+        }
+    }
+    return times_s;
+}
+
+bool is_counter(const Track& track) { return track.name == "charge_ah" || track.name == "energy_wh"; }
+
+bool is_electrical(const Track& track) {
+    return is_counter(track) || track.name == "voltage_v" || track.name == "current_a" || track.name == "power_w";
+}
+
+std::vector<double> voltage_spikes(const Track& track) {
+    const auto& value = track.value;
+    return times_of_runs(track, [&](std::size_t first, std::size_t last) {
+        const double before = value[first - 1];
+        const double after = value[last];
+        const double step = voltage_step * std::max(std::abs(before), std::abs(after));
+        if (std::abs(after - before) > step) return false;
+        for (auto i = first; i < last; ++i)
+            if (std::abs(value[i] - before) <= step || std::abs(value[i] - after) <= step) return false;
+        return true;
+    });
+}
+
+std::vector<double> counter_spikes(const Track& track) {
+    const auto& value = track.value;
+    const auto [least, most] = std::ranges::minmax(value);
+    const double step = counter_step * (most - least);
+    return times_of_runs(track, [&](std::size_t first, std::size_t last) {
+        if (last != first + 1 || value[last] < value[first - 1]) return false;
+        return value[first] > value[last] + step || value[first] < value[first - 1] - step;
+    });
+}
+
+/// The track without its samples at `times_s`, which rise.
+Track without_times(const Track& track, const std::vector<double>& times_s) {
+    if (times_s.empty()) return track;
+    Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
+    auto next = times_s.begin();
+    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+        while (next != times_s.end() && *next < track.time_s[i]) ++next;
+        if (next != times_s.end() && *next == track.time_s[i]) continue;
+        kept.time_s.push_back(track.time_s[i]);
+        kept.value.push_back(track.value[i]);
+    }
+    return kept;
+}
+
+}  // namespace
+
+std::vector<double> contradicted_times(const Track& power, const Track& product) {
+    const auto pairs = compared(power, product);
+    std::vector<double> parts;
+    for (const auto& pair : pairs)
+        if (pair.larger_w > contradicting_w) parts.push_back(pair.difference_w / pair.larger_w);
+    constexpr std::size_t enough = 10;
+    if (parts.size() < enough) return {};
+    const double part = std::max(contradicting_part, 10.0 * upper_median(std::move(parts)));
+    std::vector<double> times_s;
+    for (const auto& pair : pairs)
+        if (pair.difference_w > part * pair.larger_w + contradicting_w) times_s.push_back(pair.time_s);
+    return times_s;
+}
+
+std::vector<double> spike_times(const Track& track) {
+    const auto& value = track.value;
+    constexpr std::size_t judged = 10;
+    if (value.size() < judged || !is_electrical(track)) return {};
+    if (track.name == "voltage_v") return voltage_spikes(track);
+    if (is_counter(track)) return counter_spikes(track);
+    const double floor = track.name == "current_a" ? 1.0 : 5.0;  // A or W: below, nothing is far
+    const double limit = spike_factor * held_magnitude(value) + floor;
+    return times_of_runs(track, [&](std::size_t first, std::size_t last) {
+        const double beside = neighbour_factor * std::max(std::abs(value[first - 1]), std::abs(value[last]));
+        for (auto i = first; i < last; ++i)
+            if (std::abs(value[i]) <= limit || std::abs(value[i]) <= beside) return false;
+        return true;
+    });
+}
+
+SoundTrack sound_track(const Track& candidate, const std::vector<double>& contradicted_s) {
+    SoundTrack sound{within_bounds(candidate), ""};
+    const auto all = candidate.value.size();
+    if (sound.track.empty() && all > 0) {
+        const auto bounds = physical_bounds(candidate.name).value();
+        sound.left_out = fmt::format("{} of {} is mostly beyond {:g} to {:g}", candidate.name, candidate.source,
+                                     bounds.low, bounds.high);
+        return sound;
+    }
+    std::vector<std::string> reasons;
+    std::size_t left = all;
+    const auto note = [&](const char* reason) {
+        const auto now = sound.track.value.size();
+        if (now < left) reasons.push_back(fmt::format("{} {}", left - now, reason));
+        left = now;
+    };
+    note("beyond what can be");
+    sound.track = without_times(sound.track, contradicted_s);
+    note("where power is not voltage times current");
+    sound.track = without_times(sound.track, spike_times(sound.track));
+    note(is_counter(candidate) ? "out of the counter's order" : "far beyond the samples beside");
+    if (!reasons.empty()) {
+        sound.left_out = fmt::format("{} of {} samples of {} ({}) are left out: {}", all - left, all, candidate.name,
+                                     candidate.source, fmt::join(reasons, ", "));
+    }
+    return sound;
+}
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "flight/flight_series.h"
+
+#include <string>
+#include <vector>
+
+namespace flightwatt::flight {
+
+/// The times, rising, at which power is not voltage times current although it usually is: more than 10 % and 1 W
+/// apart (ten times the median difference, where that is more). `product` is voltage times current of the same
+/// message. Nothing where most samples differ: that is another layout, not damage.
+std::vector<double> contradicted_times(const Track& power, const Track& product);
+
+/// The times, rising, of samples that nothing before and after them explains. Of power and current: one or two samples
+/// of more than three times what was ever held for three samples, and of more than twice their neighbours. Of voltage:
+/// one or two samples that differ from the neighbours, which agree, by more than 30 %. Of counters: a sample that
+/// alone is out of their order by more than 1 % of what was counted. A sample is judged once another follows it.
+std::vector<double> spike_times(const Track& track);
+
+/// A candidate without what cannot be.
+struct SoundTrack {
+    Track track;           ///< empty if nothing of it is to be believed
+    std::string left_out;  ///< "3 of 628 samples of power_w (ENERGY.power) are left out: ..."; empty if none is
+};
+
+/// Leaves out the samples beyond the physical bounds, those at `contradicted_s` (rising), and spikes.
+SoundTrack sound_track(const Track& candidate, const std::vector<double>& contradicted_s = {});
+
+}  // namespace flightwatt::flight

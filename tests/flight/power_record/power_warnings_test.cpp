@@ -1,0 +1,133 @@
+#include "flight/power_record/power_warnings.h"
+
+#include "base/number.h"
+#include "helpers/damaged_logs.h"
+#include "helpers/rejected.h"
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using testing::HasSubstr;
+
+// ENERGY: throttle, voltage, current, power, charge, energy from word 3 on.
+enum Field : std::size_t { time = 0, throttle = 3, voltage, current, power, charge, energy };
+
+double value(const test::Words& words, Field field) { return number_or_nan(words[field]); }
+void set(test::Words& words, Field field, double to) { words[field] = fmt::format("{:.6f}", to); }
+void scale(test::Words& words, Field field, double by) { set(words, field, value(words, field) * by); }
+
+/// The first sample log whose ENERGY messages are changed; `counts` tells whether the counters are left.
+LoadedFlight with_energy(bool counts, const std::function<void(test::Words&, int)>& damage) {
+    int number = 0;
+    return test::examined(test::damaged_sample([&](test::Words& words) {
+        if (words[2] != "ENERGY") return;
+        if (!counts) words[charge] = words[energy] = "0";
+        damage(words, ++number);
+    }));
+}
+
+double sound_energy_wh() {
+    static const double energy_wh = test::energy_in_flight_wh(with_energy(true, [](test::Words&, int) {}));
+    return energy_wh;
+}
+
+TEST(PowerWarnings, SayNothingOfASoundLog) {
+    for (const bool counts : {true, false})
+        EXPECT_THAT(with_energy(counts, [](test::Words&, int) {}).warnings, testing::IsEmpty());
+}
+
+TEST(PowerWarnings, LeaveOutWildSamples) {
+    const std::vector<std::pair<Field, double>> wild{{power, 900.0},  {power, 1e6},   {power, -300.0}, {current, 250.0},
+                                                     {voltage, 99.0}, {voltage, 0.0}, {current, 1e9},  {power, 2e15}};
+    for (const bool counts : {true, false}) {
+        for (const auto& [field, to] : wild) {
+            SCOPED_TRACE(fmt::format("word {} is {}", static_cast<int>(field), to));
+            const auto loaded = with_energy(counts, [&](test::Words& words, int number) {
+                if (number == 300 || number == 301 || number % 50 == 3) set(words, field, to);
+            });
+            EXPECT_NEAR(test::energy_in_flight_wh(loaded), sound_energy_wh(), 0.02 * sound_energy_wh());
+            EXPECT_THAT(test::said_of(loaded), HasSubstr("are left out"));
+        }
+    }
+}
+
+TEST(PowerWarnings, LeaveOutASpikeThatVoltageAndCurrentShare) {
+    const auto loaded = with_energy(false, [](test::Words& words, int number) {
+        if (number != 300) return;
+        scale(words, current, 20.0);
+        scale(words, power, 20.0);
+    });
+    EXPECT_NEAR(test::energy_in_flight_wh(loaded), sound_energy_wh(), 0.01);
+    EXPECT_THAT(test::said_of(loaded), HasSubstr("1 far beyond the samples beside"));
+}
+
+TEST(PowerWarnings, TellOfGapsThatCarryEnergy) {
+    for (const double jump_s : {600.0, 3600.0}) {
+        const auto text = test::damaged_sample([&](test::Words& words) {
+            if (words[2] == "ENERGY") words[charge] = words[energy] = "0";
+            if (const double time_s = number_or_nan(words[0]); time_s > 300.0)
+                words[0] = fmt::format("{:.3f}", time_s + jump_s);
+        });
+        EXPECT_THAT(test::said_of(test::examined(text)), HasSubstr("of the energy is a straight line across"));
+    }
+}
+
+TEST(PowerWarnings, TellOfAnOffsetThatTheCountersShare) {
+    for (const double offset_a : {0.4, 4.9}) {
+        const auto loaded = with_energy(true, [&](test::Words& words, int number) {
+            const double hours = 1.1 * number / 3600.0;
+            set(words, power, value(words, power) + offset_a * value(words, voltage));
+            set(words, current, value(words, current) + offset_a);
+            set(words, charge, value(words, charge) + offset_a * hours);
+            set(words, energy, value(words, energy) + offset_a * 12.4 * hours);
+        });
+        EXPECT_THAT(test::said_of(loaded), HasSubstr("at rest on the ground"));
+    }
+}
+
+TEST(PowerWarnings, TellOfUnitsThatNoPackHas) {
+    const auto by_ten = with_energy(true, [](test::Words& words, int) {
+        for (const auto field : {voltage, power, energy}) scale(words, field, 10.0);
+    });
+    EXPECT_THAT(test::said_of(by_ten), HasSubstr("more than 14 LiPo cells"));
+    const auto by_a_tenth = with_energy(true, [](test::Words& words, int) {
+        for (const auto field : {voltage, power, energy}) scale(words, field, 0.1);
+    });
+    EXPECT_THAT(test::said_of(by_a_tenth), HasSubstr("less than a LiPo cell's"));
+    const auto by_a_hundredth = with_energy(true, [](test::Words& words, int) {
+        for (const auto field : {current, power, charge, energy}) scale(words, field, 0.01);
+    });
+    EXPECT_THAT(test::said_of(by_a_hundredth), HasSubstr("nothing flies on that"));
+}
+
+TEST(PowerWarnings, TellOfASensorThatFails) {
+    const auto stuck = with_energy(false, [](test::Words& words, int number) {
+        if (number > 200 && number < 260) words[power] = "24.500000", words[current] = "1.96", words[voltage] = "12.5";
+    });
+    EXPECT_THAT(test::said_of(stuck), HasSubstr("power stands still at 24.50 W"));
+    const auto silent = with_energy(false, [](test::Words& words, int number) {
+        if (number > 200 && number < 320) words[power] = words[current] = "0";
+    });
+    EXPECT_THAT(test::said_of(silent), HasSubstr("no power in"));
+    const auto reversed = with_energy(false, [](test::Words& words, int number) {
+        if (number > 200 && number < 240) scale(words, power, -1.0), scale(words, current, -1.0);
+    });
+    EXPECT_THAT(test::said_of(reversed), HasSubstr("power is negative in 39 samples"));
+}
+
+TEST(PowerWarnings, TellOfTheCounterFromThreePercentOn) {
+    const auto apart = with_energy(true, [](test::Words& words, int) { scale(words, energy, 1.06); });
+    EXPECT_THAT(test::said_of(apart), HasSubstr("away from the on-board energy counter"));
+    const auto near = with_energy(true, [](test::Words& words, int) { scale(words, energy, 1.02); });
+    EXPECT_THAT(near.warnings, testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace flightwatt::flight
