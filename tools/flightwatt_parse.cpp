@@ -13,16 +13,17 @@ namespace {
 
 using namespace flightwatt;
 
-nlohmann::ordered_json summary(const flight::FlightSeries& series, const flight::Track& power,
-                               const std::vector<std::string>& warnings) {
+using Json = nlohmann::ordered_json;
+
+Json summary(const flight::FlightSeries& series, const flight::Track& power, const std::vector<std::string>& warnings) {
     return {{"flight", series.flight},
             {"aircraft_id", series.aircraft_id},
             {"aircraft_name", series.aircraft_name},
             {"power_source", power.source},
             {"samples", power.time_s.size()},
-            {"start_s", power.time_s.front()},
-            {"end_s", power.time_s.back()},
-            {"usual_interval_s", flight::usual_interval_s(power.time_s)},
+            {"start_s", power.empty() ? Json() : Json(power.time_s.front())},
+            {"end_s", power.empty() ? Json() : Json(power.time_s.back())},
+            {"usual_interval_s", power.empty() ? Json() : Json(flight::usual_interval_s(power.time_s))},
             {"sources", sources_of(series)},
             {"warnings", warnings}};
 }
@@ -30,6 +31,7 @@ nlohmann::ordered_json summary(const flight::FlightSeries& series, const flight:
 int parse(const cli::StageCall& call) {
     auto options = cli::read_flight_options(call);
     options.flight_required = false;
+    options.power_required = false;
     const auto loaded = cli::load_flight(call, call.inputs.front(), options);
     const auto& series = loaded.series;
     cli::write_result(call, to_csv(series));
@@ -38,9 +40,12 @@ int parse(const cli::StageCall& call) {
         cli::print(cli::json_text(summary(series, power, loaded.warnings)));
         return cli::ok;
     }
-    cli::note(call, fmt::format("{}: aircraft {} {}, {} samples from {:.1f} to {:.1f} s, usually {:.2f} s apart",
-                                series.flight, series.aircraft_id, series.aircraft_name, power.time_s.size(),
-                                power.time_s.front(), power.time_s.back(), flight::usual_interval_s(power.time_s)));
+    const auto samples =
+        power.empty() ? std::string("no power")
+                      : fmt::format("{} samples from {:.1f} to {:.1f} s, usually {:.2f} s apart", power.time_s.size(),
+                                    power.time_s.front(), power.time_s.back(), flight::usual_interval_s(power.time_s));
+    cli::note(call,
+              fmt::format("{}: aircraft {} {}, {}", series.flight, series.aircraft_id, series.aircraft_name, samples));
     for (const auto& [name, source] : sources_of(series)) {
         cli::note(call, fmt::format("  {:<20} from {}", name, source));
     }

@@ -14,8 +14,12 @@ using namespace flightwatt;
 
 int segment_flight(const cli::StageCall& call) {
     const auto& file = call.inputs.front();
-    const auto loaded = cli::load_flight(call, file, cli::read_flight_options(call));
-    const auto& [series, phases, power, exclusion, warnings] = loaded;
+    auto options = cli::read_flight_options(call);
+    options.power_required = false;
+    const auto loaded = cli::load_flight(call, file, options);
+    const auto& series = loaded.series;
+    const auto& phases = loaded.phases;
+    const auto& power = loaded.power;
     for (const auto& other : phases.ground_events) {
         cli::note(call, fmt::format("{}: no flight from {:.0f} to {:.0f} s: {}", file, other.start_s, other.end_s,
                                     other.what));
@@ -26,7 +30,7 @@ int segment_flight(const cli::StageCall& call) {
     const bool explain = call.has("explain");
     if (!explain || call.output) cli::write_result(call, flight::phases_csv(series, phases));
     if (call.json) {
-        cli::print(cli::json_text(cli::to_json(series, phases, power, warnings)));
+        cli::print(cli::json_text(cli::to_json(series, phases, power, loaded.warnings)));
     } else if (explain) {
         cli::print(cli::explanation(series, phases, power));
     }
@@ -43,7 +47,8 @@ int main(int argc, char** argv) {
         "segment", "FLIGHT.data|SERIES.csv",
         R"(Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from
 lift-off until the height held is reached, cruise, landing from where that height is left until
-touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.)"};
+touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.
+A log without measured power is segmented too; its columns of power are then empty.)"};
     stage.max_inputs = 1;
     stage.options.add_options()("explain", "show the reasons for each edge, and how good the power record is");
     cli::add_flight_options(stage.options);

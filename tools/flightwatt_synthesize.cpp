@@ -192,6 +192,6 @@ synthetic. The same seed gives the same files.)"};
     add("hazard", cli::value("NAME")->default_value("none"),
         "something that real logs do and that must not fool the segmentation: estimator-starts-at-zero, "
         "dives-in-cruise, run-up, power-burst-after-landing, throttle-burst-before-touchdown, two-sorties, "
-        "begins-in-the-air, ends-in-the-air, or all, a log each");
+        "begins-in-the-air, ends-in-the-air, landing-in-steps, works-low, or all, a log each");
     return cli::run_stage(argc, argv, stage, synthesize);
 }

@@ -38,7 +38,7 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     const auto& load = options.load;
     const auto& segmentation = load.segmentation;
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 6");
+    fingerprint.add(FLIGHTWATT_VERSION " record 7");
     fingerprint.add(log.flight);
     fingerprint.add(log.path.string());
     fingerprint.add(load.aircraft_id.value_or(""));
@@ -98,7 +98,9 @@ std::string describe(const InputError& error) {
 
 /// Reads, segments and writes one log. Throws InputError where it cannot be used.
 FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, const BatchOptions& options) {
-    auto loaded = flight::load_flight(file, options.load);
+    auto load = options.load;
+    load.power_required = false;
+    auto loaded = flight::load_flight(file, load);
     loaded.series.flight = log.flight;
     auto record = record_of(loaded);
     record.why_not_fitted = log.why_not_fitted;

@@ -61,6 +61,7 @@ void visit_record(Record& record, const Visit& visit) {
     visit("verdicts", record.verdicts);
     visit("warnings", record.warnings);
     visit("power_faults", record.power_faults);
+    visit("lacks_power", record.lacks_power);
     visit("why_not_fitted", record.why_not_fitted);
     visit("measured", record.measured);
 }
@@ -186,16 +187,18 @@ std::string verdict_text(const flight::ExplainedEdge& explained) {
 }  // namespace
 
 FlightRecord record_of(const flight::LoadedFlight& loaded) {
-    const auto& [series, phases, power, exclusion, warnings] = loaded;
+    const auto& series = loaded.series;
+    const auto& phases = loaded.phases;
     FlightRecord record;
     record.flight = series.flight;
     record.accepted = true;
     record.aircraft_id = series.aircraft_id;
     record.power_source = power_track(series).source;
     record.current_origin = to_string(series.current_origin);
-    record.warnings = warnings;
-    record.power_faults = power.power_faults;
-    record.measured = mechanical::measure_flights(series, phases, 0);
+    record.warnings = loaded.warnings;
+    record.power_faults = loaded.power.power_faults;
+    record.lacks_power = loaded.lacks_power;
+    if (record.lacks_power.empty()) record.measured = mechanical::measure_flights(series, phases, 0);
     for (const auto& sortie : phases.sorties) {
         for (const auto& edge : explain_edges(series, sortie)) {
             record.verdicts.push_back({edge.edge.time_s, verdict_text(edge)});
@@ -228,6 +231,7 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
 
 std::string exclusion_of(const FlightRecord& record, const flight::LoadOptions& options) {
     if (options.excluded.contains(record.flight)) return "--exclude names it";
+    if (!record.lacks_power.empty()) return record.lacks_power;
     if (options.keep.contains(record.flight)) return "";
     if (!record.power_faults.empty()) return flight::describe_power_faults(record.power_faults);
     return record.why_not_fitted;

@@ -45,6 +45,7 @@ struct FlightRecord {
     std::vector<RecordedVerdict> verdicts;  ///< of the edges that the log shows
     std::vector<std::string> warnings;
     std::vector<std::string> power_faults;  ///< of its power record: see PowerReport
+    std::string lacks_power;                ///< why no power was measured; empty if it was
     std::string why_not_fitted;             ///< what its folder says: see LogFile
     mechanical::MeasuredFlights measured;   ///< of every complete phase, however few its samples
 };

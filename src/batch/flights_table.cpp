@@ -45,6 +45,7 @@ std::vector<SortieRow> sortie_rows(const FlightRecord& record) {
 }
 
 std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& row, std::size_t sortie) {
+    const bool has_power = flight.record.lacks_power.empty();
     std::vector<std::string> cells{flight.record.flight, fmt::format("{}", sortie)};
     for (const auto phase : flight::all_phases) {
         const auto* recorded = row.phases[phase];
@@ -55,17 +56,18 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
     }
     for (const auto phase : flight::all_phases) {
         const auto* recorded = row.phases[phase];
-        cells.push_back(recorded == nullptr ? "-" : fmt::format("{:.1f}", recorded->statistics.mean_power_w));
+        cells.push_back(recorded == nullptr || !has_power ? "-"
+                                                          : fmt::format("{:.1f}", recorded->statistics.mean_power_w));
     }
-    cells.push_back(fmt::format("{:.3f}", row.energy_wh));
+    cells.push_back(has_power ? fmt::format("{:.3f}", row.energy_wh) : "-");
     cells.push_back(row.has_counter ? fmt::format("{:.3f}", row.counter_wh) : "-");
     cells.push_back(fmt::format("{}", row.samples));
-    cells.push_back(fmt::format("{}", row.gaps));
-    cells.push_back(fmt::format("{:.1f}", row.longest_gap_s));
+    cells.push_back(has_power ? fmt::format("{}", row.gaps) : "-");
+    cells.push_back(has_power ? fmt::format("{:.1f}", row.longest_gap_s) : "-");
     cells.push_back(fmt::format("{}", flight.record.warnings.size()));
     const auto fitted = std::count_if(row.phases.values.begin(), row.phases.values.end(),
                                       [&](const auto* phase) { return phase != nullptr && is_used(flight, *phase); });
-    cells.push_back(fmt::format("{} of 3", fitted));
+    cells.push_back(has_power ? fmt::format("{} of 3", fitted) : "no power");
     return cells;
 }
 
@@ -102,13 +104,16 @@ std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
                     none, none, record.error);
             continue;
         }
+        const bool has_power = record.lacks_power.empty();
+        const auto known = [&](auto value) { return has_power ? std::optional(value) : std::nullopt; };
+        const auto faults = has_power ? fmt::format("{}", fmt::join(record.power_faults, "; ")) : record.lacks_power;
         for (const auto& phase : record.phases) {
             const auto& statistics = phase.statistics;
             csv.add(record.flight, phase.sortie, to_string(phase.phase), phase.start_s, phase.end_s,
-                    phase.end_s - phase.start_s, statistics.samples, statistics.mean_power_w, statistics.energy_wh,
-                    statistics.counter_energy_wh, is_used(flight, phase), statistics.gaps, statistics.longest_gap_s,
-                    phase.complete, record.aircraft_id, record.power_source,
-                    fmt::format("{}", fmt::join(record.power_faults, "; ")), none);
+                    phase.end_s - phase.start_s, known(statistics.samples), known(statistics.mean_power_w),
+                    known(statistics.energy_wh), statistics.counter_energy_wh, is_used(flight, phase),
+                    known(statistics.gaps), known(statistics.longest_gap_s), phase.complete, record.aircraft_id,
+                    record.power_source, faults, none);
         }
     }
     return csv.text();

@@ -136,6 +136,7 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
     }
     const auto power = choose_power(series);
     for (const auto& reason : power.passed_over) {
+        if (power.power_w.empty()) break;  // see why_no_power
         warnings.push_back(fmt::format("{}: power is taken from {}", reason, power.power_w.source));
     }
     warnings.insert(warnings.end(), power.left_out.begin(), power.left_out.end());
@@ -149,6 +150,15 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
     return warnings;
 }
 
+std::string why_no_power(const FlightSeries& series) {
+    const auto power = choose_power(series);
+    if (!power.power_w.empty()) return "";
+    std::vector<std::string> reasons = power.passed_over;
+    for (const auto& skip : series.skipped) reasons.push_back(describe(skip));
+    for (const auto& assumed : series.assumed_definitions) reasons.push_back("assumed " + assumed.text);
+    return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
 void require_power(const FlightSeries& series, const std::string& holds) {
     if (const auto& restart = series.clock_restart) {
         throw InputError({series.file},
@@ -156,13 +166,9 @@ void require_power(const FlightSeries& series, const std::string& holds) {
                                      restart->to_s, series.aircraft_id, restart->message),
                          "it holds several recordings, or one over another: split it where the time begins anew");
     }
-    const auto power = choose_power(series);
-    if (!power.power_w.empty()) return;
-    std::vector<std::string> reasons = power.passed_over;
-    for (const auto& skip : series.skipped) reasons.push_back(describe(skip));
-    for (const auto& assumed : series.assumed_definitions) reasons.push_back("assumed " + assumed.text);
-    std::string reason;
-    if (!reasons.empty()) reason = fmt::format(" ({})", fmt::join(reasons, "; "));
+    if (!choose_power(series).power_w.empty()) return;
+    const auto reasons = why_no_power(series);
+    const auto reason = reasons.empty() ? "" : fmt::format(" ({})", reasons);
     throw InputError({series.file}, fmt::format("holds no measured power of aircraft {}{}", series.aircraft_id, reason),
                      fmt::format("expected ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE{}{}",
                                  holds.empty() ? "" : "; it holds ", holds));

@@ -35,6 +35,10 @@ std::optional<double> ground_altitude_m(const FlightSeries& series);
 /// What a user should know: assumed layouts, sources passed over, samples left out, skipped lines.
 std::vector<std::string> warnings_of(const FlightSeries& series);
 
+/// Why no power was measured: what was looked at and what is wrong with it, "ENERGY.power is 0 throughout; ...". Empty
+/// if power was measured, or where nothing tells of it.
+std::string why_no_power(const FlightSeries& series);
+
 /// Throws InputError where the clock began anew, or where no power was measured: it says what was looked at
 /// and, with `holds`, what the log holds instead.
 void require_power(const FlightSeries& series, const std::string& holds = "");

@@ -120,6 +120,7 @@ const std::vector<std::string>& track_names() {
                                                 "roll_deg",
                                                 "mode",
                                                 "block",
+                                                "rover_mode",
                                                 "takeoff",
                                                 "ground_altitude_m"};
     return names;

@@ -65,6 +65,7 @@ struct FlightSeries {
     std::string flight;         ///< the log's name without folder and ending
     std::string aircraft_id;    ///< as the log writes it; empty if unknown (a plain CSV)
     std::string aircraft_name;  ///< from the .log; may be empty
+    std::string firmware;       ///< from the .log: "fixedwing", "rotorcraft", "rover"; may be empty
 
     // Known before the flight, from the .log.
     CurrentOrigin current_origin = CurrentOrigin::unknown;

@@ -33,23 +33,26 @@ telemetry::TelemetryLog read_log(const FlightFile& file) {
     return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
 }
 
-/// Altitude and throttle alone, on the altitude's clock: enough to see whether an aircraft flew.
-bool flew(const FlightSeries& series) {
-    auto power = chosen_track(series, "altitude_m");
-    if (power.time_s.size() < 2) return false;
-    power.name = "power_w";
-    power.source = plain_source;
-    power.value.assign(power.time_s.size(), 0.0);
-    auto moving = series;
-    replace_track(moving, std::move(power));
-    return !segment(moving).sorties.empty();
+/// The one that flew, with the power that `file` tells of it. Without power it is refused where that is required, or
+/// has no altitude either.
+FlightSeries read_series(const FlightFile& file, const std::optional<std::string>& aircraft_id, bool power_required) {
+    auto series = choose_aircraft(read_candidates(file, aircraft_id));
+    const bool needs_power = power_required || chosen_track(series, "altitude_m").time_s.size() < 2;
+    if (series.clock_restart || (needs_power && power_track(series).empty())) require_power(series, census(file));
+    return series;
 }
 
-/// The one that flew, with the power that `file` tells of it.
-FlightSeries read_series(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
-    auto series = choose_aircraft(read_candidates(file, aircraft_id));
-    if (series.clock_restart || power_track(series).empty()) require_power(series, census(file));
-    return series;
+/// What a series shows: whether there is a flight, and else what there is.
+struct Sighting {
+    bool flew = false;
+    std::string instead;
+};
+
+Sighting look_at(const FlightSeries& series) {
+    if (chosen_track(series, "altitude_m").time_s.size() < 2) return {false, "no altitude"};
+    const auto phases = segment(series);
+    if (!phases.sorties.empty()) return {true, ""};
+    return {false, phases.ground_events.empty() ? "stood still" : phases.ground_events.front().what};
 }
 
 void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::string& file) {
@@ -60,8 +63,11 @@ void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::str
     }
 }
 
+std::string parenthesised(const std::string& text) { return text.empty() ? "" : fmt::format(" ({})", text); }
+
 std::string exclusion_of(const LoadedFlight& flight, const LoadOptions& options) {
     if (options.excluded.contains(flight.series.flight)) return "--exclude names it";
+    if (!flight.lacks_power.empty()) return flight.lacks_power;
     if (flight.power.power_faults.empty() || options.keep.contains(flight.series.flight)) return "";
     return describe_power_faults(flight.power.power_faults);
 }
@@ -105,34 +111,44 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
 
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
     if (candidates.size() == 1) return std::move(candidates.front());
-    std::vector<bool> has_flown(candidates.size());
-    std::transform(candidates.begin(), candidates.end(), has_flown.begin(), flew);
-    const bool any = std::find(has_flown.begin(), has_flown.end(), true) != has_flown.end();
+    std::vector<Sighting> sightings(candidates.size());
+    std::ranges::transform(candidates, sightings.begin(), look_at);
+    const bool any = std::ranges::any_of(sightings, &Sighting::flew);
     std::vector<std::string> ids;
     std::size_t last = 0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        if (any && !has_flown[i]) continue;
-        ids.push_back(candidates[i].aircraft_id);
+        if (any && !sightings[i].flew) continue;
+        const auto& id = candidates[i].aircraft_id;
+        ids.push_back(any ? id : fmt::format("{} ({})", id, sightings[i].instead));
         last = i;
     }
     if (ids.size() > 1) {
-        throw InputError({candidates.front().file}, fmt::format("several aircraft flew: {}", fmt::join(ids, ", ")),
+        constexpr std::size_t shown = 12;
+        const auto more = ids.size() > shown ? fmt::format(", ... and {} more", ids.size() - shown) : "";
+        ids.resize(std::min(ids.size(), shown));
+        throw InputError({candidates.front().file},
+                         fmt::format("{}: {}{}", any ? "several aircraft flew" : "none of its aircraft flew",
+                                     fmt::join(ids, ", "), more),
                          "choose one with --aircraft ID");
     }
     return std::move(candidates[last]);
 }
 
 LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
-    require_power(series);
+    const bool has_altitude = chosen_track(series, "altitude_m").time_s.size() >= 2;
+    const bool has_power = !power_track(series).empty();
+    if (options.power_required || !has_altitude || series.clock_restart) require_power(series);
     LoadedFlight loaded;
-    const bool can_segment = options.flight_required || !chosen_track(series, "altitude_m").empty();
+    if (!has_power) loaded.lacks_power = "no measured power" + parenthesised(why_no_power(series));
+    const bool can_segment = options.flight_required || has_altitude;
     if (can_segment) loaded.phases = segment(series, options.segmentation);
     if (options.flight_required) require_sortie(series, loaded.phases, series.file);
     if (options.sortie) restrict_to_sortie(loaded.phases, *options.sortie, series.file);
     loaded.power.origin = series.current_origin;
-    if (can_segment) loaded.power = check_power_record(series, loaded.phases, options.segmentation);
-    if (options.correct_idle_offset) correct_idle_offset(series, loaded.power.idle);
+    if (can_segment && has_power) loaded.power = check_power_record(series, loaded.phases, options.segmentation);
+    if (options.correct_idle_offset && has_power) correct_idle_offset(series, loaded.power.idle);
     loaded.warnings = warnings_of(series);
+    if (!has_power) loaded.warnings.push_back(loaded.lacks_power + ": the energy of its phases is not known");
     for (const auto* more : {&loaded.phases.warnings, &loaded.power.warnings})
         loaded.warnings.insert(loaded.warnings.end(), more->begin(), more->end());
     loaded.series = std::move(series);
@@ -141,7 +157,7 @@ LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
 }
 
 LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options) {
-    return examine_flight(read_series(file, options.aircraft_id), options);
+    return examine_flight(read_series(file, options.aircraft_id, options.power_required), options);
 }
 
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options) {
@@ -149,7 +165,7 @@ LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& o
 }
 
 FlightSeries read_flight(const std::filesystem::path& path, const std::optional<std::string>& aircraft_id) {
-    return read_series(FlightFile(path), aircraft_id);
+    return read_series(FlightFile(path), aircraft_id, true);
 }
 
 }  // namespace flightwatt::flight

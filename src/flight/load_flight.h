@@ -24,12 +24,15 @@ struct LoadOptions {
     std::set<std::string> keep = {};      ///< flights that are used in spite of power faults
     /// False: a log without altitude has no phases, and one in which nothing flew no sortie.
     bool flight_required = true;
+    /// False: a log without measured power is segmented all the same, if it has an altitude.
+    bool power_required = true;
 };
 
 struct LoadedFlight {
     FlightSeries series;  ///< its idle offset is corrected if that was asked for
     FlightPhases phases;
     PowerReport power;                  ///< as measured, before any correction
+    std::string lacks_power = {};       ///< why no power was measured; empty if it was
     std::string exclusion = {};         ///< why the flight is not to be used; empty if it is
     std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
 };
@@ -61,12 +64,12 @@ class FlightFile {
 /// Judges nothing yet. Throws InputError where the file holds no telemetry, or the named one sent nothing.
 std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id);
 
-/// The one that flew: the segmentation finds a sortie in its altitude and throttle. Where none did, the only
-/// one. Throws InputError if that leaves several (it says which).
+/// The one that flew: the segmentation finds a sortie. Where none did, the only one. Throws InputError if that leaves
+/// several (it says which, and where none flew what they did instead).
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
 
-/// Segments and judges a series. Throws InputError where no power was measured, for a sortie that the log has
-/// not, and, if a flight is required, where there is no altitude or nothing flew.
+/// Segments and judges a series. Throws InputError where no power was measured (if it is required, or no altitude
+/// either), for a sortie that the log has not, and, if a flight is required, where there is no altitude or nothing flew.
 LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options);
 
 /// From file to judgement: Paparazzi .data (compressed or not, with its .log beside it) or series CSV.

@@ -64,6 +64,7 @@ std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, doubl
 PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s) {
     PhaseStatistics statistics;
     const auto power = power_track(series);
+    if (power.empty()) return statistics;
     const auto& time_s = power.time_s;
     const double gap_s = gap_threshold_s(time_s);
     double last_s = start_s;

@@ -18,7 +18,7 @@ struct PhaseStatistics {
     double longest_gap_s = 0.0;
 };
 
-/// Statistics of [start_s, end_s].
+/// Statistics of [start_s, end_s]; of a series without power none.
 PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s);
 
 /// Energy [Wh] of the series' power between two times: trapezoids, the ends interpolated.

@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 
 #include <cmath>
@@ -80,15 +81,18 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
                    "end_block",
                    "end_to_takeoff_message_s"});
     const auto altitude = [](const PhaseEdge& edge) { return fmt::format("{:.2f}", edge.altitude_m); };
+    const bool has_power = !power_track(series).empty();
     for (const auto& sortie : phases.sorties) {
         for (const auto& span : sortie.phases) {
             const auto& [phase, start, end, complete] = span;
             const auto statistics = phase_statistics(series, start.time_s, end.time_s);
-            csv.add(sortie.number, to_string(phase), start.time_s, end.time_s, span.duration_s(), statistics.samples,
-                    statistics.mean_power_w, statistics.energy_wh, statistics.counter_energy_wh, statistics.gaps,
-                    statistics.longest_gap_s, complete, altitude(start), start.gap_s, start.throttle_percent,
-                    start.mode, start.block, start.takeoff_after_s, altitude(end), end.gap_s, end.throttle_percent,
-                    end.mode, end.block, end.takeoff_after_s);
+            const auto known = [&](auto value) { return has_power ? std::optional(value) : std::nullopt; };
+            csv.add(sortie.number, to_string(phase), start.time_s, end.time_s, span.duration_s(),
+                    known(statistics.samples), known(statistics.mean_power_w), known(statistics.energy_wh),
+                    statistics.counter_energy_wh, known(statistics.gaps), known(statistics.longest_gap_s), complete,
+                    altitude(start), start.gap_s, start.throttle_percent, start.mode, start.block,
+                    start.takeoff_after_s, altitude(end), end.gap_s, end.throttle_percent, end.mode, end.block,
+                    end.takeoff_after_s);
         }
     }
     return csv.text();

@@ -9,7 +9,7 @@
 namespace flightwatt::flight {
 
 /// The phases CSV: sortie, phase, start_s, end_s, duration_s, samples, mean_power_w, energy_wh, ... and the
-/// evidence at both edges; a witness that is absent leaves its cell empty.
+/// evidence at both edges; a witness that is absent leaves its cell empty, as a power that was not measured does.
 std::string phases_csv(const FlightSeries& series, const FlightPhases& phases);
 
 /// Reads what phases_csv wrote: the sorties with their phases and the evidence at the edges. Statistics are

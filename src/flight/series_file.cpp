@@ -73,7 +73,8 @@ class TableReader {
         for (const auto& cell : header.cells) table.columns.push_back(cell.text);
         columns_ = table.columns;
         time_column_ = column_index(table, "time_s");
-        column_index(table, "power_w");
+        const bool has_altitude = std::ranges::find(columns_, "altitude_m") != columns_.end();
+        if (!matter_.present && !has_altitude) column_index(table, "power_w");
         is_bound_.assign(matter_.columns.size(), false);
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             const auto here = columns_.begin() + static_cast<std::ptrdiff_t>(i);
@@ -143,7 +144,9 @@ FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path
     auto series = reader.take();
     series.file = file.string();
     if (series.flight.empty()) series.flight = telemetry::flight_name(file);
-    if (power_track(series).time_s.size() < 2) throw InputError({series.file}, "has fewer than two samples");
+    const auto samples = power_track(series).time_s.size();
+    const bool is_flight = samples >= 2 || (samples == 0 && chosen_track(series, "altitude_m").time_s.size() >= 2);
+    if (!is_flight) throw InputError({series.file}, "has fewer than two samples");
     return series;
 }
 

@@ -19,7 +19,8 @@ std::string to_csv(const FlightSeries& series);
 
 /// Reads a series file, or a CSV without front matter (time_s, power_w and what else of track_names() there
 /// is). Throws InputError with file, line and column for a format that is newer, an unknown column, a value
-/// that is not a finite number, no power_w, fewer than two power samples, or time that does not rise.
+/// that is not a finite number, neither power_w nor altitude_m, fewer than two samples of power (or of altitude, where
+/// no power was measured), or time that does not rise.
 FlightSeries read_series_csv(const std::filesystem::path& path);
 
 /// The same of a text; `file` is named in errors, and gives the flight's name where the text does not.

@@ -74,6 +74,7 @@ const std::vector<FieldTrack>& field_tracks() {
         {"roll_deg", "ROTORCRAFT_FP", "phi", degree, Merge::latest},
         {"mode", "PPRZ_MODE", "ap_mode", std::nullopt, Merge::latest},
         {"block", "NAVIGATION", "cur_block", std::nullopt, Merge::latest},
+        {"rover_mode", "ROVER_STATUS", "ap_mode", std::nullopt, Merge::latest},
         {"ground_altitude_m", "NAVIGATION_REF", "ground_alt", metre, Merge::latest},
     };
     return fields;
@@ -107,6 +108,7 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
     if (found == log.configuration->aircraft.end()) return;
     const auto& aircraft = found->second;
     series.aircraft_name = aircraft.name;
+    series.firmware = aircraft.firmware;
     series.block_names = aircraft.block_names;
     series.planned_ground_altitude_m = aircraft.ground_altitude_m;
     series.current_origin = aircraft.current_origin;
@@ -131,6 +133,7 @@ std::vector<telemetry::MessageRequest> flight_messages() {
         {"NAVIGATION", {"cur_block", "pos_x", "pos_y"}},
         {"NAVIGATION_REF", {"ground_alt"}},
         {"PPRZ_MODE", {"ap_mode"}},
+        {"ROVER_STATUS", {"ap_mode"}},
         {"TAKEOFF", {"cpu_time"}},
         {"WIND_INFO", {"east", "north"}},
     };

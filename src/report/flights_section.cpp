@@ -1,6 +1,7 @@
 #include "report/flights_section.h"
 
 #include "base/units.h"
+#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "report/figures/flight_figures.h"
 
@@ -15,19 +16,26 @@ namespace {
 struct SortieSums {
     flight::PerPhase<std::optional<double>> duration_s;
     flight::PerPhase<std::optional<double>> mean_w;
-    double energy_wh = 0.0;
+    std::optional<double> energy_wh = 0.0;
     std::optional<double> counter_wh = 0.0;
-    std::size_t gaps = 0;
+    std::optional<std::size_t> gaps = 0;
 };
 
 SortieSums sums_of(const flight::FlightSeries& series, const flight::Sortie& sortie) {
     SortieSums sums;
+    const bool has_power = !power_track(series).empty();
+    if (!has_power) {
+        sums.energy_wh.reset();
+        sums.gaps.reset();
+    }
     for (const auto& span : sortie.phases) {
         const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
         sums.duration_s[span.phase] = span.duration_s();
-        sums.mean_w[span.phase] = statistics.mean_power_w;
-        sums.energy_wh += statistics.energy_wh;
-        sums.gaps += statistics.gaps;
+        if (has_power) {
+            sums.mean_w[span.phase] = statistics.mean_power_w;
+            *sums.energy_wh += statistics.energy_wh;
+            *sums.gaps += statistics.gaps;
+        }
         if (sums.counter_wh && statistics.counter_energy_wh) {
             *sums.counter_wh += *statistics.counter_energy_wh;
         } else {
@@ -38,8 +46,8 @@ SortieSums sums_of(const flight::FlightSeries& series, const flight::Sortie& sor
 }
 
 std::string closure_percent(const SortieSums& sums) {
-    if (!sums.counter_wh || *sums.counter_wh <= 0.0) return "-";
-    return fmt::format("{:+.2f}", units::percent_of(sums.energy_wh - *sums.counter_wh, *sums.counter_wh));
+    if (!sums.energy_wh || !sums.counter_wh || *sums.counter_wh <= 0.0) return "-";
+    return fmt::format("{:+.2f}", units::percent_of(*sums.energy_wh - *sums.counter_wh, *sums.counter_wh));
 }
 
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
@@ -48,8 +56,8 @@ std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie
     for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.duration_s[phase], 0));
     for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.mean_w[phase], 1));
     cells.insert(cells.end(), {fixed(sums.energy_wh, 3), fixed(sums.counter_wh, 3), closure_percent(sums),
-                               fmt::format("{}", sums.gaps), fmt::format("{}", flight.warnings.size()),
-                               std::string(fitted_part(flight))});
+                               sums.gaps ? fmt::format("{}", *sums.gaps) : "-",
+                               fmt::format("{}", flight.warnings.size()), std::string(fitted_part(flight))});
     return cells;
 }
 
@@ -118,6 +126,10 @@ void add_flight(Section& section, const ReportFlight& flight, const std::optiona
                     id, is_open ? " open" : "", escaped(flight.name), seconds_in_air(flight));
     section.html += paragraph("From " + flight.log, "soft");
     if (!flight.warnings.empty()) section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
+    if (power_track(flight.series).empty()) {
+        section.html += edges_html(flight) + "</details>\n";
+        return;
+    }
     add_figure(section, flight_figure(flight, model, id + "-power"));
     section.html += edges_html(flight);
     if (auto track = track_figure(flight, id + "-track")) add_figure(section, std::move(*track));

@@ -22,6 +22,7 @@ constexpr double dive_low_s = 5.0;
 constexpr double dive_up_s = 20.0;
 constexpr double close_dives_s = 30.0;  // from one to the next, before the first is climbed back
 constexpr double estimator_climb_s = 15.0;
+constexpr double stage_change_s = 15.0;
 constexpr double settling_s = 4.0;     // how slowly the climb ends in the cruise height
 constexpr double oscillation = 0.008;  // of the height, while the autopilot holds it
 constexpr double oscillation_period_s = 47.0;
@@ -38,6 +39,22 @@ double dive_depth(const SyntheticFlight& flight, double time_s) {
                std::min({since_s / dive_down_s, 1.0, (dive_down_s + dive_low_s + dive_up_s - since_s) / dive_up_s});
     }
     return 0.0;
+}
+
+/// What part of its height the aircraft holds at `time_s` until it lands.
+double stage_part(const SyntheticFlight& flight, double time_s) {
+    if (flight.low_stage_s <= 0.0) return 1.0;
+    const double begin_s = flight.start_s(flight::Phase::landing) - flight.low_stage_s;
+    return std::lerp(1.0, low_stage_part, std::clamp((time_s - begin_s) / stage_change_s + 1.0, 0.0, 1.0));
+}
+
+/// The fraction of the height at `part` (0 to 1) of the landing, from `from` down to `ground`.
+double landing_fraction(const SyntheticFlight& flight, double part, double from, double ground) {
+    const double step = flight.landing_step_s / flight.duration_s[flight::Phase::landing];
+    if (step <= 0.0) return std::lerp(from, ground, part);
+    const double descent = 0.5 * (1.0 - step);  // before and after the step
+    if (part < descent) return std::lerp(from, landing_step_part, part / descent);
+    return std::lerp(landing_step_part, ground, std::max(part - descent - step, 0.0) / descent);
 }
 
 /// Height above the ground. Phases begin and end where the segmentation's definitions put them: take-off at
@@ -60,9 +77,10 @@ double height_m(const SyntheticFlight& flight, double time_s) {
         const double fall = std::exp(-(descent - time_s) / settling_s);
         const double held =
             1.0 + oscillation * std::sin(2.0 * std::numbers::pi * (time_s - climbed) / oscillation_period_s);
-        fraction = held - (held - reached) * (rise + fall);
+        fraction = stage_part(flight, time_s) * (held - (held - reached) * (rise + fall));
     } else if (time_s < touchdown) {
-        fraction = std::lerp(reached, ground, (time_s - descent) / (touchdown - descent));
+        fraction = landing_fraction(flight, (time_s - descent) / (touchdown - descent),
+                                    stage_part(flight, descent) * reached, ground);
     } else {
         fraction = ground * std::clamp(1.0 - (time_s - touchdown) / flare_s, 0.0, 1.0);
     }
@@ -178,6 +196,8 @@ const std::vector<std::pair<std::string, Hazard>>& hazards() {
         {"two-sorties", Hazard::two_sorties},
         {"begins-in-the-air", Hazard::begins_in_the_air},
         {"ends-in-the-air", Hazard::ends_in_the_air},
+        {"landing-in-steps", Hazard::landing_in_steps},
+        {"works-low", Hazard::works_low},
     };
     return all;
 }
@@ -191,6 +211,11 @@ SyntheticScenario scenario_with(SyntheticFlight flight, Hazard hazard) {
         const double cruise_start_s = flight.start_s(flight::Phase::cruise);
         flight.dives_s = {cruise_start_s + 0.2 * cruise_s, cruise_start_s + 0.5 * cruise_s,
                           cruise_start_s + 0.5 * cruise_s + close_dives_s, cruise_start_s + 0.8 * cruise_s};
+    }
+    if (hazard == Hazard::works_low) flight.low_stage_s = 120.0;
+    if (hazard == Hazard::landing_in_steps) {
+        flight.landing_step_s = 40.0;
+        flight.duration_s[flight::Phase::landing] += flight.landing_step_s;
     }
     if (hazard == Hazard::run_up) {  // as long and as hard as a take-off
         flight.motor_run_up_length_s = 28.0;

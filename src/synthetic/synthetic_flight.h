@@ -23,6 +23,8 @@ struct SyntheticFlight {
     double wind_east_m_per_s = 2.0;
     double wind_north_m_per_s = -1.0;
     std::vector<double> dives_s;                   ///< in cruise: down to a third of the height and up again
+    double low_stage_s = 0.0;                      ///< so long before the landing it works at low_stage_part
+    double landing_step_s = 0.0;                   ///< so long within the landing it circles at landing_step_part
     double estimator_fix_s = 0.0;                  ///< until then the estimator reads 0, then it climbs to the truth
     bool power_burst_after_landing = false;        ///< without throttle
     bool throttle_burst_before_touchdown = false;  ///< at the end of a glide with the motor off
@@ -34,6 +36,10 @@ struct SyntheticFlight {
     double end_s(flight::Phase phase) const { return start_s(phase) + duration_s[phase]; }
     double log_end_s() const { return end_s(flight::Phase::landing) + ground_after_s; }
 };
+
+/// Of the height: where it works before the landing, and where it circles within it.
+inline constexpr double low_stage_part = 0.6;
+inline constexpr double landing_step_part = 0.55;
 
 /// What the aircraft does at one moment.
 struct SyntheticState {
@@ -77,6 +83,8 @@ enum class Hazard {
     two_sorties,
     begins_in_the_air,
     ends_in_the_air,
+    landing_in_steps,
+    works_low,
 };
 
 /// All but none, with their names on the command line.

@@ -96,6 +96,10 @@ AircraftConfiguration read_aircraft(std::string_view text, const pugi::xml_node&
     for_each_tag(text, "flight_plan", [&](const pugi::xml_node& plan) {
         if (!aircraft.ground_altitude_m) aircraft.ground_altitude_m = parse_number(attribute(plan, "ground_alt"));
     });
+    for_each_tag(text, "firmware", [&](const pugi::xml_node& firmware) {
+        if (aircraft.firmware.empty() || aircraft.firmware == "test_progs")
+            aircraft.firmware = attribute(firmware, "name");
+    });
     int position = 0;
     for_each_tag(text, "block", [&](const pugi::xml_node& block) {
         const auto number = parse_unsigned(attribute(block, "no"));

@@ -47,6 +47,7 @@ constexpr BuiltinLayout builtin_layouts[] = {
     {"ROTORCRAFT_FP", "15 fields",
      "east:0.00390625m north:0.00390625m up:0.00390625m veast vnorth vup:0.0000019m/s phi:0.0139882deg theta "
      "psi:0.0139882deg carrot_east carrot_north carrot_up carrot_psi thrust flight_time:s"},
+    {"ROVER_STATUS", "7 fields", "rc_status frame_rate gps_status ap_mode ap_motors_on cpu_time:s vsupply:V"},
     {"ATTITUDE", "3 fields", "phi:rad psi:rad theta:rad"},
     {"TAKEOFF", "1 field", "cpu_time:s"},
     {"PPRZ_MODE", "6 fields", "ap_mode ap_gaz ap_lateral ap_horizontal if_calib_mode mcu1_status"},

@@ -24,16 +24,18 @@ Json to_json(const flight::PhaseEdge& edge) {
 
 Json to_json(const flight::FlightSeries& series, const flight::PhaseSpan& span) {
     const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
+    const bool has_power = !power_track(series).empty();
+    const auto known = [&](auto value) { return has_power ? Json(value) : Json(); };
     return {{"phase", to_string(span.phase)},
             {"start_s", span.start.time_s},
             {"end_s", span.end.time_s},
             {"duration_s", span.duration_s()},
-            {"samples", statistics.samples},
-            {"mean_power_w", statistics.mean_power_w},
-            {"energy_wh", statistics.energy_wh},
+            {"samples", known(statistics.samples)},
+            {"mean_power_w", known(statistics.mean_power_w)},
+            {"energy_wh", known(statistics.energy_wh)},
             {"counter_energy_wh", optional_json(statistics.counter_energy_wh)},
-            {"gaps", statistics.gaps},
-            {"longest_gap_s", statistics.longest_gap_s},
+            {"gaps", known(statistics.gaps)},
+            {"longest_gap_s", known(statistics.longest_gap_s)},
             {"complete", span.complete},
             {"evidence", {{"start", to_json(span.start)}, {"end", to_json(span.end)}}}};
 }
@@ -56,8 +58,16 @@ Json to_json(const flight::FlightSeries& series, const flight::Sortie& sortie) {
     for (const auto& span : sortie.phases) phases.push_back(to_json(series, span));
     Json edges = Json::array();
     for (const auto& edge : explain_edges(series, sortie)) edges.push_back(to_json(edge));
+    Json held = Json::array();
+    for (const auto& hold : sortie.held) {
+        held.push_back({{"height_m", hold.height_m},
+                        {"start_s", hold.start_s},
+                        {"end_s", hold.end_s},
+                        {"of_landing", hold.of_landing}});
+    }
     return {{"ground_altitude_m", sortie.ground_altitude_m},
             {"height_m", sortie.height_m},
+            {"held_heights", held},
             {"phases", phases},
             {"edges", edges}};
 }
@@ -81,8 +91,20 @@ Json to_json(const flight::PowerReport& report) {
             {"power_faults", report.power_faults}};
 }
 
+/// The heights that were held, and why the landing begins where it does, a line each.
+std::string heights_text(const flight::Sortie& sortie) {
+    std::string text;
+    for (const auto& hold : sortie.held) {
+        text += fmt::format("sortie {}: held {:.1f} m from {:.1f} to {:.1f} s ({:.0f} s): {}\n", sortie.number,
+                            hold.height_m, hold.start_s, hold.end_s, hold.duration_s(),
+                            hold.of_landing ? "a step of the landing" : "cruise");
+    }
+    return text;
+}
+
 /// How far the power record can be trusted, a line each.
 std::string power_text(const flight::FlightSeries& series, const flight::PowerReport& power) {
+    if (power_track(series).empty()) return "power: not measured\n";
     std::string text = fmt::format("power: {}, current {}\n", power_track(series).source, to_string(power.origin));
     if (power.idle) {
         text += fmt::format("idle current on the ground: {:.4f} A, standard deviation {:.4f} A, {} samples\n",
@@ -135,9 +157,11 @@ TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPh
 std::string explanation(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                         const flight::PowerReport& power) {
     std::string text = to_text(edges_table(series, phases));
+    for (const auto& sortie : phases.sorties) text += heights_text(sortie);
     for (const auto& other : phases.ground_events) {
         text += fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
     }
+    if (!phases.motor_evidence.empty()) text += fmt::format("motor told by {}\n", phases.motor_evidence);
     return text + power_text(series, power);
 }
 
@@ -152,6 +176,7 @@ Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& pha
     return {{"flight", series.flight},
             {"aircraft_id", series.aircraft_id},
             {"power_source", power_track(series).source},
+            {"motor_evidence", phases.motor_evidence},
             {"sorties", sorties},
             {"not_flights", others},
             {"power", to_json(power)},
@@ -160,7 +185,8 @@ Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& pha
 
 std::string altitude_profile(TerminalPlot plot, const flight::FlightSeries& series,
                              const flight::FlightPhases& phases) {
-    const auto time_s = power_track(series).time_s;
+    auto time_s = power_track(series).time_s;
+    if (time_s.empty()) time_s = chosen_track(series, "altitude_m").time_s;
     const auto altitude_m = chosen_at(series, "altitude_m", time_s);
     if (altitude_m.empty()) return "";
     const auto [low, high] = std::ranges::minmax_element(altitude_m);

@@ -4,6 +4,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/chosen_track.h"
+#include "flight/segmentation/altitude_record.h"
 
 #include <algorithm>
 #include <array>
@@ -30,50 +31,101 @@ std::vector<double> without_spikes(const std::vector<double>& values) {
     return smooth;
 }
 
-/// What counts as idle: some airframes never report less than a trimmed or armed idle. Where the speed tells
-/// rest from flight too, the least throttle of the log is taken for that.
-double idle_throttle_percent(const FlightGrid& grid, const SegmentationOptions& options) {
-    if (grid.throttle_percent.empty() || grid.ground_speed_m_per_s.empty()) return options.idle_throttle_percent;
-    const double least = *std::min_element(grid.throttle_percent.begin(), grid.throttle_percent.end());
-    return std::max(least, 0.0) + options.idle_throttle_percent;
+/// The altitude at the grid's times, piece by piece: nothing is interpolated over a jump.
+void add_altitude(FlightGrid& grid, const AltitudeRecord& record, const std::vector<double>& time_s) {
+    const auto& track = record.altitude;
+    std::size_t begin = 0;
+    std::size_t sample = 0;
+    for (std::size_t p = 0; p <= record.jumps_s.size(); ++p) {
+        const bool last = p == record.jumps_s.size();
+        const auto index_at = [](const std::vector<double>& times, double t) {
+            return static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
+        };
+        const auto end = last ? time_s.size() : index_at(time_s, record.jumps_s[p]);
+        const auto next_sample = last ? track.time_s.size() : index_at(track.time_s, record.jumps_s[p]);
+        if (end > begin && next_sample > sample) {
+            const auto part = [](const std::vector<double>& all, std::size_t from, std::size_t to) {
+                return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(from),
+                                           all.begin() + static_cast<std::ptrdiff_t>(to));
+            };
+            const Track piece{.time_s = part(track.time_s, sample, next_sample),
+                              .value = part(track.value, sample, next_sample)};
+            const auto altitude_m = without_spikes<5>(resample(piece, part(time_s, begin, end)));
+            grid.altitude_m.insert(grid.altitude_m.end(), altitude_m.begin(), altitude_m.end());
+            grid.pieces.push_back({begin, end});
+            begin = end;
+        }
+        sample = next_sample;
+    }
 }
 
-}  // namespace
-
-FlightGrid make_grid(const FlightSeries& series) {
-    auto altitude = chosen_track(series, "altitude_m");
-    if (altitude.empty()) {
-        const auto warnings = warnings_of(series);
-        throw InputError(
-            {series.flight}, "has no altitude, so its phases cannot be told apart",
-            fmt::format("expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",
-                        warnings.empty() ? "" : "; ", fmt::join(warnings, "; ")));
-    }
-    FlightGrid grid;
-    const auto power = power_track(series);
-    grid.start_s = power.time_s.front();
-    const double span_s = power.time_s.back() - grid.start_s;
+/// The grid's times. Throws InputError where they are none.
+std::vector<double> grid_times(const FlightSeries& series, const FlightGrid& grid, double end_s) {
+    const double span_s = end_s - grid.start_s;
     constexpr double longest_s = 30.0 * 24.0 * units::seconds_per_hour;
     if (!(span_s <= longest_s)) {
         throw InputError({series.file}, fmt::format("lasts {:.4g} s, more than a month", span_s),
                          "are its times in seconds?");
     }
-    const auto count = static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
-    std::vector<double> time_s(count);
-    for (std::size_t i = 0; i < count; ++i) time_s[i] = grid.time_s(i);
-    altitude.value = without_spikes<3>(altitude.value);  // on its own clock, before the grid's
-    grid.altitude_m = without_spikes<5>(resample(altitude, time_s));
-    // As it was when power was sampled: the clock that throttle is asked for on everywhere.
-    if (const auto throttle = chosen_at(series, "throttle_percent", power.time_s); !throttle.empty()) {
-        grid.throttle_percent = resample(Track{.time_s = power.time_s, .value = throttle}, time_s);
+    std::vector<double> time_s(static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1);
+    for (std::size_t i = 0; i < time_s.size(); ++i) time_s[i] = grid.time_s(i);
+    return time_s;
+}
+
+void refuse_without_altitude(const FlightSeries& series, const Track& altitude) {
+    if (!altitude.empty()) return;
+    const auto warnings = warnings_of(series);
+    throw InputError(
+        {series.file.empty() ? series.flight : series.file}, "has no altitude, so its phases cannot be told apart",
+        fmt::format("expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",
+                    warnings.empty() ? "" : "; ", fmt::join(warnings, "; ")));
+}
+
+}  // namespace
+
+FlightGrid make_grid(const FlightSeries& series) {
+    const auto raw = chosen_track(series, "altitude_m");
+    refuse_without_altitude(series, raw);
+    FlightGrid grid;
+    const auto power = power_track(series);
+    const auto& clock = power.empty() ? raw : power;
+    grid.start_s = clock.time_s.front();
+    const auto time_s = grid_times(series, grid, clock.time_s.back());
+    auto altitude = clean_altitude(raw);  // on its own clock, before the grid's
+    grid.unusable = std::move(altitude.unusable);
+    grid.warnings = std::move(altitude.warnings);
+    if (altitude.altitude.empty()) {
+        grid.altitude_m.assign(time_s.size(), 0.0);
+        grid.pieces = {{0, time_s.size()}};
+    } else {
+        add_altitude(grid, altitude, time_s);
     }
+    auto motor = motor_record(series, altitude.altitude);
+    grid.motor_sign = motor.sign;
+    grid.motor_evidence = std::move(motor.evidence);
+    grid.warnings.insert(grid.warnings.end(), motor.warnings.begin(), motor.warnings.end());
+    if (!motor.percent.empty()) grid.motor_percent = resample(motor.percent, time_s);
+    if (motor.sign == MotorSign::throttle) grid.throttle_percent = grid.motor_percent;
     const auto speed = chosen_at(series, "ground_speed_m_per_s", time_s);
     if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes<5>(speed);
     return grid;
 }
 
+/// Some airframes never report less than a trimmed or armed idle. Where the speed tells rest from flight too, the least
+/// throttle of the log is taken for that.
+double idle_motor_percent(const FlightGrid& grid, const SegmentationOptions& options) {
+    if (grid.motor_sign == MotorSign::power) return idle_power_percent;
+    if (grid.motor_percent.empty() || grid.ground_speed_m_per_s.empty()) return options.idle_throttle_percent;
+    const double least = *std::min_element(grid.motor_percent.begin(), grid.motor_percent.end());
+    return std::max(least, 0.0) + options.idle_throttle_percent;
+}
+
+double flight_motor_percent(const FlightGrid& grid, const SegmentationOptions& options) {
+    return grid.motor_sign == MotorSign::power ? flight_power_percent : options.flight_throttle_percent;
+}
+
 std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptions& options) {
-    const double idle_percent = idle_throttle_percent(grid, options);
+    const double idle_percent = idle_motor_percent(grid, options);
     const auto within = [&](const std::vector<double>& channel, std::size_t i, double limit) {
         return channel.empty() || channel[i] <= limit;
     };
@@ -83,12 +135,19 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
         for (std::size_t i = begin; i < end; ++i) {
             low = std::min(low, grid.altitude_m[i]);
             high = std::max(high, grid.altitude_m[i]);
-            if (high - low > height_m || !within(grid.throttle_percent, i, idle_percent) ||
+            if (high - low > height_m || !within(grid.motor_percent, i, idle_percent) ||
                 !within(grid.ground_speed_m_per_s, i, options.rest_speed_m_per_s)) {
                 return false;
             }
         }
         return true;
+    };
+    // Where neither motor nor speed is known, a height that is kept is that of a rest only near the ground.
+    const bool by_altitude = grid.motor_percent.empty() && grid.ground_speed_m_per_s.empty();
+    const auto highest_rest_m = [&](const GridSpan& piece) {
+        const auto [low, high] = std::minmax_element(grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(piece.begin),
+                                                     grid.altitude_m.begin() + static_cast<std::ptrdiff_t>(piece.end));
+        return by_altitude ? *low + std::max(options.flight_height_m, 0.25 * (*high - *low)) : *high;
     };
     std::vector<bool> resting(grid.size(), false);
     const auto mark = [&](std::size_t begin, std::size_t end) {
@@ -96,20 +155,28 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
                   resting.begin() + static_cast<std::ptrdiff_t>(end), true);
     };
     const auto window = grid.steps(options.rest_s) + 1;
-    for (std::size_t begin = 0; begin + window <= grid.size(); ++begin) {
-        if (is_still(begin, begin + window, options.rest_height_m)) mark(begin, begin + window);
-    }
-    // The log may begin just before lift-off or end just after touchdown: there less time does, within less height.
     const auto edge = grid.steps(0.3 * options.rest_s) + 1;
-    if (edge <= grid.size()) {
-        if (is_still(0, edge, 0.3 * options.rest_height_m)) mark(0, edge);
-        if (is_still(grid.size() - edge, grid.size(), 0.3 * options.rest_height_m))
-            mark(grid.size() - edge, grid.size());
+    for (const auto& piece : grid.pieces) {
+        const double highest_m = highest_rest_m(piece);
+        for (std::size_t begin = piece.begin; begin + window <= piece.end; ++begin) {
+            if (grid.altitude_m[begin] <= highest_m && is_still(begin, begin + window, options.rest_height_m))
+                mark(begin, begin + window);
+        }
+        if (piece.begin + edge > piece.end) continue;
+        // The log may begin just before lift-off or end just after touchdown: there less time does, within less height.
+        if (grid.altitude_m[piece.begin] <= highest_m &&
+            is_still(piece.begin, piece.begin + edge, 0.3 * options.rest_height_m)) {
+            mark(piece.begin, piece.begin + edge);
+        }
+        if (grid.altitude_m[piece.end - 1] <= highest_m &&
+            is_still(piece.end - edge, piece.end, 0.3 * options.rest_height_m))
+            mark(piece.end - edge, piece.end);
     }
     std::vector<GridSpan> rests;
     for (std::size_t i = 0; i < grid.size(); ++i) {
         if (!resting[i]) continue;
-        if (rests.empty() || rests.back().end != i) rests.push_back({i, i});
+        const bool begins_piece = std::ranges::binary_search(grid.pieces, i, {}, &GridSpan::begin);
+        if (rests.empty() || rests.back().end != i || begins_piece) rests.push_back({i, i});
         rests.back().end = i + 1;
     }
     return rests;

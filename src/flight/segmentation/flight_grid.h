@@ -2,28 +2,13 @@
 
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
+#include "flight/segmentation/motor_record.h"
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace flightwatt::flight {
-
-/// A flight on an even clock, for the segmentation: spikes of single samples are gone.
-struct FlightGrid {
-    double start_s = 0.0;
-    double step_s = 0.5;
-    std::vector<double> altitude_m;
-    std::vector<double> throttle_percent;      ///< empty if unknown
-    std::vector<double> ground_speed_m_per_s;  ///< empty if unknown
-
-    std::size_t size() const { return altitude_m.size(); }
-    double time_s(std::size_t index) const { return start_s + step_s * static_cast<double>(index); }
-    /// How many steps make up `duration_s`.
-    std::size_t steps(double duration_s) const { return static_cast<std::size_t>(duration_s / step_s); }
-};
-
-/// Throws InputError where the series has no altitude.
-FlightGrid make_grid(const FlightSeries& series);
 
 /// The grid points [begin, end).
 struct GridSpan {
@@ -31,8 +16,36 @@ struct GridSpan {
     std::size_t end;
 };
 
+/// A flight on an even clock, for the segmentation: spikes of single samples are gone.
+struct FlightGrid {
+    double start_s = 0.0;
+    double step_s = 0.5;
+    std::vector<double> altitude_m;
+    std::vector<double> throttle_percent;      ///< empty if unknown
+    std::vector<double> motor_percent;         ///< see MotorRecord; empty if unknown
+    std::vector<double> ground_speed_m_per_s;  ///< empty if unknown
+    std::vector<GridSpan> pieces;              ///< between jumps of the altitude; together the whole grid
+    MotorSign motor_sign = MotorSign::unknown;
+    std::string motor_evidence;         ///< see MotorRecord
+    std::vector<std::string> warnings;  ///< what was left out, and what is used instead
+    std::string unusable;               ///< see AltitudeRecord
+
+    std::size_t size() const { return altitude_m.size(); }
+    double time_s(std::size_t index) const { return start_s + step_s * static_cast<double>(index); }
+    /// How many steps make up `duration_s`.
+    std::size_t steps(double duration_s) const { return static_cast<std::size_t>(duration_s / step_s); }
+};
+
+/// On the time of the power samples, or where there are none of the altitude. Throws InputError where the series has
+/// no altitude.
+FlightGrid make_grid(const FlightSeries& series);
+
 /// The spans in which the aircraft is at rest: see SegmentationOptions.
 std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptions& options);
+
+/// Up to this motor_percent the motor idles; what rises without ever getting to the other one is no flight.
+double idle_motor_percent(const FlightGrid& grid, const SegmentationOptions& options);
+double flight_motor_percent(const FlightGrid& grid, const SegmentationOptions& options);
 
 /// Median of grid.altitude_m over a span that is not empty.
 double median_altitude_m(const FlightGrid& grid, GridSpan span);

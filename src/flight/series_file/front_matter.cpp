@@ -90,6 +90,7 @@ FrontMatter read_matter(const TomlTable& table) {
     series.flight = table.string("flight");
     series.aircraft_id = table.string("aircraft_id");
     series.aircraft_name = table.string("aircraft_name");
+    series.firmware = table.optional_string("firmware").value_or("");
     series.current_origin = read_origin(table);
     series.planned_ground_altitude_m = table.optional_number("planned_ground_altitude_m");
     series.lacks_log = table.optional_boolean("lacks_log").value_or(false);
@@ -124,6 +125,7 @@ std::string front_matter(const FlightSeries& series) {
     std::string toml = format_line();
     toml += fmt::format("flight = {}\naircraft_id = {}\naircraft_name = {}\n", toml_string(series.flight),
                         toml_string(series.aircraft_id), toml_string(series.aircraft_name));
+    if (!series.firmware.empty()) toml += fmt::format("firmware = {}\n", toml_string(series.firmware));
     toml += fmt::format("current_origin = {}\n", toml_string(to_string(series.current_origin)));
     if (const auto ground_m = series.planned_ground_altitude_m) {
         toml += fmt::format("planned_ground_altitude_m = {}\n", toml_real(*ground_m));

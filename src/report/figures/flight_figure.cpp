@@ -37,9 +37,9 @@ std::string edge_name(const flight::PhaseSpan& span, bool begin) {
 }
 
 /// An incomplete phase begins or ends there because the log does.
-bool is_end_of_log(const flight::Track& power, double time_s) {
+bool is_end_of_log(const flight::Track& clock, double time_s) {
     constexpr double near_s = 2.0;  // altitude and power have clocks of their own
-    return time_s - power.time_s.front() < near_s || power.time_s.back() - time_s < near_s;
+    return time_s - clock.time_s.front() < near_s || clock.time_s.back() - time_s < near_s;
 }
 
 /// What the autopilot says of the edge, if that was recorded.
@@ -187,13 +187,14 @@ std::string caption_of(const ReportFlight& flight, bool has_model) {
 std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
     std::vector<NamedEdge> edges;
     if (flight.phases.sorties.empty()) return edges;
-    const auto power = power_track(flight.series);
+    auto clock = power_track(flight.series);
+    if (clock.empty()) clock = chosen_track(flight.series, "altitude_m");
     for (const auto& sortie : flight.phases.sorties) {
         for (std::size_t i = 0; i < sortie.phases.size(); ++i) {
             const auto& span = sortie.phases[i];
             const bool continues = i > 0 && sortie.phases[i - 1].end.time_s == span.start.time_s;
             const auto add = [&](const flight::PhaseEdge& edge, bool begin) {
-                const bool cut = !span.complete && is_end_of_log(power, edge.time_s);
+                const bool cut = !span.complete && is_end_of_log(clock, edge.time_s);
                 edges.push_back({edge.time_s,
                                  cut ? (begin ? "the log begins" : "the log ends") : edge_name(span, begin),
                                  explained(edge), verdict_at(flight, edge.time_s)});

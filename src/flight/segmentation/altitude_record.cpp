@@ -1,0 +1,187 @@
+#include "flight/segmentation/altitude_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr double stuck_s = 10.0;        // a value that is repeated for so long, and
+constexpr std::size_t stuck_count = 5;  // so often, is that of an estimator without a fix
+constexpr double shortest_piece_s = 5.0;
+constexpr double long_piece_s = 20.0;
+constexpr double farthest_jump_m = 1000.0;
+constexpr std::size_t passes = 10;    // what is left out brings others together
+constexpr std::size_t returns = 100;  // jumps among which the one back is looked for
+
+/// Median of each value and its neighbours.
+void take_out_spikes(std::vector<double>& values) {
+    const auto raw = values;
+    for (std::size_t i = 1; i + 1 < raw.size(); ++i) {
+        values[i] = std::max(std::min(raw[i - 1], raw[i]), std::min(std::max(raw[i - 1], raw[i]), raw[i + 1]));
+    }
+}
+
+template <typename Keep>
+std::size_t keep_samples(Track& track, Keep&& keep) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+        if (!keep(i)) continue;
+        track.time_s[kept] = track.time_s[i];
+        track.value[kept++] = track.value[i];
+    }
+    const auto left_out = track.time_s.size() - kept;
+    track.time_s.resize(kept);
+    track.value.resize(kept);
+    return left_out;
+}
+
+/// Which samples repeat one value for long.
+std::vector<bool> stuck_samples(const Track& track) {
+    std::vector<bool> stuck(track.value.size(), false);
+    for (std::size_t begin = 0, end = 0; begin < stuck.size(); begin = end) {
+        while (end < stuck.size() && track.value[end] == track.value[begin]) ++end;
+        const bool is_stuck = end - begin >= stuck_count && track.time_s[end - 1] - track.time_s[begin] >= stuck_s;
+        if (is_stuck) std::fill_n(stuck.begin() + static_cast<std::ptrdiff_t>(begin), end - begin, true);
+    }
+    return stuck;
+}
+
+bool is_beyond(const Track& track, std::size_t i, std::size_t j, double step_m, double rate_m_per_s) {
+    return std::abs(track.value[j] - track.value[i]) > step_m + rate_m_per_s * (track.time_s[j] - track.time_s[i]);
+}
+
+/// The samples after jumps, in order.
+std::vector<std::size_t> jumps_of(const Track& track) {
+    const auto stuck = stuck_samples(track);
+    std::vector<std::size_t> jumps;
+    for (std::size_t i = 0; i + 1 < stuck.size(); ++i) {
+        const bool without_fix = (stuck[i] || stuck[i + 1]) && is_beyond(track, i, i + 1, fix_jump_m, fix_jump_m_per_s);
+        if (without_fix || is_beyond(track, i, i + 1, jump_m, jump_m_per_s)) jumps.push_back(i + 1);
+    }
+    return jumps;
+}
+
+/// Leaves out the samples that are marked, which `out` says.
+std::size_t leave_out(Track& track, const std::vector<bool>& out) {
+    return keep_samples(track, [&](std::size_t i) { return !out[i]; });
+}
+
+void mark(std::vector<bool>& out, std::size_t begin, std::size_t end) {
+    std::fill(out.begin() + static_cast<std::ptrdiff_t>(begin), out.begin() + static_cast<std::ptrdiff_t>(end), true);
+}
+
+/// Leaves out what lies between a jump and one back. Returns how many samples.
+std::size_t leave_out_excursions(Track& track) {
+    const auto jumps = jumps_of(track);
+    std::vector<bool> out(track.time_s.size(), false);
+    std::size_t after = 0;  // the first sample after what was left out last
+    for (std::size_t a = 0; a < jumps.size(); ++a) {
+        const auto first = jumps[a];
+        if (first < after) continue;
+        for (std::size_t b = a + 1; b < std::min(jumps.size(), a + returns); ++b) {
+            const auto back = jumps[b];
+            if (track.time_s[back] - track.time_s[first - 1] > excursion_s) break;
+            if (is_beyond(track, first - 1, back, fix_jump_m, fix_jump_m_per_s)) continue;
+            mark(out, first, back);
+            after = back;
+            break;
+        }
+    }
+    return leave_out(track, out);
+}
+
+/// The pieces between jumps: where each begins, and at last where the track ends.
+std::vector<std::size_t> piece_bounds(const Track& track) {
+    std::vector<std::size_t> bounds{0};
+    const auto jumps = jumps_of(track);
+    bounds.insert(bounds.end(), jumps.begin(), jumps.end());
+    bounds.push_back(track.time_s.size());
+    return bounds;
+}
+
+/// Leaves out pieces between jumps that are too short to tell anything. Returns how many samples.
+std::size_t leave_out_short_pieces(Track& track) {
+    const auto bounds = piece_bounds(track);
+    if (bounds.size() == 2) return 0;
+    std::vector<bool> out(track.time_s.size(), false);
+    for (std::size_t p = 0; p + 1 < bounds.size(); ++p) {
+        const auto [begin, end] = std::pair{bounds[p], bounds[p + 1]};
+        if (track.time_s[end - 1] - track.time_s[begin] < shortest_piece_s) mark(out, begin, end);
+    }
+    return leave_out(track, out);
+}
+
+/// Whether an altitude that moves on both sides, and for a while, jumps further than any estimator that gets its fix.
+bool jumps_too_far(const Track& track) {
+    const auto stuck = stuck_samples(track);
+    const auto bounds = piece_bounds(track);
+    const auto lasts = [&](std::size_t p) {
+        return track.time_s[bounds[p + 1] - 1] - track.time_s[bounds[p]] >= long_piece_s;
+    };
+    for (std::size_t p = 1; p + 1 < bounds.size(); ++p) {
+        const auto i = bounds[p];
+        const bool moves = !stuck[i - 1] && !stuck[i] && lasts(p - 1) && lasts(p);
+        if (moves && std::abs(track.value[i] - track.value[i - 1]) > farthest_jump_m) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+AltitudeRecord clean_altitude(Track altitude) {
+    AltitudeRecord record;
+    const auto all = altitude.time_s.size();
+    const auto [low, high] = std::minmax_element(altitude.value.begin(), altitude.value.end());
+    const double lowest_m = all > 0 ? *low : 0.0;
+    const double highest_m = all > 0 ? *high : 0.0;
+    const auto beyond = keep_samples(altitude, [&](std::size_t i) {
+        return altitude.value[i] >= lowest_altitude_m && altitude.value[i] <= highest_altitude_m;
+    });
+    take_out_spikes(altitude.value);
+    const auto before = jumps_of(altitude);
+    const double first_jump_s = before.empty() ? 0.0 : altitude.time_s[before.front()];
+    std::size_t left_out = 0;
+    const auto until_none = [&](std::size_t (*leave)(Track&)) {
+        for (std::size_t count = before.size(), pass = 0; count > 0 && pass < passes; ++pass) {
+            count = altitude.empty() ? 0 : leave(altitude);
+            left_out += count;
+        }
+    };
+    until_none(leave_out_excursions);
+    const auto lasting = jumps_of(altitude).size();
+    until_none(leave_out_short_pieces);
+    const auto jumps = jumps_of(altitude);
+    record.altitude = std::move(altitude);
+    const auto& left = record.altitude;
+    for (const auto i : jumps) record.jumps_s.push_back(left.time_s[i]);
+    const bool runs_away = 2 * (beyond + left_out) > all || left.time_s.size() < 2 || jumps_too_far(left);
+    if (runs_away || lasting > most_jumps) {
+        record.unusable = fmt::format(
+            "its altitude runs from {:.6g} to {:.6g} m{}: an estimator that ran away, or another "
+            "unit than m",
+            lowest_m, highest_m, lasting > 0 ? fmt::format(" with {} jumps", lasting) : "");
+    }
+    if (beyond > 0) {
+        record.warnings.push_back(fmt::format("{} of {} altitudes were left out: they are beyond {:.0f} to {:.0f} m",
+                                              beyond, all, lowest_altitude_m, highest_altitude_m));
+    }
+    if (left_out > 0) {
+        record.warnings.push_back(
+            fmt::format("{} of {} altitudes were left out: it jumped away and back, first at {:.1f} s", left_out, all,
+                        first_jump_s));
+    }
+    if (!jumps.empty()) {
+        const auto i = jumps.front();
+        record.warnings.push_back(fmt::format(
+            "the altitude jumps by {:+.0f} m at {:.1f} s{}: what lies before and after has a ground of its own",
+            left.value[i] - left.value[i - 1], left.time_s[i],
+            jumps.size() > 1 ? fmt::format(" (and {} times more)", jumps.size() - 1) : ""));
+    }
+    return record;
+}
+
+}  // namespace flightwatt::flight

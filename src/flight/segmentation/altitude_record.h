@@ -1,0 +1,35 @@
+#pragma once
+
+#include "flight/flight_series.h"
+
+#include <string>
+#include <vector>
+
+namespace flightwatt::flight {
+
+/// No land lies lower, and no small electric aircraft has flown higher [m].
+inline constexpr double lowest_altitude_m = -500.0;
+inline constexpr double highest_altitude_m = 20000.0;
+/// From one sample to the next an altitude changes by no more than this, or it has jumped: 60 m/s is more than a small
+/// aircraft climbs or dives, and an estimator may correct itself by 10 m.
+inline constexpr double jump_m = 10.0;
+inline constexpr double jump_m_per_s = 60.0;
+/// The same beside a time in which it repeated one value (an estimator without a fix), and over a time left out.
+inline constexpr double fix_jump_m = 30.0;
+inline constexpr double fix_jump_m_per_s = 5.0;
+/// An altitude that comes back from a jump within this time was somewhere else meanwhile [s].
+inline constexpr double excursion_s = 30.0;
+/// With more jumps than this nothing can be concluded from an altitude.
+inline constexpr std::size_t most_jumps = 10;
+
+/// The altitude that phases are found by: without single spikes, values that no altitude has, and excursions.
+struct AltitudeRecord {
+    Track altitude;
+    std::vector<double> jumps_s;        ///< the first times after jumps: from there on its ground is another one
+    std::vector<std::string> warnings;  ///< what was left out, and the jumps
+    std::string unusable;               ///< why nothing can be concluded from it; empty if something can
+};
+
+AltitudeRecord clean_altitude(Track altitude);
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,131 @@
+#include "flight/segmentation/motor_record.h"
+
+#include "base/statistics.h"
+#include "base/units.h"
+#include "flight/chosen_track.h"
+#include "flight/flight_phases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr double glitch_s = 10.0;  // throttle without power for less than this is a fault of the record
+
+struct PowerLevels {
+    double idle_w;
+    double running_w;
+    double percent(double power_w) const { return units::percent_of(power_w - idle_w, running_w - idle_w); }
+};
+
+/// Idle and running power of the record; std::nullopt if it does not tell one from the other.
+std::optional<PowerLevels> power_levels(const Track& power, const Track& altitude_m) {
+    constexpr std::size_t enough = 20;
+    if (power.time_s.size() < enough) return std::nullopt;
+    auto heights = altitude_m.value;
+    std::ranges::sort(heights);
+    const double low_m = quantile(heights, 0.02);
+    const double ground_m = low_m + std::max(3.0, 0.1 * (quantile(heights, 0.98) - low_m));
+    const auto at_m = resample(altitude_m, power.time_s);
+    std::vector<double> on_ground_w;
+    for (std::size_t i = 0; i < at_m.size(); ++i) {
+        if (at_m[i] <= ground_m) on_ground_w.push_back(power.value[i]);
+    }
+    if (on_ground_w.size() < enough / 2) return std::nullopt;
+    auto all_w = power.value;
+    std::ranges::sort(all_w);
+    std::ranges::sort(on_ground_w);
+    const PowerLevels levels{quantile(on_ground_w, 0.25), quantile(all_w, 0.98)};
+    const bool apart = levels.running_w >= running_over_idle * levels.idle_w &&
+                       levels.running_w >= levels.idle_w + running_above_idle_w;
+    return apart ? std::optional(levels) : std::nullopt;
+}
+
+/// The throttle on the clock of the power samples, on which it is asked for everywhere, or on its own. Values that
+/// are none are left out; of a throttle that is mostly made of such, nothing is left.
+Track usable_throttle(const FlightSeries& series, const Track& power, std::vector<std::string>& warnings) {
+    auto throttle = chosen_track(series, "throttle_percent");
+    const auto all = throttle.time_s.size();
+    const auto is_none = [](double percent) { return percent < -5.0 || percent > 105.0; };
+    Track kept{.name = throttle.name, .source = throttle.source};
+    for (std::size_t i = 0; i < all; ++i) {
+        if (is_none(throttle.value[i])) continue;
+        kept.time_s.push_back(throttle.time_s[i]);
+        kept.value.push_back(throttle.value[i]);
+    }
+    const auto left_out = all - kept.time_s.size();
+    if (left_out > 0) {
+        const bool useless = 2 * left_out > all;
+        warnings.push_back(fmt::format("{} of {} throttles are not between 0 and 100 %: {} left out", left_out, all,
+                                       useless ? "the throttle is" : "they were"));
+        if (useless) return {};
+    }
+    if (kept.empty() || power.empty()) return kept;
+    kept.value = resample(kept, power.time_s);
+    kept.time_s = power.time_s;
+    return kept;
+}
+
+/// A throttle that opens for less than ten seconds while the power stays at its idle: 0 again. Returns how many.
+std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLevels& levels, double idle_percent) {
+    std::size_t count = 0;
+    const auto& time_s = throttle.time_s;
+    for (std::size_t begin = 0, end = 0; begin < time_s.size(); begin = end) {
+        const bool opens = throttle.value[begin] > idle_percent;
+        bool without_power = opens;
+        for (; end < time_s.size() && (throttle.value[end] > idle_percent) == opens; ++end) {
+            without_power = without_power && levels.percent(power.value[end]) <= idle_power_percent;
+        }
+        if (!without_power || time_s[end - 1] - time_s[begin] > glitch_s) continue;
+        std::fill(throttle.value.begin() + static_cast<std::ptrdiff_t>(begin),
+                  throttle.value.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+        count += end - begin;
+    }
+    return count;
+}
+
+}  // namespace
+
+MotorRecord motor_record(const FlightSeries& series, const Track& altitude_m) {
+    MotorRecord record;
+    const auto power = power_track(series);
+    auto throttle = usable_throttle(series, power, record.warnings);
+    const auto levels = altitude_m.empty() ? std::nullopt : power_levels(power, altitude_m);
+    const bool stands_still = is_constant(throttle);  // as that of a log which has none
+    if (!throttle.empty() && !(stands_still && levels)) {
+        record.sign = MotorSign::throttle;
+        record.evidence = throttle.source;
+        if (levels) {
+            const double least = std::max(*std::ranges::min_element(throttle.value), 0.0);
+            const auto glitches =
+                take_out_glitches(throttle, power, *levels, least + SegmentationOptions{}.idle_throttle_percent);
+            if (glitches > 0) {
+                record.warnings.push_back(fmt::format(
+                    "{} throttles say that the motor runs while the power stays at its idle: they were left out",
+                    glitches));
+            }
+        }
+        record.percent = std::move(throttle);
+        return record;
+    }
+    const std::string lack = throttle.empty() ? "no throttle" : "the throttle never changes";
+    if (!levels) {
+        record.evidence = "nothing";
+        record.warnings.push_back(lack + ": segmented by altitude alone");
+        return record;
+    }
+    record.sign = MotorSign::power;
+    record.evidence = fmt::format("power: idle {:.1f} W, running {:.1f} W", levels->idle_w, levels->running_w);
+    record.warnings.push_back(fmt::format(
+        "{}: the motor is taken to run above {:.1f} W ({})", lack,
+        std::lerp(levels->idle_w, levels->running_w, idle_power_percent / units::percent_per_whole), record.evidence));
+    record.percent.time_s = power.time_s;
+    for (const double power_w : power.value) record.percent.value.push_back(levels->percent(power_w));
+    return record;
+}
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,227 @@
+#include "flight/segmentation/no_flight.h"
+
+#include "base/statistics.h"
+#include "flight/chosen_track.h"
+#include "flight/segmentation/altitude_record.h"
+#include "flight/series_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+double highest_motor_percent(const FlightGrid& grid, GridSpan span) {
+    if (grid.motor_percent.empty()) return 0.0;
+    return *std::max_element(grid.motor_percent.begin() + static_cast<std::ptrdiff_t>(span.begin),
+                             grid.motor_percent.begin() + static_cast<std::ptrdiff_t>(span.end));
+}
+
+/// What stays below the height of a flight.
+std::string low_text(const FlightGrid& grid, double motor_percent, double height_m,
+                     const SegmentationOptions& options) {
+    height_m = std::max(height_m, 0.0);
+    if (grid.motor_sign == MotorSign::unknown) {
+        return fmt::format("carried, rolled or hop: height to {:.1f} m; nothing tells of the motor", height_m);
+    }
+    const bool by_power = grid.motor_sign == MotorSign::power;
+    if (motor_percent <= (by_power ? idle_power_percent : options.idle_throttle_percent)) {
+        return fmt::format("carried or rolled: height to {:.1f} m, {}", height_m,
+                           by_power ? "power at its idle" : "motor off");
+    }
+    return by_power
+               ? fmt::format("run-up, taxi or hop: power of a running motor, height to {:.1f} m", height_m)
+               : fmt::format("run-up, taxi or hop: throttle to {:.0f} %, height to {:.1f} m", motor_percent, height_m);
+}
+
+/// How fast the altitude changes at most over a time within the span [m/s].
+double fastest_m_per_s(const FlightGrid& grid, GridSpan span, double over_s) {
+    const auto steps = grid.steps(over_s);
+    double fastest = 0.0;
+    for (auto i = span.begin; i + steps < span.end; ++i) {
+        fastest = std::max(fastest, std::abs(grid.altitude_m[i + steps] - grid.altitude_m[i]) / over_s);
+    }
+    return fastest;
+}
+
+/// From the 5th to the 95th percentile.
+double spread_of(std::vector<double> values) {
+    std::ranges::sort(values);
+    return quantile(values, 0.95) - quantile(values, 0.05);
+}
+
+/// The values of a track within a time, as far as they are altitudes.
+std::vector<double> altitudes_within(const Track& track, double start_s, double end_s) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+        const double value = track.value[i];
+        const bool is_altitude = value >= lowest_altitude_m && value <= highest_altitude_m;
+        if (track.time_s[i] >= start_s && track.time_s[i] <= end_s && is_altitude) values.push_back(value);
+    }
+    return values;
+}
+
+/// Another altitude of the log that says that nothing moved: "GPS.alt by 2 m"; empty if none does.
+std::string contradiction(const FlightSeries& series, const FlightGrid& grid, const Activity& activity,
+                          const SegmentationOptions& options) {
+    constexpr std::size_t enough = 10;
+    const double start_s = grid.time_s(activity.moving.begin);
+    const double end_s = grid.time_s(activity.moving.end - 1);
+    const auto chosen = chosen_track(series, "altitude_m");
+    const auto own = altitudes_within(chosen, start_s, end_s);
+    if (own.size() < enough) return "";
+    const double own_m = spread_of(own);
+    if (own_m < options.flight_height_m) return "";
+    for (const auto& track : series.tracks) {
+        if (track.name != "altitude_m" || track.source == chosen.source) continue;
+        const auto other = altitudes_within(track, start_s, end_s);
+        const bool says_nothing =
+            other.size() < enough || std::ranges::count(other, other.front()) == std::ssize(other);
+        if (says_nothing) continue;  // without a fix it repeats one value
+        const double other_m = spread_of(other);
+        if (other_m < contradicting_part * own_m && other_m < 0.5 * options.flight_height_m) {
+            return fmt::format("{} moves by {:.0f} m, {} by {:.1f} m: an estimator that ran away", chosen.source, own_m,
+                               track.source, other_m);
+        }
+    }
+    return "";
+}
+
+/// Whether an activity that shows no ground, and no climb, is as slow as what drives.
+std::string why_only_driven(const FlightSeries& series, const FlightGrid& grid, const Activity& activity,
+                            const SegmentationOptions& options) {
+    if (activity.ground_before_m || activity.ground_after_m || grid.ground_speed_m_per_s.empty()) return "";
+    // A rotorcraft hovers, its altitude is that above the ground; and who writes a CSV knows what it is of.
+    const auto source = chosen_track(series, "altitude_m").source;
+    if (source.starts_with("ROTORCRAFT_FP") || source == plain_source) return "";
+    const auto [begin, end] = activity.moving;
+    const auto part = [&](const std::vector<double>& all) {
+        std::vector<double> values(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                   all.begin() + static_cast<std::ptrdiff_t>(end));
+        std::ranges::sort(values);
+        return values;
+    };
+    const auto altitude_m = part(grid.altitude_m);
+    const double moved_m = altitude_m.back() - altitude_m.front();
+    const double speed = quantile(part(grid.ground_speed_m_per_s), 0.9);
+    if (moved_m >= options.flight_height_m || speed >= slowest_flight_m_per_s) return "";
+    return fmt::format(
+        "altitude moves by no more than {:.1f} m and the ground is not seen, at {:.1f} m/s over ground: "
+        "driven or carried",
+        moved_m, speed);
+}
+
+/// How many times as much `b` moves as `a` (as long); std::nullopt where `a` hardly moves, or they have nothing to do
+/// with each other.
+std::optional<double> times_as_much(const std::vector<double>& a, const std::vector<double>& b) {
+    constexpr std::size_t enough = 20;
+    constexpr double moves_m = 5.0;  // root mean square
+    constexpr double least_correlation = 0.8;
+    if (a.size() < enough) return std::nullopt;
+    double aa = 0.0;
+    double ab = 0.0;
+    double bb = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        aa += a[i] * a[i];
+        ab += a[i] * b[i];
+        bb += b[i] * b[i];
+    }
+    if (aa < moves_m * moves_m * static_cast<double>(a.size()) || ab < least_correlation * std::sqrt(aa * bb)) {
+        return std::nullopt;
+    }
+    return ab / aa;
+}
+
+/// The changes of the grid's altitude within windows that follow each other, piece by piece.
+std::vector<double> changes_seen(const FlightGrid& grid, double window_s) {
+    std::vector<double> changes_m;
+    const auto steps = grid.steps(window_s);
+    for (const auto& piece : grid.pieces) {
+        for (auto i = piece.begin; i + steps < piece.end; i += steps) {
+            changes_m.push_back(grid.altitude_m[i + steps] - grid.altitude_m[i]);
+        }
+    }
+    return changes_m;
+}
+
+/// The same as another altitude, or the integral of a climb rate, tells them; what is absurd of it tells nothing.
+std::vector<double> changes_said(const FlightGrid& grid, const Track& track, double window_s) {
+    std::vector<double> changes_m;
+    const auto steps = grid.steps(window_s);
+    const double most_m = highest_altitude_m;
+    for (const auto& piece : grid.pieces) {
+        for (auto i = piece.begin; i + steps < piece.end; i += steps) {
+            double change_m = 0.0;
+            if (track.name == "altitude_m") {
+                change_m = value_at(track, grid.time_s(i + steps)) - value_at(track, grid.time_s(i));
+            } else {
+                for (std::size_t k = 0; k < steps; ++k) {
+                    change_m += grid.step_s * value_at(track, grid.time_s(i + k) + 0.5 * grid.step_s);
+                }
+            }
+            changes_m.push_back(std::abs(change_m) <= most_m ? change_m : 0.0);
+        }
+    }
+    return changes_m;
+}
+
+std::string unit_of(double times) {
+    const auto is_near = [&](double factor) { return times > 0.8 * factor && times < 1.25 * factor; };
+    return is_near(100.0) ? "cm" : is_near(1000.0) ? "mm" : is_near(3.28084) ? "feet" : "another unit than m";
+}
+
+}  // namespace
+
+std::string why_ground_vehicle(const FlightSeries& series) {
+    if (!chosen_track(series, "rover_mode").empty()) return "a ground vehicle: it sends ROVER_STATUS";
+    if (series.firmware == "rover") return "a ground vehicle: its airframe's firmware is rover";
+    return "";
+}
+
+std::string why_no_flight(const FlightSeries& series, const FlightGrid& grid, const Activity& activity,
+                          const Heights& heights, const SegmentationOptions& options) {
+    const double motor_percent = highest_motor_percent(grid, activity.span);
+    if (heights.highest_m < options.flight_height_m) return low_text(grid, motor_percent, heights.highest_m, options);
+    if (grid.motor_sign != MotorSign::unknown && motor_percent < flight_motor_percent(grid, options)) {
+        return fmt::format("altitude moved by {:.0f} m with {}: an estimator without a fix", heights.highest_m,
+                           grid.motor_sign == MotorSign::power ? "the power at its idle" : "the motor off");
+    }
+    for (const auto& [over_s, limit] : {std::pair{5.0, fastest_5_s_m_per_s}, std::pair{30.0, fastest_30_s_m_per_s}}) {
+        const double fastest = fastest_m_per_s(grid, activity.span, over_s);
+        if (fastest > limit) {
+            return fmt::format(
+                "altitude changes by {:.0f} m/s for {:.0f} s: an estimator that ran away, or another "
+                "unit than m",
+                fastest, over_s);
+        }
+    }
+    if (auto why = contradiction(series, grid, activity, options); !why.empty()) return why;
+    return why_only_driven(series, grid, activity, options);
+}
+
+std::string unit_doubt(const FlightSeries& series, const FlightGrid& grid) {
+    constexpr double window_s = 10.0;
+    constexpr double factor = 1.7;  // feet are 3.28 times as many
+    const auto chosen = chosen_track(series, "altitude_m");
+    const auto doubt_by = [&](const Track& said, const char* how) -> std::string {
+        const auto times = times_as_much(changes_said(grid, said, window_s), changes_seen(grid, window_s));
+        if (!times || (*times<factor&& * times> 1.0 / factor)) return "";
+        return fmt::format("{} moves {:.3g} times as much as {}{} says: is one of them in {}?", chosen.source, *times,
+                           how, said.source, unit_of(std::max(*times, 1.0 / *times)));
+    };
+    if (const auto climb = chosen_track(series, "climb_m_per_s"); !climb.empty()) {
+        if (auto doubt = doubt_by(climb, "the climb rate of "); !doubt.empty()) return doubt;
+    }
+    for (const auto& track : series.tracks) {
+        if (track.name != "altitude_m" || track.source == chosen.source || track.empty()) continue;
+        if (auto doubt = doubt_by(track, ""); !doubt.empty()) return doubt;
+    }
+    return "";
+}
+
+}  // namespace flightwatt::flight

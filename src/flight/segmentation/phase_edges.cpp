@@ -1,0 +1,167 @@
+#include "flight/segmentation/phase_edges.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr double airborne_part = 0.25;  // of the flight's height: there it is in the air, and no longer low
+
+/// One sortie on the grid: where it is in the air, and what heights that means.
+struct Flown {
+    const FlightGrid& grid;
+    const Activity& activity;
+    const Heights& heights;
+    const SegmentationOptions& options;
+    std::size_t lift_off = 0;   ///< of heights.height_m, as is
+    std::size_t touchdown = 0;  ///< the last point
+
+    double height(std::size_t i) const { return heights.height_m[i]; }
+    double time_s(std::size_t i) const { return grid.time_s(activity.span.begin + i); }
+    double airborne_m() const { return airborne_part * heights.top_m; }
+    double ground_m() const { return options.ground_fraction * heights.top_m; }
+};
+
+/// Between two neighbouring points, where the height crosses `level`.
+double crossing_s(const Flown& flown, std::size_t i, double level) {
+    const double step = flown.height(i + 1) - flown.height(i);
+    const double part = step == 0.0 ? 0.0 : std::clamp((level - flown.height(i)) / step, 0.0, 1.0);
+    return flown.time_s(i) + part * flown.grid.step_s;
+}
+
+/// Where the search for lift-off begins: before the motor first runs nothing flies, if it comes down again by then.
+std::size_t first_flyable(const Flown& flown) {
+    const auto& motor = flown.grid.motor_percent;
+    if (motor.empty()) return 0;
+    const double idle = idle_motor_percent(flown.grid, flown.options);
+    const auto begin = flown.activity.span.begin;
+    const auto count = flown.heights.height_m.size();
+    std::size_t runs = 0;
+    while (runs < count && motor[begin + runs] <= idle) ++runs;
+    if (runs == count) return 0;
+    while (runs > 0 && flown.height(runs) > flown.airborne_m()) --runs;
+    return runs;
+}
+
+/// Where it last leaves the ground on its way up and is first back for good, to the grid and between its points.
+void find_ground_edges(Flown& flown, SortieEdges& edges) {
+    const auto& height = flown.heights.height_m;
+    const auto is_high = [&](double h) { return h > flown.airborne_m(); };
+    auto first =
+        std::find_if(height.begin() + static_cast<std::ptrdiff_t>(first_flyable(flown)), height.end(), is_high);
+    if (first == height.end()) first = std::find_if(height.begin(), height.end(), is_high);
+    const auto up = static_cast<std::size_t>(first - height.begin());
+    const auto down =
+        static_cast<std::size_t>(std::find_if(height.rbegin(), height.rend(), is_high).base() - height.begin()) - 1;
+    const double ground = flown.ground_m();
+    flown.lift_off = up;
+    while (flown.lift_off > 0 && height[flown.lift_off] > ground) --flown.lift_off;
+    if (height[flown.lift_off] <= ground) edges.lift_off_s = crossing_s(flown, flown.lift_off, ground);
+    flown.touchdown = down;
+    while (flown.touchdown + 1 < height.size() && height[flown.touchdown] > ground) ++flown.touchdown;
+    if (height[flown.touchdown] <= ground) edges.touchdown_s = crossing_s(flown, flown.touchdown - 1, ground);
+}
+
+/// The height held after the take-off: the highest of the first hold time, seen from lift-off on, in which what was
+/// reached so far does not grow by more than the hold fraction.
+double height_after_takeoff(const Flown& flown) {
+    const auto count = flown.touchdown - flown.lift_off + 1;
+    const auto hold = flown.grid.steps(flown.options.hold_s);
+    std::vector<double> highest(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        highest[i] = std::max(flown.height(flown.lift_off + i), i > 0 ? highest[i - 1] : flown.height(flown.lift_off));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const double later = highest[std::min(i + hold, count - 1)];
+        const bool holds = later - highest[i] <= flown.options.hold_fraction * flown.heights.top_m;
+        // Lower down it trims after the launch.
+        if (holds && highest[i] > 0.5 * flown.heights.top_m) return later;
+    }
+    return highest[count - 1];
+}
+
+/// A height that is held for good, on the grid: from where all above it is behind, to where it is left.
+struct Hold {
+    double height_m;
+    std::size_t begin;
+    std::size_t end;  ///< the last point at the cruise fraction of it, or the first of the sortie
+};
+
+/// The heights that are held for good, the last first. Seen back from touchdown: as long as the greatest height that is
+/// still to come grows by no more than the hold fraction within the hold time, it is held.
+std::vector<Hold> holds_before_landing(const Flown& flown) {
+    const auto count = flown.touchdown - flown.lift_off + 1;
+    const auto hold = flown.grid.steps(flown.options.hold_s);
+    const double step_m = flown.options.hold_fraction * flown.heights.top_m;
+    std::vector<double> highest(count);  // of the steps before touchdown
+    for (std::size_t i = 0; i < count; ++i) {
+        const double height = flown.height(flown.touchdown - i);
+        highest[i] = i > 0 ? std::max(height, highest[i - 1]) : height;
+    }
+    std::vector<Hold> holds;
+    for (std::size_t i = 0; i < count;) {
+        const double later = highest[std::min(i + hold, count - 1)];
+        const bool is_last = i + 1 == count;
+        if ((later - highest[i] > step_m || highest[i] <= flown.airborne_m()) && !is_last) {
+            ++i;
+            continue;
+        }
+        const double held_m = is_last ? highest[i] : later;
+        std::size_t left = 0;
+        while (left + 1 < count && flown.height(flown.touchdown - left) < flown.options.cruise_fraction * held_m)
+            ++left;
+        while (i < count && highest[i] <= held_m + step_m) ++i;
+        holds.push_back({held_m, flown.touchdown - (i - 1), flown.touchdown - left});
+    }
+    return holds;
+}
+
+/// Marks which of the holds are steps of the landing; returns the index of the first that is not: where that height is
+/// left, the landing begins.
+std::size_t mark_landing_steps(const Flown& flown, std::vector<HeldHeight>& held) {
+    for (std::size_t i = 0; i + 1 < held.size(); ++i) {
+        double longest_s = 0.0;
+        for (auto k = i + 1; k < held.size(); ++k) longest_s = std::max(longest_s, held[k].duration_s());
+        const bool is_high = held[i].height_m > 0.5 * flown.heights.top_m;
+        const double duration_s = held[i].duration_s();
+        if (duration_s >= working_hold_s || (is_high && duration_s >= working_hold_part * longest_s)) return i;
+        held[i].of_landing = true;
+    }
+    return held.size() - 1;
+}
+
+}  // namespace
+
+SortieEdges find_edges(const FlightGrid& grid, const Activity& activity, const Heights& heights,
+                       const SegmentationOptions& options) {
+    SortieEdges edges;
+    Flown flown{grid, activity, heights, options};
+    find_ground_edges(flown, edges);
+    const auto lift_off = flown.lift_off;
+    const auto touchdown = flown.touchdown;
+    const double reached = options.cruise_fraction * height_after_takeoff(flown);
+    std::size_t takeoff_end = lift_off;
+    while (takeoff_end < touchdown && flown.height(takeoff_end) < reached) ++takeoff_end;
+    const auto holds = holds_before_landing(flown);
+    for (const auto& hold : holds) {
+        edges.held.push_back({hold.height_m, flown.time_s(std::max(hold.begin, takeoff_end)),
+                              flown.time_s(std::max(hold.end, takeoff_end)), false});
+    }
+    const auto& last_height = holds[mark_landing_steps(flown, edges.held)];
+    const double left = options.cruise_fraction * last_height.height_m;
+    std::size_t landing_start = std::max(last_height.end, takeoff_end);
+    // A log that begins (or ends) in the air, and not low, begins (or ends) in cruise: that it climbs (or
+    // dives) there is no take-off (or landing).
+    if (!edges.lift_off_s && flown.height(lift_off) >= flown.airborne_m()) takeoff_end = lift_off;
+    if (!edges.touchdown_s && flown.height(touchdown) >= flown.airborne_m()) landing_start = touchdown;
+    if (takeoff_end > lift_off) edges.takeoff_end_s = crossing_s(flown, takeoff_end - 1, reached);
+    if (landing_start < touchdown) {
+        const bool below = flown.height(landing_start + 1) < left && flown.height(landing_start) >= left;
+        edges.landing_start_s = below ? crossing_s(flown, landing_start, left) : flown.time_s(landing_start);
+    }
+    std::ranges::reverse(edges.held);
+    return edges;
+}
+
+}  // namespace flightwatt::flight
