@@ -45,7 +45,7 @@ FlightGrid make_grid(const FlightSeries& series) {
     if (altitude.empty()) {
         const auto warnings = warnings_of(series);
         throw InputError(
-            {series.flight}, "has no altitude, so its phases cannot be told apart",
+            {series.file.empty() ? series.flight : series.file}, "has no altitude, so its phases cannot be told apart",
             fmt::format("expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",
                         warnings.empty() ? "" : "; ", fmt::join(warnings, "; ")));
     }
