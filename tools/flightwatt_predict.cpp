@@ -122,7 +122,7 @@ mechanical::FlightProgress read_progress(const cli::StageCall& call, const Momen
     options.sortie.reset();
     options.flight_required = false;
     const auto& file = call.inputs.front();
-    auto candidates = read_candidates(flight::FlightFile(file), options.aircraft_id);
+    auto candidates = read_candidates(flight::FlightFile(file, options.most_log_bytes), options.aircraft_id);
     const double until_s = time_of(moment, candidates, sortie, options.segmentation);
     for (auto& series : candidates) series = cut_series(series, until_s);
     auto series = choose_aircraft(std::move(candidates));

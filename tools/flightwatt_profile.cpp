@@ -71,8 +71,10 @@ void apply_options(const cli::StageCall& call, compute::ProfileSpecification& sp
         sampler.kind = *kind;
     }
     if (const auto sysfs = call.maybe<std::string>("sysfs")) {
-        if (!std::filesystem::is_directory(*sysfs)) {
-            throw UsageError(fmt::format("--sysfs {}: there is no such folder", *sysfs));
+        std::error_code error;
+        if (!std::filesystem::is_directory(*sysfs, error)) {
+            throw UsageError(
+                fmt::format("--sysfs {}: {}", *sysfs, error ? error.message() : "there is no such folder"));
         }
         sampler.sysfs = *sysfs;
     }

@@ -35,7 +35,8 @@ struct ReportInputs {
 ReportInputs read_inputs(const cli::StageCall& call) {
     ReportInputs inputs;
     for (const auto& input : call.inputs) {
-        if (!std::filesystem::is_directory(input)) {
+        std::error_code error;
+        if (!std::filesystem::is_directory(input, error)) {
             inputs.missions.push_back(mission::read_mission(input, {true, std::nullopt}));
             cli::warn_of_setup(call, setup_of(inputs.missions.back()));
             continue;

@@ -4,8 +4,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <string>
 
 #include <fcntl.h>
@@ -62,19 +60,6 @@ void make_directories(const std::filesystem::path& path) {
     if (error) {
         throw OutputError(fmt::format("cannot make the folder {}: {}", path.string(), error.message()));
     }
-}
-
-std::string read_file(const std::filesystem::path& path) {
-    std::error_code unknown;
-    if (std::filesystem::is_directory(path, unknown)) {
-        throw InputError({path.string()}, "is a folder, expected a file");
-    }
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw InputError({path.string()}, fmt::format("cannot be read: {}", std::strerror(errno)));
-    std::ostringstream content;
-    content << file.rdbuf();
-    if (file.bad()) throw InputError({path.string()}, "cannot be read to its end");
-    return std::move(content).str();
 }
 
 }  // namespace flightwatt

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/input_file.h"  // IWYU pragma: export
+
 #include <filesystem>
 #include <string_view>
 
@@ -11,8 +13,5 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 
 /// Makes the folder and those above it. Throws OutputError.
 void make_directories(const std::filesystem::path& path);
-
-/// The whole file. Throws InputError (missing, a folder, unreadable).
-std::string read_file(const std::filesystem::path& path);
 
 }  // namespace flightwatt

@@ -13,6 +13,11 @@
 namespace flightwatt {
 namespace {
 
+/// The widest table of ours, a series, has some forty columns.
+constexpr std::size_t most_columns = 1000;
+/// Of a table in memory, where a row costs as much as two cells: some 500 MB. Series are read row by row.
+constexpr std::size_t most_cells = 8'000'000;
+
 /// One line into cells; `text` ends before the line break.
 std::vector<CsvTable::Cell> split_line(std::string_view text, const Location& where) {
     std::vector<CsvTable::Cell> cells;
@@ -40,6 +45,9 @@ std::vector<CsvTable::Cell> split_line(std::string_view text, const Location& wh
             p = comma;
         }
         cells.push_back(std::move(cell));
+        if (cells.size() > most_columns) {
+            throw InputError(where, fmt::format("has more than {} cells", most_columns), "is it a CSV table?");
+        }
         if (p >= text.size()) return cells;
         ++p;
     }
@@ -73,7 +81,13 @@ void for_each_csv_row(std::string_view text, const std::string& file,
 
 CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header) {
     CsvTable table{file, {}, {}};
+    std::size_t cells = 0;
     for_each_csv_row(text, file, [&](CsvTable::Row& row) {
+        cells += row.cells.size() + 2;
+        if (cells > most_cells) {
+            throw InputError({file, row.line}, fmt::format("holds more than {} rows and cells", most_cells),
+                             "is it the file that was meant?");
+        }
         if (header == CsvHeader::present && table.columns.empty()) {
             for (auto& cell : row.cells) table.columns.push_back(std::move(cell.text));
         } else {
@@ -91,7 +105,7 @@ std::size_t column_index(const CsvTable& table, std::string_view name) {
     const auto found = std::ranges::find(table.columns, name);
     if (found == table.columns.end()) {
         throw InputError({table.file, 1}, fmt::format("has no column '{}'", name),
-                         fmt::format("its columns are {}", fmt::join(table.columns, ", ")));
+                         "its columns are " + short_list(table.columns));
     }
     return static_cast<std::size_t>(found - table.columns.begin());
 }

@@ -18,7 +18,8 @@ std::filesystem::path program_files(const std::string& name, const char* variabl
     const char* named = std::getenv(variable);
     auto folder = named != nullptr ? std::filesystem::path(named)
                                    : program_folder().parent_path() / "share" / "flightwatt" / name;
-    if (std::filesystem::is_directory(folder)) return folder;
+    std::error_code error;
+    if (std::filesystem::is_directory(folder, error)) return folder;
     throw InputError({folder.string()}, what + " are not there",
                      fmt::format("{} can name the project's folder {}/", variable, name));
 }

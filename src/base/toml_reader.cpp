@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 namespace flightwatt {
@@ -51,6 +50,86 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
+/// No file of ours nests deeper than five; the parser would end the program at some ten thousand (its stack).
+constexpr std::size_t deepest_nesting = 50;
+/// A file in memory takes up to some hundred times its size. A mission or model has some 10 kB.
+constexpr std::size_t most_toml_bytes = 8'000'000;
+
+/// How deep keys, arrays and tables nest, told from dots and brackets outside of strings and comments.
+class NestingCounter {
+  public:
+    explicit NestingCounter(std::string_view text) : text_(text) {}
+
+    /// Where it first is deeper than `most`; npos if it never is.
+    std::size_t find_deeper_than(std::size_t most) {
+        while (at_ < text_.size()) {
+            const char c = text_[at_];
+            if (c == '"' || c == '\'') {
+                skip_string(c);
+                continue;
+            }
+            if (c == '#') at_ = std::min(text_.find('\n', at_), text_.size() - 1);
+            count(text_[at_]);
+            if (open_.size() + dots_before_ + dots_ > most) return at_;
+            ++at_;
+        }
+        return std::string_view::npos;
+    }
+
+  private:
+    void count(char c) {
+        if (c == '.') {
+            ++dots_;
+        } else if (c == '[' || c == '{') {
+            open_.push_back(dots_);
+            dots_before_ += dots_;
+            dots_ = 0;
+        } else if ((c == ']' || c == '}') && !open_.empty()) {
+            dots_before_ -= open_.back();
+            dots_ = 0;
+            open_.pop_back();
+        } else if (c == '\n' || c == ',') {
+            dots_ = 0;
+        }
+    }
+
+    /// To behind its end. One of a single line ends with the line: the parser refuses it there.
+    void skip_string(char quote) {
+        const std::string triple(3, quote);
+        const bool is_long = text_.substr(at_).starts_with(triple);
+        at_ += is_long ? 3 : 1;
+        for (; at_ < text_.size(); ++at_) {
+            if (quote == '"' && text_[at_] == '\\') {
+                ++at_;
+            } else if (is_long ? text_.substr(at_).starts_with(triple) : text_[at_] == quote) {
+                at_ += is_long ? 3 : 1;
+                for (int more = 0; is_long && more < 2 && at_ < text_.size() && text_[at_] == quote; ++more) ++at_;
+                return;
+            } else if (!is_long && text_[at_] == '\n') {
+                return;
+            }
+        }
+    }
+
+    std::string_view text_;
+    std::size_t at_ = 0;
+    std::size_t dots_ = 0;                ///< of the key or value that stands here
+    std::size_t dots_before_ = 0;         ///< of the keys whose values are open
+    std::vector<std::size_t> open_ = {};  ///< brackets, with the dots of their keys
+};
+
+void refuse_monsters(std::string_view text, const std::string& file) {
+    if (text.size() > most_toml_bytes) {
+        throw InputError({file}, fmt::format("holds more than {} MB of TOML", most_toml_bytes / 1'000'000),
+                         "is it the file that was meant?");
+    }
+    const auto at = NestingCounter(text).find_deeper_than(deepest_nesting);
+    if (at == std::string_view::npos) return;
+    const auto line = 1 + static_cast<std::size_t>(std::ranges::count(text.substr(0, at), '\n'));
+    throw InputError({file, line, at - (text.substr(0, at).rfind('\n') + 1) + 1},
+                     fmt::format("keys, arrays or tables are nested more than {} levels deep", deepest_nesting));
+}
+
 std::set<AskedKey>* recorded_keys = nullptr;
 
 std::string path_below(const std::string& path, std::string_view key) {
@@ -71,9 +150,12 @@ std::string describe(NumberRange range) {
 void record_asked_keys(std::set<AskedKey>* asked) { recorded_keys = asked; }
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
+    constexpr std::size_t longest_word = 100;
     std::string nearest;
+    if (word.size() > longest_word) return nearest;
     std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
     for (const auto& candidate : known) {
+        if (candidate.size() > longest_word) continue;
         const auto distance = edit_distance(word, candidate);
         if (distance < best) {
             best = distance;
@@ -92,6 +174,7 @@ TomlTable::TomlTable(std::shared_ptr<const toml::table> root, const toml::table*
       asked_(std::make_shared<std::set<std::string, std::less<>>>()) {}
 
 TomlTable parse_toml(std::string_view text, const std::string& file) {
+    refuse_monsters(text, file);
     try {
         auto root = std::make_shared<const toml::table>(toml::parse(text, file));
         return {root, root.get(), file, ""};
@@ -207,9 +290,9 @@ void TomlTable::refuse_unknown_keys() const {
         if (asked_->contains(name)) continue;
         const std::vector<std::string> known(asked_->begin(), asked_->end());
         const auto near = nearest_word(name, known);
-        throw InputError(where(name), fmt::format("unknown key '{}'", name),
-                         near.empty() ? fmt::format("known keys: {}", fmt::join(known, ", "))
-                                      : fmt::format("did you mean '{}'?", near));
+        throw InputError(
+            where(name), fmt::format("unknown key '{}'", name),
+            near.empty() ? fmt::format("known keys: {}", short_list(known)) : fmt::format("did you mean '{}'?", near));
     }
 }
 

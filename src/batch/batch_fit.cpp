@@ -5,6 +5,8 @@
 #include "base/toml_reader.h"
 #include "batch/batch_files.h"
 
+#include <cstddef>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -59,10 +61,19 @@ mechanical::ModelFitOptions options_from(const Json& json) {
     return options;
 }
 
+constexpr std::size_t most_fit_bytes = 16'000'000;  // fit.json has some 100 kB
+
+/// A file that nests without end would take a hundred times its size in memory.
+bool require_shallow(int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
+    constexpr int deepest = 20;
+    if (depth > deepest) throw std::runtime_error("nested too deep");
+    return true;
+}
+
 void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
     const std::string again = "run flightwatt batch again";
     try {
-        const auto json = Json::parse(read_file(file));
+        const auto json = Json::parse(read_file(file, most_fit_bytes), require_shallow);
         if (json.at("format").get<double>() > format_version) {
             throw InputError(
                 {file.string()},

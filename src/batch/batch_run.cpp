@@ -113,8 +113,9 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     BatchFlight done;
     std::string fingerprint;
     try {
-        const flight::FlightFile file(log.path);
+        const flight::FlightFile file(log.path, options.load.most_log_bytes);
         fingerprint = fingerprint_of(file, log, options);
+        file.require_unchanged();
         if (auto record = remembered(options, log, fingerprint)) {
             done.was_up_to_date = true;
             done.record = std::move(*record);

@@ -73,7 +73,7 @@ void ProgressBar::show(std::size_t done, std::size_t all) {
     // One column less: a full last one makes some terminals wrap.
     const auto text = progress_text({done, all, per_s}, unit_, terminal_width(terminal_) - 1);
     erase();
-    fmt::print(terminal_, "{}", text);
+    std::fwrite(text.data(), 1, text.size(), terminal_);  // a terminal that is gone changes nothing
     std::fflush(terminal_);
     drawn_width_ = text.size();
 }
@@ -87,7 +87,10 @@ void ProgressBar::clear() {
 
 /// With blanks: every terminal knows them.
 void ProgressBar::erase() {
-    if (drawn_width_ > 0) fmt::print(terminal_, "\r{}\r", std::string(drawn_width_, ' '));
+    if (drawn_width_ > 0) {
+        const auto blanks = fmt::format("\r{}\r", std::string(drawn_width_, ' '));
+        std::fwrite(blanks.data(), 1, blanks.size(), terminal_);
+    }
     drawn_width_ = 0;
 }
 

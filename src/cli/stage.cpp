@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/toml_reader.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -10,8 +11,11 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <new>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace flightwatt::cli {
 namespace {
@@ -20,11 +24,58 @@ namespace po = boost::program_options;
 
 constexpr const char* inputs_option = "inputs";
 
+/// Once the reader of the standard output has left (head): what is still printed goes nowhere, everything else is done
+/// to its end, and then the program ends as SIGPIPE ends programs.
+bool reader_has_left = false;
+
+/// Diagnostics that nobody can read (closed, full disk) change nothing.
+void tell(const std::string& line) { std::fwrite(line.data(), 1, line.size(), stderr); }
+
 /// Says what went wrong, and where; returns the exit code that stands for it.
 ExitCode failed(ExitCode code, const std::string& program, const std::string& message, const std::string& where = "") {
     const auto place = where.empty() ? "" : where + ": ";
-    fmt::print(stderr, "{}: {}error: {}\n", program, one_line(place), one_line(message));
+    tell(fmt::format("{}: {}error: {}\n", program, one_line(place), one_line(clipped(message))));
     return code;
+}
+
+/// A standard stream that was closed before the start would become the first file that is opened, a log or a result.
+/// What is opened here instead cannot be written, so that a result for a closed standard output is an error.
+void occupy_closed_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", O_RDONLY);
+    }
+}
+
+[[noreturn]] void cannot_print() {
+    throw OutputError(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
+}
+
+[[noreturn]] void end_by_broken_pipe() {
+    constexpr int killed_by_signal = 128;  // what shells add to the signal
+    std::signal(SIGPIPE, SIG_DFL);
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGPIPE);
+    ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+    std::raise(SIGPIPE);
+    ::_exit(killed_by_signal + SIGPIPE);
+}
+
+void close_standard_output() {
+    if (!reader_has_left && std::fflush(stdout) != 0) {
+        if (errno != EPIPE) cannot_print();
+        reader_has_left = true;
+    }
+    if (reader_has_left) end_by_broken_pipe();
+    if (std::fclose(stdout) != 0) cannot_print();
+}
+
+[[noreturn]] void refuse_option(const po::unknown_option& error, const po::options_description& known) {
+    std::vector<std::string> names;
+    for (const auto& option : known.options()) names.push_back("--" + option->long_name());
+    const auto near = nearest_word(error.get_option_name(), names);
+    throw UsageError(
+        fmt::format("{}; {}", error.what(), near.empty() ? "see --help" : fmt::format("did you mean '{}'?", near)));
 }
 
 StageCall parse(int argc, char** argv, const StageDefinition& definition, po::options_description& visible) {
@@ -37,7 +88,12 @@ StageCall parse(int argc, char** argv, const StageDefinition& definition, po::op
     po::positional_options_description positional;
     positional.add(inputs_option, -1);
     const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).style(style).run(), call.options);
+    try {
+        auto parser = po::command_line_parser(argc, argv).options(all).positional(positional).style(style);
+        po::store(parser.run(), call.options);
+    } catch (const po::unknown_option& error) {
+        refuse_option(error, visible);
+    }
     po::notify(call.options);
     call.json = call.has("json");
     call.output = call.maybe<std::string>("output");
@@ -88,12 +144,11 @@ int run(int argc, char** argv, const StageDefinition& definition, const StageBod
 }  // namespace
 
 int run_guarded(const std::string& program, const std::function<int()>& body) {
-    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is then a failed write, reported below
+    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is then a failed write: see print() and tell()
+    occupy_closed_streams();
     try {
         const int code = body();
-        if (std::fflush(stdout) != 0 || std::fclose(stdout) != 0) {
-            throw OutputError(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
-        }
+        close_standard_output();
         return code;
     } catch (const InputError& error) {
         const auto hint = error.hint().empty() ? "" : "; " + error.hint();
@@ -106,6 +161,10 @@ int run_guarded(const std::string& program, const std::function<int()>& body) {
         return failed(usage_error, program, fmt::format("{}; see --help", error.what()));
     } catch (const OutputError& error) {
         return failed(internal_error, program, error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+        return failed(input_rejected, program, "cannot be used: " + error.code().message(), error.path1().string());
+    } catch (const std::bad_alloc&) {
+        return failed(internal_error, program, "there is not enough memory");
     } catch (const std::exception& error) {
         return failed(internal_error, program, fmt::format("internal error: {}", error.what()));
     }
@@ -116,9 +175,9 @@ int run_stage(int argc, char** argv, const StageDefinition& definition, const St
 }
 
 void print(std::string_view text) {
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) {
-        throw OutputError(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
-    }
+    if (reader_has_left || std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return;
+    if (errno != EPIPE) cannot_print();
+    reader_has_left = true;
 }
 
 void write_result(const StageCall& call, std::string_view content) {
@@ -137,11 +196,11 @@ std::string one_line(std::string_view text) {
 }
 
 void warn(const StageCall& call, std::string_view message) {
-    fmt::print(stderr, "{}: warning: {}\n", call.program, one_line(message));
+    tell(fmt::format("{}: warning: {}\n", call.program, one_line(message)));
 }
 
 void note(const StageCall& call, std::string_view message) {
-    fmt::print(stderr, "{}: {}\n", call.program, one_line(message));
+    tell(fmt::format("{}: {}\n", call.program, one_line(message)));
 }
 
 }  // namespace flightwatt::cli

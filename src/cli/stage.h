@@ -54,14 +54,16 @@ using StageBody = std::function<int(const StageCall&)>;
 /// Parses the options of a stage, answers --help and --version, and runs the body, guarded as below.
 int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body);
 
-/// The exit code of the body. An exception becomes one line on the standard error and its exit code; an
-/// output that was not written (full disk, closed pipe) is an error as well. Closes the standard output.
+/// The exit code of the body. An exception becomes one line on the standard error and its exit code; a standard
+/// output that was not written (full disk, closed) is an error as well. Where its reader has left (head), the body runs
+/// to its end and the program ends as SIGPIPE ends programs. A standard error that cannot be written changes nothing.
+/// Closes the standard output.
 int run_guarded(const std::string& program, const std::function<int()>& body);
 
 /// The result to --output's file (atomically), or to the standard output unless --json claims that.
 void write_result(const StageCall& call, std::string_view content);
 
-/// To the standard output. Throws OutputError (full disk, closed pipe).
+/// To the standard output. Throws OutputError (full disk, closed); of a pipe that nobody reads any more see run_guarded.
 void print(std::string_view text);
 
 /// `text` with blanks for control characters: diagnostics stay on one line, whatever a file (or its name) put

@@ -14,8 +14,6 @@
 namespace flightwatt::compute {
 namespace {
 
-constexpr std::size_t most_configurations = 100000;
-
 /// A component as it is written, before its ranges are multiplied out.
 struct WrittenComponent {
     std::string name;

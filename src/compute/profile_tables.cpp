@@ -123,7 +123,9 @@ void write_profiles(const ProfileOutcome& outcome, const ProfileSpecification& s
     for (const auto& component : outcome.components) {
         const auto path = folder / (component.name + ".csv");
         if (component.nodes.empty()) {
-            std::filesystem::remove(path);  // of an earlier call
+            std::error_code error;
+            std::filesystem::remove(path, error);  // of an earlier call
+            if (error) throw OutputError(fmt::format("cannot remove {}: {}", path.string(), error.message()));
             continue;
         }
         write_file_atomically(path, layer2_csv(component, outcome, specification));

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace flightwatt::compute {
+
+/// More are a mistake in a range: they would take weeks to profile.
+inline constexpr std::size_t most_configurations = 100000;
 
 /// Configurations of a component: one value a parameter each.
 using QosPoints = std::vector<std::vector<double>>;

@@ -7,12 +7,17 @@
 #include "flight/telemetry_series.h"
 
 #include <algorithm>
+#include <new>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
+
+/// Each is segmented to see whether it flew.
+constexpr std::size_t most_candidates = 32;
 
 /// The messages of a log, the most frequent first: "GPS 310, ALIVE 12, ...".
 std::string census(const FlightFile& file) {
@@ -72,21 +77,7 @@ std::string exclusion_of(const LoadedFlight& flight, const LoadOptions& options)
     return describe_power_faults(flight.power.power_faults);
 }
 
-}  // namespace
-
-FlightFile::FlightFile(const std::filesystem::path& path) : path_(path) {
-    if (path.extension() == ".csv" && std::filesystem::is_regular_file(path)) {
-        series_text_ = read_file(path);
-        return;
-    }
-    data_.emplace(path);
-    if (const auto log = telemetry::find_log_file(path)) {
-        log_file_ = *log;
-        log_text_ = read_file(*log);
-    }
-}
-
-std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
+std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
     std::vector<FlightSeries> candidates;
     std::vector<std::string> ids;
     if (file.is_series()) {
@@ -106,11 +97,49 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
         }
     }
     throw InputError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),
-                     fmt::format("the log holds {}", fmt::join(ids, ", ")));
+                     "the log holds " + short_list(ids));
+}
+
+}  // namespace
+
+FlightFile::FlightFile(const std::filesystem::path& path, std::size_t most_bytes) : path_(path) {
+    std::error_code error;
+    if (path.extension() == ".csv" && std::filesystem::is_regular_file(path, error)) {
+        series_text_ = read_file(path, most_bytes, "if it is a series all the same, --max-log-mb raises the limit");
+        return;
+    }
+    data_.emplace(path, most_bytes);
+    if (const auto log = telemetry::find_log_file(path)) {
+        log_file_ = *log;
+        log_text_ = read_file(*log, telemetry::most_log_configuration_bytes);
+    }
+}
+
+void FlightFile::require_unchanged() const {
+    if (data_) data_->require_unchanged();
+}
+
+std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
+    std::vector<FlightSeries> candidates;
+    try {
+        candidates = parse_candidates(file, aircraft_id);
+    } catch (const InputError&) {
+        file.require_unchanged();  // or what was found to be wrong is where it was cut
+        throw;
+    }
+    file.require_unchanged();
+    return candidates;
 }
 
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
     if (candidates.size() == 1) return std::move(candidates.front());
+    if (candidates.size() > most_candidates) {
+        std::vector<std::string> senders;
+        for (const auto& candidate : candidates) senders.push_back(candidate.aircraft_id);
+        throw InputError({candidates.front().file},
+                         fmt::format("{} senders may be aircraft: {}", candidates.size(), short_list(senders)),
+                         "choose one with --aircraft ID");
+    }
     std::vector<Sighting> sightings(candidates.size());
     std::ranges::transform(candidates, sightings.begin(), look_at);
     const bool any = std::ranges::any_of(sightings, &Sighting::flew);
@@ -123,12 +152,9 @@ FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
         last = i;
     }
     if (ids.size() > 1) {
-        constexpr std::size_t shown = 12;
-        const auto more = ids.size() > shown ? fmt::format(", ... and {} more", ids.size() - shown) : "";
-        ids.resize(std::min(ids.size(), shown));
         throw InputError({candidates.front().file},
-                         fmt::format("{}: {}{}", any ? "several aircraft flew" : "none of its aircraft flew",
-                                     fmt::join(ids, ", "), more),
+                         fmt::format("{}: {}", any ? "several aircraft flew" : "none of its aircraft flew",
+                                     short_list(ids)),
                          "choose one with --aircraft ID");
     }
     return std::move(candidates[last]);
@@ -161,7 +187,11 @@ LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options) {
 }
 
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options) {
-    return load_flight(FlightFile(path), options);
+    try {
+        return load_flight(FlightFile(path, options.most_log_bytes), options);
+    } catch (const std::bad_alloc&) {
+        throw InputError({path.string()}, "there is not enough memory to read it");
+    }
 }
 
 FlightSeries read_flight(const std::filesystem::path& path, const std::optional<std::string>& aircraft_id) {

@@ -26,6 +26,7 @@ struct LoadOptions {
     bool flight_required = true;
     /// False: a log without measured power is segmented all the same, if it has an altitude.
     bool power_required = true;
+    std::size_t most_log_bytes = telemetry::usual_most_log_bytes;  ///< see DataFile
 };
 
 struct LoadedFlight {
@@ -41,7 +42,7 @@ struct LoadedFlight {
 /// file that cannot be read.
 class FlightFile {
   public:
-    explicit FlightFile(const std::filesystem::path& path);
+    explicit FlightFile(const std::filesystem::path& path, std::size_t most_bytes = telemetry::usual_most_log_bytes);
     FlightFile(const FlightFile&) = delete;
     FlightFile& operator=(const FlightFile&) = delete;
 
@@ -51,6 +52,8 @@ class FlightFile {
     /// The .log beside a log; std::nullopt without one.
     const std::optional<std::string>& log_text() const { return log_text_; }
     std::filesystem::path log_file() const { return log_file_; }
+    /// See DataFile: to be asked after the text was read.
+    void require_unchanged() const;
 
   private:
     std::filesystem::path path_;

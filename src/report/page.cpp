@@ -61,7 +61,7 @@ WebFiles read_web_files(const std::filesystem::path& folder) {
     files.theme = read_file(folder / "theme.json");
     for (const auto* library : {"vega", "vega-lite", "vega-embed"}) {
         const auto path = folder / "node_modules" / library / "build" / (std::string(library) + ".min.js");
-        if (!std::filesystem::exists(path)) {
+        if (reading_error(path)) {
             throw InputError({path.string()}, "the report's figures need this library, and it is not there",
                              "run scripts/install_dependencies with the npm registry at hand");
         }

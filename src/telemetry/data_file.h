@@ -1,22 +1,34 @@
 #pragma once
 
+#include "base/input_file.h"
+#include "telemetry/files/mapped_file.h"
+
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
-#include <boost/iostreams/device/mapped_file.hpp>
-
 namespace flightwatt::telemetry {
 
+/// What a compressed log may unpack to, and a series hold, unless told: some ten hours of flight at fifty messages a
+/// second. More is refused, as reading takes up to seven times as much memory.
+inline constexpr std::size_t usual_most_log_bytes = 128'000'000;
+
 /// The text of a .data file: mapped, or decompressed into memory (.gz, .bz2, .xz, .zst, told by content).
-/// Throws InputError for a missing file, a folder, an empty file, a ZIP archive or broken compression.
+/// Throws InputError for a missing file, a folder, an empty file, a ZIP archive, broken compression, or one that
+/// unpacks to more than `most_bytes`.
 class DataFile {
   public:
-    explicit DataFile(const std::filesystem::path& path);
+    explicit DataFile(const std::filesystem::path& path, std::size_t most_bytes = usual_most_log_bytes);
     std::string_view text() const { return text_; }
+    /// Throws InputError if the file was cut since: what was read of its text may then be zeros. To be asked after
+    /// reading. A file that grows is read as it was.
+    void require_unchanged() const;
 
   private:
-    boost::iostreams::mapped_file_source mapped_;
+    std::optional<InputFile> file_;  ///< of a text that is mapped
+    std::optional<MappedFile> mapped_;
     std::string decompressed_;
     std::string_view text_;
 };

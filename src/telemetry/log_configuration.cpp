@@ -53,10 +53,12 @@ void read_protocol(const pugi::xml_node& protocol, LogConfiguration& configurati
     }
 }
 
-/// The end of the tag that opens at `begin` (at its '>'), passing over quoted values and their escaped quotes.
+/// The end of the tag that opens at `begin` (at its '>'), passing over quoted values and their escaped quotes. npos
+/// for one that another tag interrupts, or that is longer than any: then a quote is missing somewhere.
 std::size_t tag_end(std::string_view text, std::size_t begin) {
+    constexpr std::size_t longest_tag = 4096;
     char quote = '\0';
-    for (std::size_t i = begin; i < text.size(); ++i) {
+    for (std::size_t i = begin + 1; i < std::min(text.size(), begin + longest_tag); ++i) {
         const char c = text[i];
         if (quote != '\0') {
             if (c == '\\')
@@ -67,6 +69,8 @@ std::size_t tag_end(std::string_view text, std::size_t begin) {
             quote = c;
         } else if (c == '>') {
             return i;
+        } else if (c == '<') {
+            break;
         }
     }
     return std::string_view::npos;
@@ -80,7 +84,7 @@ void for_each_tag(std::string_view text, std::string_view name, Use&& use) {
         const auto after = at + opening.size();
         if (after >= text.size() || (text[after] != ' ' && text[after] != '\t' && text[after] != '\n')) continue;
         const auto end = tag_end(text, at);
-        if (end == std::string_view::npos) return;
+        if (end == std::string_view::npos) continue;
         std::string tag(text.substr(at, end - at));
         if (tag.back() != '/') tag += '/';
         tag += '>';
@@ -160,7 +164,7 @@ LogConfiguration parse_log_configuration(const std::string& text, const std::fil
 }
 
 LogConfiguration read_log_configuration(const std::filesystem::path& path) {
-    return parse_log_configuration(read_file(path), path);
+    return parse_log_configuration(read_file(path, most_log_configuration_bytes), path);
 }
 
 std::string flight_name(const std::filesystem::path& data_file) {
@@ -180,7 +184,12 @@ std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& 
     if (flight.ends_with("_SD")) stems.push_back(flight.substr(0, flight.size() - 3));
     for (const auto& stem : stems) {
         const auto candidate = data_file.parent_path() / (stem + ".log");
-        if (std::filesystem::is_regular_file(candidate)) return candidate;
+        std::error_code error;
+        if (std::filesystem::is_regular_file(candidate, error)) return candidate;
+        // One that is there and cannot be read is not passed over: reading it says why.
+        const bool is_absent = !error || error == std::errc::no_such_file_or_directory ||
+                               error == std::errc::not_a_directory || error == std::errc::filename_too_long;
+        if (!is_absent) return candidate;
     }
     return std::nullopt;
 }

@@ -3,6 +3,7 @@
 #include "telemetry/log_notes.h"
 #include "telemetry/message_definition.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -27,13 +28,17 @@ struct LogConfiguration {
     std::map<std::string, AircraftConfiguration> aircraft;
 };
 
+/// What a .log may hold: an aircraft's whole configuration has about one MB.
+inline constexpr std::size_t most_log_configuration_bytes = 16'000'000;
+
 /// Reads a .log. Such files are often not well-formed XML ("&&", bare "<", escaped quotes in flight plans),
 /// so only the <protocol> element is read as XML; of the aircraft, single tags. Throws InputError where there
 /// is no <protocol>, it holds no message, or it cannot be read.
 LogConfiguration read_log_configuration(const std::filesystem::path& path);
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file);
 
-/// The .log that belongs to a .data file ("X.data", "X.data.gz", "X_SD.data"): "X.log" beside it.
+/// The .log that belongs to a .data file ("X.data", "X.data.gz", "X_SD.data"): "X.log" beside it. One that is there
+/// and cannot be read (a folder without permission, a link loop) counts: reading it says why.
 std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& data_file);
 
 /// "20_07_03__12_17_45" for "logs/20_07_03__12_17_45.data.gz": the name without folder and endings.

@@ -38,14 +38,20 @@ std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_
         return !word.empty() && word.size() < 64 && std::isupper(static_cast<unsigned char>(word.front())) &&
                std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
     };
-    std::map<std::string, std::size_t> names;
+    constexpr std::size_t most_names = 1000;  // Paparazzi has some 300
+    std::map<std::string, std::size_t, std::less<>> names;
     scan_lines(text, [&](const ScannedLine& line) {
         WordCursor words(line);
         std::string_view time;
         std::string_view sender;
         std::string_view name;
         if (!words.next(time) || !words.next(sender) || !words.next(name)) return;
-        if (parse_number(time) && is_name(name)) ++names[std::string(name)];
+        if (!parse_number(time) || !is_name(name)) return;
+        if (const auto known = names.find(name); known != names.end()) {
+            ++known->second;
+        } else if (names.size() < most_names) {
+            names.emplace(name, 1);
+        }
     });
     std::vector<std::pair<std::string, std::size_t>> census(names.begin(), names.end());
     std::stable_sort(census.begin(), census.end(), [](const auto& a, const auto& b) { return a.second > b.second; });

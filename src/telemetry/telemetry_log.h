@@ -57,16 +57,17 @@ struct TelemetryLog {
 };
 
 /// Reads the wanted messages of a Paparazzi .data text; only these are parsed. `data_file` is named in errors,
-/// `configuration` is what its .log says. Throws InputError for a text that holds no telemetry line.
+/// `configuration` is what its .log says. Throws InputError for a text that holds no telemetry line, and for more
+/// than 300 senders.
 TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
 
-/// The same for any text, which need not hold telemetry.
+/// The same for any text, which need not hold telemetry. Throws InputError for more than 300 senders alone.
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
                              std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
 
 /// Names of the messages in a .data text, with their counts, most frequent first: for explaining what a log
-/// holds when it lacks what is wanted.
+/// holds when it lacks what is wanted. Of more than a thousand names, the first thousand.
 std::vector<std::pair<std::string, std::size_t>> census_of_messages(std::string_view text);
 
 }  // namespace flightwatt::telemetry

@@ -28,10 +28,5 @@ TEST(AtomicFile, RefusesWhatCannotBeWrittenAndKeepsWhatWasThere) {
     EXPECT_THROW(make_directories(folder / "a.txt" / "b" / std::string(300, 'x')), OutputError);
 }
 
-TEST(ReadFile, RefusesFoldersAndMissingFiles) {
-    EXPECT_THROW(read_file(test::scratch_dir()), InputError);
-    EXPECT_THROW(read_file(test::scratch_dir() / "missing"), InputError);
-}
-
 }  // namespace
 }  // namespace flightwatt

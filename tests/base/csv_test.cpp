@@ -54,6 +54,17 @@ TEST(Csv, RefusesBadTablesWithTheirPlace) {
     expect_error("time_s,power_kw\n1,2\n", 1, 0, "has no column 'power_w'");
 }
 
+TEST(Csv, RefusesWhatWouldFillTheMemory) {
+    expect_error("a\n" + std::string(1'000'000, ',') + "\n", 2, 0, "has more than 1000 cells");
+    EXPECT_NO_THROW(parse_csv(std::string(999, ','), "a.csv"));
+    std::string rows = "a\n";
+    for (int i = 0; i < 3'000'000; ++i) rows += "1\n";
+    expect_error(rows, 2666667, 0, "holds more than 8000000 rows and cells");
+    std::size_t count = 0;
+    for_each_csv_row(rows, "a.csv", [&](const CsvTable::Row&) { ++count; });
+    EXPECT_EQ(count, 3'000'001U) << "one at a time there is no limit";
+}
+
 TEST(CsvWriter, WritesNumbersTextsAndWhatIsAbsent) {
     CsvWriter csv({"time_s", "phase", "count", "used", "current_a"});
     csv.add(0.1, "a, b", std::size_t{3}, true, std::optional<double>());

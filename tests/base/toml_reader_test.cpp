@@ -4,6 +4,8 @@
 #include "helpers/rejected.h"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -50,6 +52,53 @@ TEST(TomlReader, RefusesWithFileAndLine) {
     expect_error("power_w = 1\npower_kw = 2", 2, "unknown key 'power_kw'", "did you mean 'power_w'?", power);
     expect_error("power_w = 1\nelephant = 2", 2, "unknown key 'elephant'", "known keys: power_w", power);
     expect_error("x = 1\npower_kw = 2", 2, "has no key 'power_w'", "'power_kw' is here", power);
+}
+
+std::string repeated(const std::string& text, std::size_t times) {
+    std::string all;
+    for (std::size_t i = 0; i < times; ++i) all += text;
+    return all;
+}
+
+std::string refusal_of(const std::string& text) {
+    return test::rejected([&] { parse_toml(text, "m.toml"); });
+}
+
+/// The parser would end the program at some ten thousand levels: its stack.
+TEST(TomlReader, RefusesWhatNestsTooDeep) {
+    const std::string deeper = "keys, arrays or tables are nested more than 50 levels deep";
+    constexpr std::size_t levels = 60000;
+    EXPECT_EQ(refusal_of("x = 1\na" + repeated(".a", levels) + " = 1"), "m.toml:2:102: " + deeper);
+    const std::vector<std::string> texts{
+        "[a" + repeated(".a", levels) + "]\n",
+        "[[a" + repeated(". \"b\"", levels) + "]]\n",
+        "'q'" + repeated(".'q'", levels) + " = 1",
+        "x = " + repeated("[", levels),
+        "x = " + repeated("[\n#]\n", levels),
+        "x = " + repeated("{ a = ", levels),
+        "x = " + repeated("{ a.b.c = [", levels),
+        "x = \"\\\"\"\ny = '''[''''' \nz = \"\"\"\\\"\"\"\"\na = " + repeated("[", levels),
+    };
+    for (const auto& text : texts) EXPECT_THAT(refusal_of(text), HasSubstr(deeper)) << text.substr(0, 60);
+}
+
+TEST(TomlReader, CountsNoDepthInStringsAndComments) {
+    const auto many = repeated("[{.", 100);
+    const auto text = "a = \"" + many + "\"\nb = '" + many + "'\nc = \"\"\"\n" + many + "\n\"\"\"\nd = '''" + many +
+                      "''' # " + many + "\ne = [" + repeated("[1.5, 2.5], ", 1000) + "]\n\"" + many + "\" = 1\n";
+    EXPECT_EQ(refusal_of(text), "");
+    EXPECT_EQ(parse_toml(text, "m.toml").string("a"), many);
+}
+
+TEST(TomlReader, RefusesMoreThanAnyMissionHolds) {
+    EXPECT_EQ(refusal_of(repeated("# comment\n", 800001)),
+              "m.toml: holds more than 8 MB of TOML; is it the file that was meant?");
+}
+
+TEST(TomlReader, ClipsWhatItQuotes) {
+    const auto root = parse_toml("power_w = 1\n" + std::string(100000, 'k') + " = 1", "m.toml");
+    root.number("power_w");
+    EXPECT_LT(test::rejected([&] { root.refuse_unknown_keys(); }).size(), 3000U);
 }
 
 TEST(TomlText, ReadsBackExactly) {

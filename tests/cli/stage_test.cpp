@@ -121,8 +121,9 @@ TEST(RunStage, RefusesWrongUsage) {
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
         {{}, "no input given; usage: flightwatt trial FILE... [options]"},
         {{"a", "b", "c"}, "unexpected argument 'c'; usage: flightwatt trial FILE... [options]"},
-        {{"a", "--counts", "1"}, "unrecognised option '--counts'; see --help"},
-        {{"a", "--coun", "1"}, "unrecognised option '--coun'; see --help"},  // no guessing
+        {{"a", "--counts", "1"}, "unrecognised option '--counts'; did you mean '--count'?"},
+        {{"a", "--coun", "1"}, "unrecognised option '--coun'; did you mean '--count'?"},  // no guessing
+        {{"a", "--elephant"}, "unrecognised option '--elephant'; see --help"},
         {{"a", "--count", "x"}, "the argument ('x') for option '--count' is invalid; see --help"},
         {{"a", "--count=1", "--count=2"}, "option '--count' cannot be specified more than once; see --help"},
         {{"a", "--name"}, "the required argument for option '--name' is missing; see --help"},
@@ -146,6 +147,14 @@ TEST(RunStage, TurnsExceptionsIntoALineAndAnExitCode) {
     EXPECT_EQ(run({"a"}, failing_with(NoAnswerError("x"))).code, 4);
     EXPECT_EQ(run({"a"}, failing_with(OutputError("x"))).code, 1);
     EXPECT_EQ(run({"a"}, failing_with(OutputError("x"))).err, "flightwatt-trial: error: x\n");
+    const auto no_memory = run({"a"}, failing_with(std::bad_alloc()));
+    EXPECT_EQ(no_memory.code, 1);
+    EXPECT_EQ(no_memory.err, "flightwatt-trial: error: there is not enough memory\n");
+    const std::filesystem::filesystem_error of_file("status", "a/b",
+                                                    std::make_error_code(std::errc::permission_denied));
+    EXPECT_EQ(run({"a"}, failing_with(of_file)).err,
+              "flightwatt-trial: a/b: error: cannot be used: Permission denied\n");
+    EXPECT_EQ(run({"a"}, failing_with(of_file)).code, 3);
     const auto unknown = run({"a"}, failing_with(std::runtime_error("x")));
     EXPECT_EQ(unknown.code, 1);
     EXPECT_EQ(unknown.err, "flightwatt-trial: error: internal error: x\n");

@@ -5,9 +5,14 @@
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -75,6 +80,97 @@ TEST_F(RefusedFile, IsCutOff) {
         ASSERT_EQ(test::run_shell(tool + " -c x.data | head -c 5000 > cut.data", folder).code, 0) << tool;
         EXPECT_THAT(reading("cut.data"), StartsWith("cut.data: cannot be decompressed: ")) << tool;
     }
+}
+
+/// A small file may unpack to any size: a few kB of zstd held 4 GB.
+TEST_F(RefusedFile, UnpacksToMoreThanTheLimit) {
+    constexpr std::size_t most_bytes = 1'000'000;
+    for (const std::string tool : {"gzip", "bzip2", "xz", "zstd"}) {
+        ASSERT_EQ(test::run_shell("head -c 1000001 /dev/zero | " + tool + " -c > bomb.data", folder).code, 0) << tool;
+        const auto message = test::rejected([&] { DataFile(folder / "bomb.data", most_bytes); }, folder);
+        EXPECT_EQ(message,
+                  "bomb.data: unpacks to more than 1 MB; if it is a log all the same, --max-log-mb raises the limit");
+        EXPECT_EQ(DataFile(folder / "bomb.data", most_bytes + 1).text().size(), most_bytes + 1) << tool;
+    }
+}
+
+TEST_F(RefusedFile, IsOutOfReach) {
+    std::filesystem::create_symlink("loop.data", folder / "loop.data");
+    EXPECT_EQ(reading("loop.data"), "loop.data: cannot be read: Too many levels of symbolic links");
+    const std::string long_name(300, 'n');
+    EXPECT_EQ(reading(long_name), long_name + ": cannot be read: File name too long");
+}
+
+std::string lines_of_bytes(std::size_t bytes) {
+    std::string text;
+    while (text.size() < bytes) text += "1.5 20 PONG\n";
+    return text;
+}
+
+/// Without the care of MappedFile these end the whole test program by SIGBUS.
+class CutLog : public RefusedFile {};
+
+TEST_F(CutLog, ReadsAsZerosAndIsRefused) {
+    write("x.data", lines_of_bytes(100000));
+    const DataFile file(folder / "x.data");
+    EXPECT_NO_THROW(file.require_unchanged());
+    std::filesystem::resize_file(folder / "x.data", 5000);
+    EXPECT_EQ(file.text()[3], ' ');
+    EXPECT_EQ(file.text()[5001], '\0');
+    EXPECT_EQ(file.text()[90000], '\0');
+    const auto check = [&] { return test::rejected([&] { file.require_unchanged(); }, folder); };
+    EXPECT_THAT(check(), StartsWith("x.data: was cut from 10"));
+    std::filesystem::resize_file(folder / "x.data", 200000);
+    EXPECT_EQ(file.text()[90000], '\0');
+    EXPECT_EQ(check(),
+              "x.data: could not be read to its end: it was cut meanwhile, or the disk failed; "
+              "run again when it is whole")
+        << "it has grown again since";
+}
+
+TEST_F(CutLog, MayGrow) {
+    write("x.data", lines_of_bytes(1000));
+    const DataFile file(folder / "x.data");
+    const auto size = file.text().size();
+    std::ofstream(folder / "x.data", std::ios::app) << lines_of_bytes(100000);
+    EXPECT_EQ(file.text().size(), size);
+    EXPECT_NO_THROW(file.require_unchanged());
+}
+
+TEST_F(CutLog, DoesNotDisturbOthersInOtherThreads) {
+    constexpr int threads = 8;
+    constexpr std::size_t bytes = 400000;
+    std::vector<int> damaged(threads);
+    {
+        std::vector<std::jthread> readers;
+        for (int i = 0; i < threads; ++i) {
+            readers.emplace_back([&, i] {
+                const auto name = std::to_string(i) + ".data";
+                for (int round = 0; round < 20; ++round) {
+                    write(name, lines_of_bytes(bytes));
+                    const DataFile file(folder / name);
+                    const bool cut = i % 2 == 0;
+                    if (cut) std::filesystem::resize_file(folder / name, 8192);
+                    const auto zeros = std::ranges::count(file.text(), '\0');
+                    const bool refused = !test::rejected([&] { file.require_unchanged(); }).empty();
+                    if ((zeros > 0) != cut || refused != cut) ++damaged[static_cast<std::size_t>(i)];
+                }
+            });
+        }
+    }
+    EXPECT_EQ(damaged, std::vector<int>(threads));
+}
+
+/// What else this signal means still ends a program.
+TEST_F(CutLog, LeavesTheSignalToOthers) {
+    write("x.data", lines_of_bytes(100000));
+    const auto raise_after_reading = [&] {
+        const DataFile file(folder / "x.data");
+        std::filesystem::resize_file(folder / "x.data", 100);
+        if (file.text()[90000] == '\0') std::raise(SIGBUS);
+        std::_Exit(0);
+    };
+    EXPECT_DEATH(raise_after_reading(), "");
 }
 
 /// Text that compresses a little, and blanks that become blocks of one repeated byte, by frames of several kinds.

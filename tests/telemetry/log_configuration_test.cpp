@@ -60,6 +60,18 @@ TEST(LogConfiguration, RefusesAFileWithoutUsableDefinitions) {
     expect_error("\n<protocol></protocol>", 2, "defines no message");
 }
 
+/// Tags that never end cost no more than others: 40,000 of them took over 60 s.
+TEST(LogConfiguration, PassesOverTagsThatAreNotClosed) {
+    const std::string protocol = "<protocol><msg_class name='telemetry'><message name='A'/></msg_class></protocol>";
+    const std::string aircraft = "<aircraft ac_id=\"7\" name=\"x\">";
+    for (const std::string broken : {"<block no=\"1\" ", "<block no=\"1 ", "<block a=\"\\\" ", "<define name='\" "}) {
+        std::string text = protocol + aircraft;
+        for (int i = 0; i < 40000; ++i) text += broken;
+        const auto read = parse_log_configuration(text + "\"'><block no=\"3\" name=\"Land\"/></aircraft>", "x.log");
+        EXPECT_EQ(read.aircraft.at("7").block_names.at(3), "Land") << broken;
+    }
+}
+
 TEST(LogConfiguration, ReadsTheRealLogsThatStrictParsersRefuse) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto folder = test::shared_dir() / "flights";
@@ -87,6 +99,9 @@ TEST(FindLogFile, StandsBesideTheData) {
     EXPECT_EQ(find_log_file(folder / "a.data.xz"), folder / "a.log");
     EXPECT_EQ(find_log_file(folder / "b_SD.data"), folder / "b.log");
     EXPECT_FALSE(find_log_file(folder / "c.data").has_value());
+    EXPECT_FALSE(find_log_file(folder / std::string(250, 'n')).has_value());
+    std::filesystem::create_symlink("loop.log", folder / "loop.log");
+    EXPECT_EQ(find_log_file(folder / "loop.data"), folder / "loop.log") << "read, it says why it cannot be";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/toml_reader.h"
+#include "base/units.h"
 #include "cli/numeric_options.h"
 
 #include <algorithm>
@@ -56,10 +57,14 @@ void add_flight_options(po::options_description& options) {
     add("ground-fraction", number("X", defaults.ground_fraction, "0.025"),
         "below this fraction of the flight's height it is on the ground");
     add("flight-height", number("M", defaults.flight_height_m, "10"), "what stays below this height [m] is no flight");
+    add("max-log-mb", value("MB")->default_value("128"),
+        "refuse a compressed log that unpacks to more, and a larger series file");
     options.add(group);
 }
 
 flight::LoadOptions read_flight_options(const StageCall& call) {
+    constexpr double longest_s = 24.0 * units::seconds_per_hour;
+    constexpr std::size_t bytes_per_mb = 1'000'000;
     flight::LoadOptions options;
     options.excluded = names_of(call, "exclude");
     options.keep = names_of(call, "keep");
@@ -67,13 +72,14 @@ flight::LoadOptions read_flight_options(const StageCall& call) {
     if (call.has("sortie")) options.sortie = count_option(call, "sortie", 1);
     options.correct_idle_offset = call.has("correct-idle-offset");
     auto& segmentation = options.segmentation;
-    segmentation.rest_s = call.get<double>("rest");
-    segmentation.hold_s = call.get<double>("hold");
-    segmentation.idle_throttle_percent = call.get<double>("idle-throttle");
+    segmentation.rest_s = number_option(call, "rest", 1.0, longest_s);
+    segmentation.hold_s = positive_option(call, "hold", "s", longest_s).value();
+    segmentation.idle_throttle_percent = number_option(call, "idle-throttle", 0.0, 100.0);
     segmentation.cruise_fraction = call.get<double>("cruise-fraction");
     segmentation.ground_fraction = call.get<double>("ground-fraction");
     segmentation.flight_height_m = call.get<double>("flight-height");
     validate(segmentation);
+    options.most_log_bytes = bytes_per_mb * count_option(call, "max-log-mb", 1, 1'000'000);
     return options;
 }
 

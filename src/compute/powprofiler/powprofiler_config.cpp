@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "compute/qos_range.h"
 
+#include <cmath>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -90,6 +91,11 @@ std::vector<double> range_of(std::string_view text, const Location& where) {
         throw InputError(where, fmt::format("range = {} is empty or endless", text),
                          "min is 0 or more, max not less, step more than 0, n of pow(n) more than 1");
     }
+    const double first = power && bounds[0] <= 0.0 ? 1.0 : bounds[0];
+    const double steps = power ? std::log(bounds[1] / first) / std::log(by) : (bounds[1] - first) / by;
+    if (!(steps <= static_cast<double>(most_configurations))) {
+        throw InputError(where, fmt::format("range = {} makes too many values", text));
+    }
     return power ? multiplied(bounds[0], bounds[1], by) : evenly_spaced(bounds[0], bounds[1], by);
 }
 
@@ -166,9 +172,11 @@ void require_recordings(const PowprofilerConfig& config, const std::filesystem::
                          "[components] say how to profile, not what came out");
     }
     for (const auto& combination : config.combinations) {
-        if (std::filesystem::exists(combination.recording)) continue;
-        throw InputError(combination.where,
-                         fmt::format("the recording {} does not exist", combination.recording.string()));
+        const auto error = reading_error(combination.recording);
+        if (!error) continue;
+        const auto reason =
+            error == std::errc::no_such_file_or_directory ? "does not exist" : "cannot be read: " + error.message();
+        throw InputError(combination.where, fmt::format("the recording {} {}", combination.recording.string(), reason));
     }
 }
 

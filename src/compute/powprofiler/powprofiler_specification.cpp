@@ -37,10 +37,16 @@ ProfiledComponent profiled(const PowprofilerComponent& written) {
     ProfiledComponent component{written.name, {}, {}, {}};
     component.timing.duration_s = written.runtime_s;
     std::vector<QosRange> ranges;
+    double count = 1.0;
     for (const auto& argument : written.arguments) {
         if (!argument.fixed.empty()) continue;
+        count *= static_cast<double>(argument.values.size());
         component.parameters.push_back(fmt::format("qos_{}", ranges.size() + 1));
         ranges.push_back({component.parameters.back(), argument.values});
+    }
+    if (count > static_cast<double>(most_configurations)) {
+        throw InputError(written.where, fmt::format("{} has {} configurations", written.name, count),
+                         "profile fewer values");
     }
     for (const auto& qos : combinations_of(ranges)) {
         component.configurations.push_back({qos, {shell_words(line_of(written, qos))}, {}});

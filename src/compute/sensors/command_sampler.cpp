@@ -83,6 +83,9 @@ class Meter {
             if (count <= 0) return;
             pending_.append(buffer.data(), static_cast<std::size_t>(count));
             take_lines(readings);
+            constexpr std::size_t longest_number = 4096;
+            if (pending_.size() <= longest_number) continue;
+            throw InputError({name(), lines_ + 1}, "the sampler prints no lines, expected watts, a number a line");
         }
     }
 

@@ -5,6 +5,7 @@
 #include "base/units.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -27,9 +28,11 @@ constexpr int channels = 3;  // of an INA3221
 
 /// The first line without its end; std::nullopt if it cannot be read.
 std::optional<std::string> sysfs_text(const path& file) {
+    constexpr std::size_t longest_line = 256;
     std::ifstream stream(file);
-    std::string line;
-    if (!std::getline(stream, line)) return std::nullopt;
+    std::array<char, longest_line> text{};
+    if (!stream.getline(text.data(), text.size())) return std::nullopt;
+    std::string line(text.data());
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
     return line;
 }

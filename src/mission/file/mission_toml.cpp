@@ -16,9 +16,14 @@ constexpr double longest_phase_s = 1e7;  // a third of a year: beyond, it is a m
 /// The file that a key names, relative to the mission file.
 std::filesystem::path file_of(const TomlTable& table, std::string_view key) {
     auto path = std::filesystem::path(table.file()).parent_path() / table.string(key);
-    if (!std::filesystem::exists(path)) {
+    const auto error = reading_error(path);
+    if (error == std::errc::no_such_file_or_directory) {
         throw InputError(table.where(key), fmt::format("{}: there is no file {}", key, path.string()),
                          "paths are relative to the mission file");
+    }
+    if (error) {
+        throw InputError(table.where(key),
+                         fmt::format("{}: {} cannot be read: {}", key, path.string(), error.message()));
     }
     return path;
 }

@@ -13,6 +13,13 @@
 namespace flightwatt::mission {
 namespace {
 
+/// As it was named where the working folder is gone.
+std::filesystem::path absolute_path(const std::filesystem::path& path) {
+    std::error_code error;
+    auto absolute = std::filesystem::absolute(path, error);
+    return error ? path : absolute;
+}
+
 /// Rewrites the file name that a key of `table` holds, if it does.
 void move_path(toml::table& table, std::string_view key, const std::filesystem::path& from,
                const std::filesystem::path& to) {
@@ -20,7 +27,9 @@ void move_path(toml::table& table, std::string_view key, const std::filesystem::
     if (value == nullptr || (key == "mechanical" && value->get() == "none")) return;
     const std::filesystem::path named = value->get();
     if (named.is_absolute()) return;
-    *value = std::filesystem::proximate(from / named, to).generic_string();
+    std::error_code error;
+    const auto near = std::filesystem::proximate(from / named, to, error);
+    *value = (error ? from / named : near).generic_string();  // what cannot be followed is left where it is
 }
 
 /// A key as people write it: quoted only if it has to be.
@@ -67,8 +76,8 @@ std::string planned_mission_toml(std::string_view text, const std::filesystem::p
     root.erase("plan");
     root.erase("schedule");
     root.erase("policy");  // the schedule is decided
-    const auto from = std::filesystem::absolute(path).parent_path();
-    const auto to = std::filesystem::absolute(folder);
+    const auto from = absolute_path(path).parent_path();
+    const auto to = absolute_path(folder);
     for (const std::string_view key : {"mechanical", "battery"}) move_path(root, key, from, to);
     if (auto* components = root.get_as<toml::table>("components")) {
         for (auto&& [name, component] : *components)

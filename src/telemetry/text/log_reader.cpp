@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "base/number.h"
 #include "telemetry/telemetry_log.h"
 #include "telemetry/text/line_scanner.h"
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,6 +19,8 @@ namespace flightwatt::telemetry {
 namespace {
 
 constexpr std::size_t max_fields = 64;
+/// Paparazzi's ids are bytes; some ground programs send under names.
+constexpr std::size_t most_senders = 300;
 
 /// Which words of a message's line go into which columns, and by what factor.
 struct MessagePlan {
@@ -139,7 +143,7 @@ class LogReader {
         if (count != plan.definition->fields.size()) {
             return skips_.add({Reason::other_field_count, index}, time_s, line.number);
         }
-        auto& table = table_of(sender, index);
+        auto& table = table_of(sender, index, line);
         if (table.time_s.size() == table.time_s.capacity()) make_room(table, line);
         table.time_s.push_back(time_s);
         for (std::size_t i = 0; i < plan.targets.size(); ++i) {
@@ -171,16 +175,12 @@ class LogReader {
         for (auto& column : table.columns) column.values.reserve(room);
     }
 
-    MessageTable& table_of(std::string_view sender, std::size_t plan_index) {
+    MessageTable& table_of(std::string_view sender, std::size_t plan_index, const ScannedLine& line) {
         // Neighbouring lines mostly come from the same sender.
         if (last_sender_ >= log_.senders.size() || log_.senders[last_sender_].id != sender) {
-            const auto found = std::find_if(log_.senders.begin(), log_.senders.end(),
-                                            [&](const SenderLog& known) { return known.id == sender; });
-            last_sender_ = static_cast<std::size_t>(found - log_.senders.begin());
-            if (found == log_.senders.end()) {
-                log_.senders.push_back({std::string(sender), {}});
-                slots_.emplace_back(plans_.size(), no_table);
-            }
+            const auto [known, is_new] = sender_index_.try_emplace(std::string(sender), log_.senders.size());
+            last_sender_ = known->second;
+            if (is_new) add_sender(sender, line);
         }
         auto& slot = slots_[last_sender_][plan_index];
         auto& tables = log_.senders[last_sender_].tables;
@@ -193,6 +193,16 @@ class LogReader {
             }
         }
         return tables[slot];
+    }
+
+    void add_sender(std::string_view sender, const ScannedLine& line) {
+        if (log_.senders.size() == most_senders) {
+            throw InputError({log_.data_file.string(), line.number},
+                             fmt::format("'{}' is the sender number {} of this log", sender, most_senders + 1),
+                             "no network has so many: the second word of a line should be an aircraft's id");
+        }
+        log_.senders.push_back({std::string(sender), {}});
+        slots_.emplace_back(plans_.size(), no_table);
     }
 
     std::string describe(const SkipKind& skip) const {
@@ -223,6 +233,7 @@ class LogReader {
     std::vector<MessagePlan> plans_;
     SkipCounter skips_;
     std::vector<std::vector<std::size_t>> slots_;  ///< by sender and plan: index of the table
+    std::unordered_map<std::string, std::size_t> sender_index_;
     std::size_t last_sender_ = no_table;
 };
 

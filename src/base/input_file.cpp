@@ -1,0 +1,83 @@
+#include "base/input_file.h"
+
+#include "base/error.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace flightwatt {
+namespace {
+
+[[noreturn]] void cannot_read(const std::filesystem::path& path, int error) {
+    throw InputError({path.string()}, fmt::format("cannot be read: {}", std::strerror(error)));
+}
+
+/// Up to `most` bytes more; 0 at the end.
+std::size_t read_some(const InputFile& file, char* to, std::size_t most) {
+    while (true) {
+        const auto count = ::read(file.descriptor(), to, most);
+        if (count >= 0) return static_cast<std::size_t>(count);
+        if (errno != EINTR) cannot_read(file.path(), errno);
+    }
+}
+
+}  // namespace
+
+InputFile::InputFile(const std::filesystem::path& path)
+    : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) cannot_read(path, errno);
+    struct stat status {};
+    const int error = ::fstat(descriptor_, &status) == 0 ? 0 : errno;
+    is_regular_ = S_ISREG(status.st_mode);
+    if (is_regular_) size_ = static_cast<std::size_t>(status.st_size);
+    if (error == 0 && !S_ISDIR(status.st_mode)) return;
+    ::close(descriptor_);  // no destructor runs behind a constructor that throws
+    if (error != 0) cannot_read(path, error);
+    throw InputError({path.string()}, "is a folder, expected a file");
+}
+
+InputFile::~InputFile() { ::close(descriptor_); }
+
+void InputFile::require_uncut() const {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) cannot_read(path_, errno);
+    if (!is_regular_ || static_cast<std::size_t>(status.st_size) >= size_) return;
+    throw InputError({path_.string()},
+                     fmt::format("was cut from {} to {} bytes while it was read", size_, status.st_size),
+                     "run again when it is whole");
+}
+
+std::string read_file(const std::filesystem::path& path, std::size_t most_bytes, std::string_view hint) {
+    constexpr std::size_t least_step = 65536;
+    const InputFile file(path);
+    const auto refuse_more = [&](std::size_t bytes) {
+        if (bytes <= most_bytes) return;
+        throw InputError({path.string()},
+                         fmt::format("holds more than {:.4g} MB", static_cast<double>(most_bytes) / 1e6),
+                         std::string(hint));
+    };
+    refuse_more(file.size());
+    std::string content;
+    std::size_t used = 0;
+    for (std::size_t count = 1; count > 0; used += count) {
+        refuse_more(used);
+        if (used == content.size()) content.resize(std::max({file.size() + 1, used + used / 2, least_step}));
+        count = read_some(file, content.data() + used, content.size() - used);
+    }
+    file.require_uncut();
+    content.resize(used);
+    return content;
+}
+
+std::error_code reading_error(const std::filesystem::path& path) {
+    return ::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) == 0 ? std::error_code()
+                                                                      : std::error_code(errno, std::generic_category());
+}
+
+}  // namespace flightwatt

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace flightwatt {
+
+/// What a file that is read whole may hold: no mission, model, profile or record comes near it, and an endless
+/// one (/dev/zero, a pipe that never ends) is refused before it fills the memory.
+inline constexpr std::size_t most_file_bytes = 128'000'000;
+
+/// A file that is open for reading. Throws InputError where it cannot be opened, in the system's words.
+class InputFile {
+  public:
+    explicit InputFile(const std::filesystem::path& path);
+    ~InputFile();
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+
+    int descriptor() const { return descriptor_; }
+    const std::filesystem::path& path() const { return path_; }
+    bool is_regular() const { return is_regular_; }
+    /// Of a regular file, when it was opened; 0 for pipes and devices.
+    std::size_t size() const { return size_; }
+    /// Throws InputError if the file is shorter now than it was then. One that grows is as good as it was.
+    void require_uncut() const;
+
+  private:
+    std::filesystem::path path_;
+    int descriptor_ = -1;
+    bool is_regular_ = false;
+    std::size_t size_ = 0;
+};
+
+/// The whole file, which may be a pipe. Throws InputError where it is missing, a folder, unreadable, cut while it is
+/// read, or holds more than `most_bytes`; `hint` says what to do about that.
+std::string read_file(const std::filesystem::path& path, std::size_t most_bytes = most_file_bytes,
+                      std::string_view hint = "is it the file that was meant?");
+
+/// Why a file cannot be opened for reading; no error where it can be. A pipe is not opened.
+std::error_code reading_error(const std::filesystem::path& path);
+
+}  // namespace flightwatt

@@ -1,0 +1,94 @@
+#include "base/input_file.h"
+
+#include "helpers/rejected.h"
+#include "helpers/test_paths.h"
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace flightwatt {
+namespace {
+
+class ReadFile : public testing::Test {
+  protected:
+    std::filesystem::path folder = test::scratch_dir();
+
+    std::string reading(const std::filesystem::path& path, std::size_t most_bytes = most_file_bytes) const {
+        return test::rejected([&] { read_file(path, most_bytes, "look again"); }, folder);
+    }
+};
+
+TEST_F(ReadFile, TakesFilesAndPipes) {
+    const std::string text = "one\ntwo\n" + std::string(200000, 'x');
+    test::write_text(folder / "file", text);
+    EXPECT_EQ(read_file(folder / "file"), text);
+    EXPECT_EQ(read_file(test::write_text(folder / "empty", "")), "");
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    std::jthread writer([&] { test::write_text(folder / "pipe", text); });
+    EXPECT_EQ(read_file(folder / "pipe"), text);
+    EXPECT_NE(read_file("/proc/self/status"), "") << "a file that says it has no size";
+}
+
+TEST_F(ReadFile, SaysWhyItCannot) {
+    std::filesystem::create_symlink("loop", folder / "loop");
+    EXPECT_EQ(reading(folder / "missing"), "missing: cannot be read: No such file or directory");
+    EXPECT_EQ(reading(folder / "loop"), "loop: cannot be read: Too many levels of symbolic links");
+    EXPECT_EQ(reading(folder), folder.string() + ": is a folder, expected a file");
+    const std::string long_name(300, 'n');
+    EXPECT_EQ(reading(folder / long_name), long_name + ": cannot be read: File name too long");
+    test::write_text(folder / "file", "x");
+    EXPECT_EQ(reading(folder / "file" / "below"), "file/below: cannot be read: Not a directory");
+}
+
+TEST_F(ReadFile, SaysThatAFolderIsNotAllowed) {
+    const auto user = ::geteuid();
+    constexpr ::uid_t nobody = 65534;
+    if (user == 0 && ::seteuid(nobody) != 0) GTEST_SKIP() << "root may read everything";
+    ASSERT_EQ(::seteuid(user), 0);
+    std::filesystem::create_directory(folder / "closed");
+    test::write_text(folder / "closed" / "file", "x");
+    std::filesystem::permissions(folder / "closed", std::filesystem::perms::none);
+    if (user == 0) ASSERT_EQ(::seteuid(nobody), 0);
+    EXPECT_EQ(reading(folder / "closed" / "file"), "closed/file: cannot be read: Permission denied");
+    EXPECT_EQ(reading_error(folder / "closed" / "file"), std::errc::permission_denied);
+    if (user == 0) ASSERT_EQ(::seteuid(user), 0);
+    std::filesystem::permissions(folder / "closed", std::filesystem::perms::owner_all);
+}
+
+TEST_F(ReadFile, HasALimit) {
+    test::write_text(folder / "file", std::string(100000, 'x'));
+    EXPECT_EQ(reading(folder / "file", 100000), "");
+    EXPECT_EQ(reading(folder / "file", 99999), "file: holds more than 0.1 MB; look again");
+    EXPECT_EQ(reading("/dev/zero"), "/dev/zero: holds more than 128 MB; look again");
+}
+
+TEST(InputFile, TellsThatItWasCut) {
+    const auto folder = test::scratch_dir();
+    const InputFile file(test::write_text(folder / "file", "0123456789"));
+    EXPECT_EQ(file.size(), 10U);
+    EXPECT_TRUE(file.is_regular());
+    const auto check = [&] { return test::rejected([&] { file.require_uncut(); }, folder); };
+    EXPECT_EQ(check(), "");
+    std::filesystem::resize_file(folder / "file", 20);
+    EXPECT_EQ(check(), "") << "a log that grows is read as it was";
+    std::filesystem::resize_file(folder / "file", 4);
+    EXPECT_EQ(check(), "file: was cut from 10 to 4 bytes while it was read; run again when it is whole");
+    EXPECT_FALSE(InputFile("/dev/null").is_regular());
+}
+
+TEST(ReadingError, IsTheSystems) {
+    const auto folder = test::scratch_dir();
+    EXPECT_FALSE(reading_error(test::write_text(folder / "file", "")));
+    EXPECT_EQ(reading_error(folder / "missing"), std::errc::no_such_file_or_directory);
+    std::filesystem::create_symlink("loop", folder / "loop");
+    EXPECT_EQ(reading_error(folder / "loop"), std::errc::too_many_symbolic_link_levels);
+}
+
+}  // namespace
+}  // namespace flightwatt
