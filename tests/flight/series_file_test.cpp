@@ -23,7 +23,7 @@ TEST(SeriesFile, LosesNothingOfAnyLog) {
         SCOPED_TRACE(log.string());
         const telemetry::DataFile data(log);
         for (const auto& series : test::all_series(data.text(), test::configuration_of(log))) {
-            if (power_track(series).empty()) continue;
+            if (power_track(series).empty() && chosen_track(series, "altitude_m").time_s.size() < 2) continue;
             const auto text = to_csv(series);
             const auto again = parse_series_csv(text, series.file);
             EXPECT_TRUE(again == series) << "aircraft " << series.aircraft_id;

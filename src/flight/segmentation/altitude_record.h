@@ -15,7 +15,7 @@ inline constexpr double highest_altitude_m = 20000.0;
 inline constexpr double jump_m = 10.0;
 inline constexpr double jump_m_per_s = 60.0;
 /// The same beside a time in which it repeated one value (an estimator without a fix), and over a time left out.
-inline constexpr double fix_jump_m = 30.0;
+inline constexpr double fix_jump_m = 60.0;
 inline constexpr double fix_jump_m_per_s = 5.0;
 /// An altitude that comes back from a jump within this time was somewhere else meanwhile [s].
 inline constexpr double excursion_s = 30.0;

@@ -1,0 +1,106 @@
+#include "flight/load_flight.h"
+
+#include "flight/chosen_track.h"
+#include "flight/phases_file.h"
+#include "flight/series_file.h"
+#include "helpers/flown_points.h"
+#include "helpers/rejected.h"
+#include "helpers/test_paths.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using testing::HasSubstr;
+
+/// A plain flight whose sensor reads 0 throughout.
+FlightSeries unmeasured_flight() {
+    auto series = test::series_of(test::sortie(100));
+    for (auto& track : series.tracks) {
+        if (track.name != "power_w") continue;
+        track.source = "ENERGY.power";
+        track.value.assign(track.value.size(), 0.0);
+    }
+    return series;
+}
+
+LoadOptions without_power() {
+    LoadOptions options;
+    options.power_required = false;
+    return options;
+}
+
+TEST(LoadFlight, SegmentsAFlightWithoutPowerWhereNoneIsRequired) {
+    const auto plain = segment(test::series_of(test::sortie(100)));
+    const auto flight = examine_flight(unmeasured_flight(), without_power());
+    ASSERT_EQ(flight.phases.sorties.size(), 1u);
+    EXPECT_NEAR(flight.phases.sorties[0].start_s(), plain.sorties[0].start_s(), 1.0);
+    EXPECT_NEAR(flight.phases.sorties[0].end_s(), plain.sorties[0].end_s(), 1.0);
+    EXPECT_EQ(flight.lacks_power, "no measured power (ENERGY.power is 0 throughout)");
+    EXPECT_EQ(flight.exclusion, flight.lacks_power);
+    EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr(": the energy of its phases is not known")));
+    EXPECT_THAT(phases_csv(flight.series, flight.phases), HasSubstr("\n1,takeoff,"));
+    EXPECT_THAT(phases_csv(flight.series, flight.phases), HasSubstr(",,,,,,,true,")) << "empty, not 0";
+    EXPECT_THAT(test::rejected([] { examine_flight(unmeasured_flight(), {}); }), HasSubstr("holds no measured power"));
+}
+
+TEST(LoadFlight, OfASeriesFileWithoutPowerIsTheSame) {
+    const auto series = unmeasured_flight();
+    const auto again = parse_series_csv(to_csv(series), series.file);
+    EXPECT_TRUE(again == series);
+    const auto flight = examine_flight(series, without_power());
+    const auto reread = examine_flight(again, without_power());
+    EXPECT_EQ(phases_csv(reread.series, reread.phases), phases_csv(flight.series, flight.phases));
+    EXPECT_EQ(reread.warnings, flight.warnings);
+}
+
+TEST(LoadFlight, ReadsACsvOfAltitudeAlone) {
+    auto columns = test::columns_of(test::sortie(100));
+    std::string text = "time_s,altitude_m\n";
+    for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
+        text += fmt::format("{},{}\n", columns.time_s[i], columns.altitude_m[i]);
+    }
+    const auto flight = examine_flight(parse_series_csv(text, "mine.csv"), without_power());
+    ASSERT_EQ(flight.phases.sorties.size(), 1u);
+    EXPECT_EQ(flight.phases.sorties[0].phases.size(), 3u);
+    EXPECT_EQ(flight.lacks_power, "no measured power");
+    EXPECT_THAT(test::rejected([&] { parse_series_csv("time_s,throttle_percent\n1,2\n2,3\n", "mine.csv"); }),
+                HasSubstr("has no column 'power_w'"));
+}
+
+/// The flights of the archive without a current sensor, in the log's own seconds: where TAKEOFF was sent, and where
+/// the log says that the aircraft stands again (its altitude stays, its ground speed is that of a GPS at rest).
+TEST(LoadFlight, FindsEachFlightOfTheArchiveWithoutPower) {
+    FLIGHTWATT_NEEDS_SHARED();
+    struct Flown {
+        double lift_off_s;
+        double touchdown_s;
+        bool has_takeoff;
+    };
+    const std::map<std::string, Flown> flights{{"12_05_16__07_20_45", {245.8, 460, true}},
+                                               {"12_05_17__07_18_57", {104.0, 494, false}},  // its fix came in the air
+                                               {"12_05_21__07_04_51", {295.4, 480, true}},
+                                               {"12_05_21__07_06_15", {211.1, 396, true}}};
+    for (const auto& [name, flown] : flights) {
+        SCOPED_TRACE(name);
+        const auto flight =
+            load_flight(test::shared_dir() / "archives" / "no-power" / (name + ".data"), without_power());
+        ASSERT_EQ(flight.phases.sorties.size(), 1u);
+        const auto& sortie = flight.phases.sorties[0];
+        EXPECT_NEAR(sortie.start_s(), flown.lift_off_s, 3.0);
+        EXPECT_NEAR(sortie.end_s(), flown.touchdown_s, 5.0);
+        EXPECT_EQ(sortie.phases.front().phase, flown.has_takeoff ? Phase::takeoff : Phase::cruise);
+        EXPECT_EQ(sortie.phases.back().phase, Phase::landing);
+        EXPECT_THAT(flight.lacks_power, HasSubstr("BAT.voltage * BAT.amps is 0 throughout"));
+    }
+}
+
+}  // namespace
+}  // namespace flightwatt::flight

@@ -1,0 +1,101 @@
+#include "flight/segmentation/altitude_record.h"
+
+#include "flight/segmentation.h"
+#include "helpers/flown_points.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using test::columns_of;
+using test::sortie;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// The phases of a plain flight whose altitude something is done to.
+template <typename Change>
+FlightPhases phases_with(Change&& change) {
+    auto columns = columns_of(sortie(100, 50.0));
+    for (std::size_t i = 0; i < columns.time_s.size(); ++i) change(columns.time_s[i], columns.altitude_m[i]);
+    return segment(test::series_of(columns));
+}
+
+void expect_as_flown(const FlightPhases& phases) {
+    const auto plain = segment(test::series_of(columns_of(sortie(100, 50.0))));
+    ASSERT_EQ(phases.sorties.size(), 1u);
+    ASSERT_EQ(phases.sorties[0].phases.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(phases.sorties[0].phases[i].start.time_s, plain.sorties[0].phases[i].start.time_s, 0.6);
+        EXPECT_NEAR(phases.sorties[0].phases[i].end.time_s, plain.sorties[0].phases[i].end.time_s, 0.6);
+    }
+}
+
+TEST(AltitudeRecord, LeavesOutAndCountsWhatNoAltitudeIs) {
+    for (const double absurd : {1e308, -1e308, 1e9, -116249.0}) {
+        const auto phases = phases_with([&](double t, double& altitude_m) {
+            if (t > 200 && t < 210) altitude_m = absurd;
+        });
+        expect_as_flown(phases);
+        ASSERT_EQ(phases.warnings.size(), 1u);
+        EXPECT_THAT(phases.warnings[0], HasSubstr("9 of 419 altitudes were left out: they are beyond -500 to 20000 m"));
+    }
+}
+
+TEST(AltitudeRecord, LeavesOutAnEstimatorThatLosesItsFixForAWhile) {
+    const auto phases = phases_with([](double t, double& altitude_m) {
+        if (t > 200 && t < 220) altitude_m = 0.0;
+    });
+    expect_as_flown(phases);
+    ASSERT_EQ(phases.warnings.size(), 1u);
+    EXPECT_THAT(phases.warnings[0], HasSubstr("altitudes were left out: it jumped away and back, first at 2"));
+}
+
+TEST(AltitudeRecord, GivesEachSideOfAJumpAGroundOfItsOwn) {
+    const auto phases = phases_with([](double t, double& altitude_m) {
+        if (t < 75) altitude_m = -17.0;  // no fix yet
+        if (t >= 75) altitude_m += 700.0;
+    });
+    expect_as_flown(phases);
+    ASSERT_EQ(phases.warnings.size(), 1u);
+    EXPECT_THAT(phases.warnings[0], HasSubstr("the altitude jumps by +767 m at 75."));
+}
+
+TEST(AltitudeRecord, RefusesAnotherUnitThanMetres) {
+    for (const double factor : {100.0, 1000.0}) {
+        const auto phases = phases_with([&](double, double& altitude_m) { altitude_m *= factor; });
+        EXPECT_TRUE(phases.sorties.empty());
+        ASSERT_EQ(phases.ground_events.size(), 1u);
+        EXPECT_THAT(phases.ground_events[0].what, HasSubstr("another unit than m"));
+    }
+}
+
+TEST(AltitudeRecord, RefusesAnEstimatorThatRunsAway) {
+    const auto all_absurd = phases_with([](double t, double& altitude_m) { altitude_m = t < 300 ? 1e308 : -1e308; });
+    EXPECT_TRUE(all_absurd.sorties.empty());
+    const auto run_off = phases_with([](double t, double& altitude_m) { altitude_m = -40.0 * t; });
+    EXPECT_TRUE(run_off.sorties.empty());
+    const auto wanders = phases_with([](double t, double& altitude_m) { altitude_m = 2000.0 * std::sin(0.05 * t); });
+    EXPECT_TRUE(wanders.sorties.empty());
+}
+
+TEST(AltitudeRecord, KeepsWhatASmallAircraftFlies) {
+    // A hotliner: 100 m in 3 s, and down again as fast, from an altitude that stands still to the millimetre.
+    std::vector<test::Point> points{{0, 0, 0}, {60, 0, 0}, {61, 0, 100}, {64, 100, 100}, {65, 100, 0}};
+    points.insert(points.end(), {{200, 80, 0}, {201, 80, 100}, {204, 180, 100}, {205, 180, 0}, {400, 150, 0}});
+    points.insert(points.end(), {{405, 20, 0}, {430, 0, 0}, {500, 0, 0}});
+    auto columns = columns_of(points, 0.5);
+    columns.ground_speed_m_per_s.assign(columns.time_s.size(), 15.0);
+    for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
+        if (columns.altitude_m[i] == 0.0) columns.ground_speed_m_per_s[i] = 0.0;
+    }
+    const auto phases = segment(test::series_of(columns));
+    EXPECT_EQ(phases.sorties.size(), 1u);
+    EXPECT_TRUE(phases.warnings.empty());
+}
+
+}  // namespace
+}  // namespace flightwatt::flight

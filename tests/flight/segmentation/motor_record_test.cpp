@@ -1,0 +1,94 @@
+#include "flight/segmentation/motor_record.h"
+
+#include "flight/segmentation.h"
+#include "helpers/flown_points.h"
+
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using test::columns_of;
+using test::sortie;
+using testing::HasSubstr;
+
+/// A plain flight: 0.4 W on the ground, 30 to 45 W with the motor running; an estimator that settles before.
+test::SampleColumns measured_flight() {
+    std::vector<test::Point> points{{0, 0, 0}, {20, 0, 0}, {35, 50, 0}};
+    for (const auto& point : sortie(100, 50.0)) points.push_back(point);
+    auto columns = columns_of(points);
+    for (auto& power_w : columns.power_w) power_w = 0.4 + 0.5 * power_w;
+    return columns;
+}
+
+void expect_same_phases(const FlightPhases& phases, const FlightPhases& expected) {
+    ASSERT_EQ(phases.sorties.size(), expected.sorties.size());
+    for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
+        const auto& found = phases.sorties[s].phases;
+        ASSERT_EQ(found.size(), expected.sorties[s].phases.size());
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_NEAR(found[i].start.time_s, expected.sorties[s].phases[i].start.time_s, 1.0);
+            EXPECT_NEAR(found[i].end.time_s, expected.sorties[s].phases[i].end.time_s, 1.0);
+        }
+    }
+}
+
+TEST(MotorRecord, TakesPowerWhereThereIsNoThrottle) {
+    auto columns = measured_flight();
+    const auto expected = segment(test::series_of(columns));
+    ASSERT_EQ(expected.sorties.size(), 1u);
+    EXPECT_EQ(expected.motor_evidence, "series CSV");
+    columns.throttle_percent.clear();
+    const auto phases = segment(test::series_of(columns));
+    expect_same_phases(phases, expected);
+    EXPECT_EQ(phases.motor_evidence, "power: idle 0.4 W, running 45.4 W");
+    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor is taken to run above 4.9 W")));
+    EXPECT_THAT(phases.ground_events.at(0).what, HasSubstr("power at its idle"));
+}
+
+TEST(MotorRecord, TakesPowerWhereTheThrottleNeverChanges) {
+    auto columns = measured_flight();
+    const auto expected = segment(test::series_of(columns));
+    for (auto& throttle : columns.throttle_percent) throttle = 0.0;
+    expect_same_phases(segment(test::series_of(columns)), expected);
+}
+
+TEST(MotorRecord, LeavesOutThrottleThatTheMotorDoesNotFollow) {
+    auto columns = measured_flight();
+    const auto expected = segment(test::series_of(columns));
+    std::mt19937 random(7);
+    for (auto& throttle : columns.throttle_percent) {
+        if (random() % 10 == 0) throttle = 100.0;
+    }
+    const auto phases = segment(test::series_of(columns));
+    expect_same_phases(phases, expected);
+    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("while the power stays at its idle: they were left out")));
+}
+
+TEST(MotorRecord, SaysThatNothingTellsOfTheMotor) {
+    auto columns = measured_flight();
+    columns.throttle_percent.clear();
+    columns.power_w.assign(columns.time_s.size(), 12.0);
+    const auto phases = segment(test::series_of(columns));
+    EXPECT_EQ(phases.motor_evidence, "nothing");
+    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: segmented by altitude alone")));
+    for (const auto& event : phases.ground_events) {
+        EXPECT_THAT(event.what, testing::Not(HasSubstr("motor off"))) << "nobody measured that";
+    }
+}
+
+TEST(MotorRecord, BelievesNoThrottleBeyondFull) {
+    auto columns = measured_flight();
+    const auto expected = segment(test::series_of(columns));
+    for (auto& throttle : columns.throttle_percent) throttle += 213.0;
+    const auto phases = segment(test::series_of(columns));
+    expect_same_phases(phases, expected);
+    EXPECT_THAT(phases.warnings,
+                testing::Contains(HasSubstr("throttles are not between 0 and 100 %: the throttle is")));
+}
+
+}  // namespace
+}  // namespace flightwatt::flight

@@ -1,0 +1,151 @@
+#include "flight/segmentation/no_flight.h"
+
+#include "flight/load_flight.h"
+#include "flight/series_file.h"
+#include "helpers/flown_points.h"
+#include "helpers/rejected.h"
+#include "helpers/test_paths.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using test::columns_of;
+using test::sortie;
+using testing::HasSubstr;
+
+std::string why_none(const FlightSeries& series) {
+    const auto phases = segment(series);
+    if (!phases.sorties.empty()) return fmt::format("{} sorties", phases.sorties.size());
+    return phases.ground_events.empty() ? "nothing seen" : phases.ground_events.front().what;
+}
+
+TEST(NoFlight, OfASenderOfRoverStatus) {
+    auto series = test::series_of(columns_of(sortie(100)));
+    EXPECT_EQ(why_none(series), "1 sorties");
+    series.tracks.push_back({.name = "rover_mode", .source = "ROVER_STATUS.ap_mode", .time_s = {80}, .value = {2}});
+    EXPECT_EQ(why_none(series), "a ground vehicle: it sends ROVER_STATUS");
+    EXPECT_EQ(why_none(parse_series_csv(to_csv(series), "x.csv")), "a ground vehicle: it sends ROVER_STATUS");
+    EXPECT_EQ(why_none(cut_series(series, 79.0)).find("ground vehicle"), std::string::npos) << "no hindsight";
+}
+
+TEST(NoFlight, OfAnAirframeWithTheFirmwareOfRovers) {
+    auto series = test::series_of(columns_of(sortie(100)));
+    series.firmware = "rover";
+    EXPECT_EQ(why_none(series), "a ground vehicle: its airframe's firmware is rover");
+    EXPECT_EQ(why_none(parse_series_csv(to_csv(series), "x.csv")), why_none(series));
+    series.firmware = "rotorcraft";
+    EXPECT_EQ(why_none(series), "1 sorties");
+}
+
+TEST(NoFlight, WhereAnotherAltitudeSaysThatNothingMoved) {
+    auto series = test::series_of(columns_of(sortie(100)));
+    auto gps = chosen_track(series, "altitude_m");
+    gps.source = "GPS.alt";
+    for (std::size_t i = 0; i < gps.value.size(); ++i) gps.value[i] = 600.0 + 0.5 * static_cast<double>(i % 5);
+    series.tracks.push_back(gps);
+    EXPECT_THAT(why_none(series), HasSubstr("series CSV moves by 74 m, GPS.alt by 2.0 m: an estimator that ran away"));
+    // Without a fix it repeats one value, which says nothing.
+    series.tracks.back().value.assign(gps.value.size(), 0.0);
+    EXPECT_EQ(why_none(series), "1 sorties");
+}
+
+TEST(NoFlight, WhereTheAltitudeChangesFasterThanAircraftClimb) {
+    auto columns = columns_of(sortie(100));
+    for (auto& altitude_m : columns.altitude_m) altitude_m *= 15.0;
+    for (auto& altitude_m : columns.altitude_m) altitude_m += 0.1;
+    EXPECT_THAT(why_none(test::series_of(columns)), HasSubstr("m/s for 30 s: an estimator that ran away"));
+}
+
+TEST(NoFlight, WhereItDrivesAtOneHeightAndTheGroundIsNotSeen) {
+    std::vector<test::Point> points;
+    for (int i = 0; i < 20; ++i) {
+        const double altitude_m = 650.0 + 4.0 * (i % 3);
+        points.push_back({20.0 * i, altitude_m, 60});
+        points.push_back({20.0 * i + 10.0, altitude_m, 60});
+        points.push_back({20.0 * i + 11.0, altitude_m, 10});
+        points.push_back({20.0 * i + 12.0, altitude_m, 60});
+    }
+    auto columns = columns_of(points);
+    columns.ground_speed_m_per_s.assign(columns.time_s.size(), 1.9);
+    auto series = test::series_of(columns);
+    series.planned_ground_altitude_m = 600.0;
+    for (auto& track : series.tracks) {
+        if (track.name == "altitude_m") track.source = "GPS.alt";
+    }
+    EXPECT_THAT(why_none(series), HasSubstr("driven or carried"));
+    // A rotorcraft may hover there, and what nobody clocked may fly.
+    auto hovering = series;
+    for (auto& track : hovering.tracks) {
+        if (track.name != "altitude_m") continue;
+        track.source = "ROTORCRAFT_FP.up";
+        for (auto& value : track.value) value -= 600.0;
+    }
+    EXPECT_EQ(why_none(hovering), "1 sorties");
+    std::erase_if(series.tracks, [](const Track& track) { return track.name == "ground_speed_m_per_s"; });
+    EXPECT_EQ(why_none(series), "1 sorties");
+}
+
+TEST(NoFlight, OfNoRealRover) {
+    FLIGHTWATT_NEEDS_SHARED();
+    for (const auto& entry : std::filesystem::directory_iterator(test::shared_dir() / "archives" / "rovers")) {
+        if (entry.path().extension() != ".data") continue;
+        SCOPED_TRACE(entry.path().filename());
+        for (auto& series : read_candidates(FlightFile(entry.path()), std::nullopt)) {
+            EXPECT_THAT(why_none(series), HasSubstr("a ground vehicle")) << series.aircraft_id;
+            // Nor where nothing says what it is: by physics.
+            std::erase_if(series.tracks, [](const Track& track) { return track.name == "rover_mode"; });
+            series.firmware.clear();
+            EXPECT_TRUE(segment(series).sorties.empty()) << series.aircraft_id;
+        }
+    }
+}
+
+TEST(NoFlight, SaysOfSeveralVehiclesWhatEachDid) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto log = test::shared_dir() / "archives" / "rovers" / "23_06_28__10_14_13.data";
+    EXPECT_THAT(test::rejected([&] { load_flight(log); }),
+                HasSubstr("none of its aircraft flew: 2 (a ground vehicle: it sends ROVER_STATUS), 1 ("));
+}
+
+TEST(UnitDoubt, ComparesWithTheClimbRate) {
+    const auto warning_of = [](double factor) {
+        auto columns = columns_of(sortie(100));
+        auto series = test::series_of(columns);
+        Track climb{.name = "climb_m_per_s", .source = "GPS.climb", .time_s = columns.time_s};
+        const auto& altitude_m = columns.altitude_m;
+        for (std::size_t i = 0; i < altitude_m.size(); ++i) {
+            climb.value.push_back(i == 0 ? 0.0 : (altitude_m[i] - altitude_m[i - 1]) / 1.1);
+        }
+        series.tracks.push_back(climb);
+        for (auto& track : series.tracks) {
+            if (track.name != "altitude_m") continue;
+            for (auto& value : track.value) value *= factor;
+        }
+        const auto warnings = segment(series).warnings;
+        return warnings.empty() ? std::string() : warnings.front();
+    };
+    EXPECT_EQ(warning_of(1.0), "");
+    EXPECT_THAT(warning_of(3.28084),
+                HasSubstr("times as much as the climb rate of GPS.climb says: is one of them in feet?"));
+    EXPECT_THAT(warning_of(0.3048), HasSubstr("is one of them in feet?"));
+}
+
+TEST(UnitDoubt, ComparesWithOtherAltitudes) {
+    auto series = test::series_of(columns_of(sortie(100)));
+    auto gps = chosen_track(series, "altitude_m");
+    gps.source = "GPS.alt";
+    for (auto& value : gps.value) value = 100.0 * value;
+    series.tracks.push_back(gps);
+    EXPECT_THAT(
+        segment(series).warnings,
+        testing::Contains(HasSubstr("series CSV moves 0.01 times as much as GPS.alt says: is one of them in cm?")));
+}
+
+}  // namespace
+}  // namespace flightwatt::flight
