@@ -3,6 +3,7 @@
 #include "base/error.h"
 
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -46,6 +47,23 @@ TEST(Battery, CannotDeliverBeyondItsLimit) {
     } catch (const NoAnswerError& error) {
         EXPECT_STREQ(error.what(), "the battery cannot deliver 250.5 W: its limit U^2 / (4 R) is 250 W");
     }
+}
+
+TEST(BatteryWarnings, TellOfUnitsThatNoPackHas) {
+    const Battery sound{"pack", 11.1, 0.05, 3.2};
+    EXPECT_TRUE(battery_warnings(sound).empty());
+    const auto said = [&](double Battery::*what, double value) {
+        auto battery = sound;
+        battery.*what = value;
+        const auto warnings = battery_warnings(battery);
+        return warnings.size() == 1 ? warnings.front() : "";
+    };
+    EXPECT_EQ(said(&Battery::capacity_ah, 3200.0),
+              "battery: 3200 Ah is the capacity of no small drone's pack: is its unit Ah?");
+    EXPECT_EQ(said(&Battery::voltage_v, 111.0), "battery: 111 V when full is more than 14 LiPo cells': is its unit V?");
+    EXPECT_EQ(said(&Battery::voltage_v, 1.11), "battery: 1.11 V when full is less than one cell's: is its unit V?");
+    EXPECT_EQ(said(&Battery::resistance_ohm, 50.0),
+              "battery: it cannot deliver more than 0.616 W: is resistance_ohm in ohm?");
 }
 
 }  // namespace

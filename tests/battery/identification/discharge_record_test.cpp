@@ -64,6 +64,7 @@ TEST(DischargeRecord, PassesOverBurstsWithoutThrottle) {
     series.throttle_percent.assign(series.time_s.size(), 50.0);
     series.throttle_percent.back() = 0.0;
     series.current_a.back() = 3.5;
+    series.power_w.back() = 3.5 * series.voltage_v.back();
     auto record = record_of(series);
     EXPECT_FALSE(record.used.back());
     EXPECT_EQ(std::count(record.used.begin(), record.used.end(), false), 1);
@@ -104,7 +105,7 @@ TEST(DischargeRecord, RefusesByNameAndReason) {
     EXPECT_EQ(of([](test::SampleColumns& s) { s.current_a.clear(); }), "f.data: synthetic_7: has no current" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) { std::fill(s.voltage_v.begin(), s.voltage_v.end(), 11.0); }),
               "f.data: synthetic_7: its voltage is 11 throughout" + hint);
-    EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v[3] = 0.0; }),
+    EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v[3] = s.voltage_v[4] = s.voltage_v[5] = 0.0; }),
               "f.data: synthetic_7: its voltage is not positive throughout" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) {
                   for (auto* column :
@@ -113,7 +114,10 @@ TEST(DischargeRecord, RefusesByNameAndReason) {
                   }
               }),
               "f.data: synthetic_7: has 20 samples, expected at least 50" + hint);
-    EXPECT_EQ(of([](test::SampleColumns& s) { s.current_a.front() = 8.0; }),
+    EXPECT_EQ(of([](test::SampleColumns& s) {
+                  s.current_a.front() = 8.0;
+                  s.power_w.front() = 8.0 * s.voltage_v.front();
+              }),
               "f.data: synthetic_7: its log does not begin at rest, so that its initial charge is unknown; a "
               "log that begins before take-off is needed");
 }

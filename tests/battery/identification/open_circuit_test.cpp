@@ -67,7 +67,8 @@ TEST(OpenCircuit, ReadsTheCapacityOffTheChartOtherwise) {
     ASSERT_TRUE(half.interval_ah);
     EXPECT_NEAR(half.interval_ah->low, 1.2 / (100.0 - lipo_chart_soc_percent(3.84 - 1.96 * 0.03)) * 100.0, 1e-3);
     EXPECT_GT(half.interval_ah->high, 2.9);
-    const auto unsure = capacity_of(fit_down_to(3.84), 3.0 * 0.03, 3, std::nullopt);  // the voltage as much as the chart
+    const auto unsure =
+        capacity_of(fit_down_to(3.84), 3.0 * 0.03, 3, std::nullopt);  // the voltage as much as the chart
     EXPECT_LT(unsure.interval_ah->low, half.interval_ah->low);
     EXPECT_GT(unsure.interval_ah->high, half.interval_ah->high);
     EXPECT_THROW(capacity_of(fit_down_to(4.19), 0.0, 3, std::nullopt), NoAnswerError);

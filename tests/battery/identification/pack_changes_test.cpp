@@ -52,7 +52,7 @@ TEST(PackChanges, AreToldByVoltageWithAndWithoutACounter) {
             EXPECT_NEAR(record.resting_voltage_v, open_circuit_voltage_v(test::known_pack(), 100.0), 0.02);
         }
         // One discharge of both had made of the two packs one that holds twice as much.
-        EXPECT_NEAR(records[1].charge_ah.back(), records[0].charge_ah.back(), 0.1 * records[0].charge_ah.back());
+        EXPECT_NEAR(records[1].charge_ah.back(), records[0].charge_ah.back(), 0.2 * records[0].charge_ah.back());
     }
 }
 
@@ -60,8 +60,8 @@ TEST(PackChanges, AreNoneWhereTheSamePackFliesAgain) {
     for (const bool anew : {true, false}) {
         const auto [records, notes] = records_of({false, anew, true});
         ASSERT_EQ(records.size(), 1U);
-        const auto once_ah = discharge_columns(test::known_pack(), {}, 11).charge_ah.back();
-        EXPECT_NEAR(records[0].charge_ah.back(), 2.0 * once_ah, 0.1 * once_ah);
+        const auto once_ah = test::discharge_columns(test::known_pack(), {}, 11).charge_ah.back();
+        EXPECT_NEAR(records[0].charge_ah.back(), 2.0 * once_ah, 0.2 * once_ah);
         if (anew)
             EXPECT_THAT(notes, ElementsAre(HasSubstr("the charge counter begins anew")));
         else

@@ -53,7 +53,7 @@ TEST(ClockCheck, TakesDoubledLinesAndLinesOutOfOrderAsTheyAre) {
                      shuffled.begin() + static_cast<std::ptrdiff_t>(i + 400), random);
     }
     auto far_apart = lines;
-    for (std::size_t i = 0; i + 1300 < lines.size(); i += 170) std::swap(far_apart[i], far_apart[i + 1000]);
+    for (std::size_t i = 0; i + 1300 < lines.size(); i += 170) std::swap(far_apart[i], far_apart[i + 500]);
     auto block = lines;
     std::rotate(block.begin() + 5000, block.begin() + 5500, block.begin() + 6000);
     auto doubled = lines;
