@@ -26,6 +26,9 @@ std::optional<mission::SamplingOptions> sampling_options(const StageCall& call, 
 /// What --disturb says of a mission.
 std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, const mission::MissionSetup& mission);
 
+/// What differs between flights and what does not, as "drawn" and "not_drawn".
+void add_sources(const mission::DrawnSources& sources, nlohmann::ordered_json& json);
+
 /// The summary as simulate and compare print it; null stands for "never".
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary);
 
