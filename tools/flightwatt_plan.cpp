@@ -45,14 +45,22 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
             : "how much is possible is not known, as the battery is charged in flight";
     auto text = fmt::format("{}: utility {:.6g}, {}; {:.4f} % left, reserve {:.4f} %", mission.name, utility, bound,
                             *plan.summary.final_soc_percent, mission.reserve_soc_percent);
-    if (plan.margin_percent > 0.0) text += fmt::format(" and {:.4f} points of margin", plan.margin_percent);
+    if (plan.sources) text += fmt::format(" and {:.4f} points of margin", plan.margin_percent);
     return text;
+}
+
+/// What the chance that was asked for holds for.
+void note_sources(const cli::StageCall& call, const mission::MissionSetup& mission,
+                  const mission::DrawnSources& sources) {
+    cli::note(call, fmt::format("{}: chance {} over flights as --samples draws them; {}", mission.name,
+                                *probability(call), describe(sources)));
 }
 
 [[noreturn]] void refuse_infeasible(const cli::StageCall& call, const MissionFile& file,
                                     const mission::PlanningProblem& problem, const mission::MissionPlan& plan) {
     if (!plan.plan.deliverable) throw NoAnswerError(describe(plan.summary));
-    const auto report = infeasibility_report(problem, plan, [&](double cruise_s) { return file.read(cruise_s); });
+    const auto report = infeasibility_report(
+        problem, plan, [&](double cruise_s) { return file.read(cruise_s); }, probability(call));
     if (call.json) {
         auto json = cli::to_json(plan, problem);
         json["shortfall"] = cli::to_json(report);
@@ -81,6 +89,7 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
         cli::print(cli::json_text(cli::to_json(plan, *problem)));
     } else {
         cli::note(call, text);
+        if (plan.sources) note_sources(call, *problem, *plan.sources);
     }
     return cli::ok;
 }
@@ -105,14 +114,23 @@ int answer(const cli::StageCall& call, const mission::MissionSetup& mission, con
     json[question] = most.value;
     json["final_soc_percent"] = most.final_soc_percent;
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
+    if (const auto chance = probability(call)) {
+        json["probability"] = *chance;
+        json["margin_percent"] = most.margin_percent;
+        cli::add_sources(*most.sources, json);
+    }
     json["residual_percent"] = most.residual_percent;
     json["limited_by"] = to_string(most.limited_by);
     cli::write_result(call, fmt::format("{:.6f} {}\n", most.value, unit));
     if (call.json) {
         cli::print(cli::json_text(json));
     } else {
-        cli::note(call, fmt::format("{}: then {:.6f} % are left, {:+.1e} points from the reserve{}", mission.name,
-                                    most.final_soc_percent, most.residual_percent, beyond(most.limited_by)));
+        const auto kept = probability(call) ? fmt::format("reserve {:.4f} % and {:.4f} points of margin",
+                                                          mission.reserve_soc_percent, most.margin_percent)
+                                            : fmt::format("reserve {:.4f} %", mission.reserve_soc_percent);
+        cli::note(call, fmt::format("{}: then {:.4f} % are left, {}{}", mission.name, most.final_soc_percent, kept,
+                                    beyond(most.limited_by)));
+        if (most.sources) note_sources(call, mission, *most.sources);
     }
     return cli::ok;
 }
@@ -122,16 +140,14 @@ int plan_file(const cli::StageCall& call) {
     const bool cruise = call.has("longest-cruise");
     const bool payload = call.has("largest-payload");
     if (cruise && payload) throw UsageError("--longest-cruise and --largest-payload are two questions: ask one");
-    if ((cruise || payload) && call.has("probability")) {
-        throw UsageError("--probability belongs to a plan, not to --longest-cruise or --largest-payload");
-    }
     if (cruise) {
-        const auto most = mission::longest_cruise([&](double cruise_s) { return file.read(cruise_s); });
+        const auto most =
+            mission::longest_cruise([&](double cruise_s) { return file.read(cruise_s); }, probability(call));
         return answer(call, setup_of(file.read()), "longest_cruise_s", "s", most);
     }
     if (payload) {
         const auto mission = file.read();
-        return answer(call, setup_of(mission), "largest_payload_w", "W", largest_payload(mission));
+        return answer(call, setup_of(mission), "largest_payload_w", "W", largest_payload(mission, probability(call)));
     }
     return make_plan(call, file);
 }

@@ -100,6 +100,22 @@ std::string interval_lines(const BatteryIntervals& intervals) {
     return lines.empty() ? "" : "\n# 95 %\n[intervals]\n" + lines;
 }
 
+double limit_at_w(const Battery& battery, double voltage_v) {
+    if (voltage_v <= 0.0) return 0.0;
+    if (battery.resistance_ohm == 0.0) return std::numeric_limits<double>::infinity();
+    return voltage_v * voltage_v / (4.0 * battery.resistance_ohm);
+}
+
+/// The current at a voltage before the resistor, of a power that is not beyond the limit.
+double current_at_a(const Battery& battery, double voltage_v, double power_w) {
+    if (power_w == 0.0) return 0.0;
+    const double u = std::max(0.0, voltage_v);
+    // (U - sqrt(D)) / (2 R), multiplied out: no difference of near numbers, no division by R. At the limit
+    // rounding may leave D a hair below zero.
+    const double discriminant = std::max(0.0, u * u - 4.0 * battery.resistance_ohm * power_w);
+    return 2.0 * power_w / (u + std::sqrt(discriminant));
+}
+
 }  // namespace
 
 double voltage_integral(const OpenCircuitVoltage& curve, double soc_percent) {
@@ -135,10 +151,7 @@ double terminal_voltage_v(const Battery& battery, const BatteryState& state, dou
 }
 
 double power_limit_w(const Battery& battery, const BatteryState& state) {
-    const double voltage_v = source_voltage_v(battery, state);
-    if (voltage_v <= 0.0) return 0.0;
-    if (battery.resistance_ohm == 0.0) return std::numeric_limits<double>::infinity();
-    return voltage_v * voltage_v / (4.0 * battery.resistance_ohm);
+    return limit_at_w(battery, source_voltage_v(battery, state));
 }
 
 double internal_current_a(const Battery& battery, double power_w, const BatteryState& state) {
@@ -147,12 +160,12 @@ double internal_current_a(const Battery& battery, double power_w, const BatteryS
         throw NoAnswerError(
             fmt::format("the battery cannot deliver {} W: its limit U^2 / (4 R) is {} W", power_w, limit_w));
     }
-    if (power_w == 0.0) return 0.0;
-    const double u = std::max(0.0, source_voltage_v(battery, state));
-    // (U - sqrt(D)) / (2 R), multiplied out: no difference of near numbers, no division by R. At the limit
-    // rounding may leave D a hair below zero.
-    const double discriminant = std::max(0.0, u * u - 4.0 * battery.resistance_ohm * power_w);
-    return 2.0 * power_w / (u + std::sqrt(discriminant));
+    return current_at_a(battery, source_voltage_v(battery, state), power_w);
+}
+
+double delivered_current_a(const Battery& battery, double power_w, const BatteryState& state) {
+    const double voltage_v = source_voltage_v(battery, state);
+    return current_at_a(battery, voltage_v, std::min(power_w, limit_at_w(battery, voltage_v)));
 }
 
 Battery battery_from(const TomlTable& table) {

@@ -80,6 +80,9 @@ double power_limit_w(const Battery& battery, const BatteryState& state = {});
 /// power is above the limit.
 double internal_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
 
+/// The same of as much of the power as the battery can deliver.
+double delivered_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
+
 /// Reads a battery (docs/formats.md). Throws InputError for keys missing, unknown or of another model, and values
 /// that no battery has.
 Battery read_battery(const std::filesystem::path& path);

@@ -28,8 +28,8 @@ TimeFrame frame_of(const TomlTable& entry, const PerPhase<double>& duration_s) {
 double read_mission_time_s(const TomlTable& entry, std::string_view key, const TimeFrame& frame) {
     const double time_s = read_time_s(entry, key, frame.duration_s);
     if (time_s >= 0.0 && time_s <= frame.duration_s) return frame.start_s + time_s;
-    throw InputError(entry.where(key), fmt::format("{} = {} s is not within {}", key, time_s, frame.name),
-                     fmt::format("it takes {} s in this mission", frame.duration_s));
+    throw InputError(entry.where(key), fmt::format("{} = {:.6g} s is not within {}", key, time_s, frame.name),
+                     fmt::format("it takes {:.6g} s in this mission", frame.duration_s));
 }
 
 /// Throws where one of `keys` stands with `other`.

@@ -2,7 +2,9 @@
 
 #include "base/units.h"
 #include "mission/planning/depletion_table.h"
+#include "mission/planning/margin_search.h"
 #include "mission/planning/planner.h"
+#include "mission/sampling/landing_quantile.h"
 
 #include <algorithm>
 #include <array>
@@ -50,16 +52,28 @@ Bracket bracket_of(const SpareOf& spare_of, Bracket tried, double factor, double
 }
 
 /// `beyond` is the mission with a little more than `value`.
-FeasibilityLimit limit_at(double value, const Mission& at, const Mission& beyond) {
+FeasibilityLimit limit_at(double value, double margin_percent, const Mission& at, const Mission& beyond) {
     FeasibilityLimit most;
     most.value = value;
+    most.margin_percent = margin_percent;
     most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
-    most.residual_percent = most.final_soc_percent - at.reserve_soc_percent;
+    most.residual_percent = most.final_soc_percent - margin_percent - at.reserve_soc_percent;
     const auto further = simulate(beyond).summary;
     most.limited_by = further.undeliverable  ? FeasibilityBound::power
                       : further.cut_off_at_s ? FeasibilityBound::cut_off
                                              : FeasibilityBound::charge;
     return most;
+}
+
+/// Its interval, if it has one, in proportion.
+Mission with_capacity(Mission mission, double capacity_ah) {
+    auto& battery = mission.battery;
+    if (auto& interval = battery.intervals.capacity_ah) {
+        interval->low *= capacity_ah / battery.capacity_ah;
+        interval->high *= capacity_ah / battery.capacity_ah;
+    }
+    battery.capacity_ah = capacity_ah;
+    return mission;
 }
 
 /// Whether the schedule fits into a cruise; what else is wrong with a mission was seen when it was first read.
@@ -91,24 +105,52 @@ double short_enough_s(const MissionOfCruise& mission_of, double too_long_s) {
                     fits_s));
 }
 
-std::optional<double> cruise_that_lands(const MissionOfCruise& mission_of, double margin_percent) {
-    const auto with_margin = [&](double cruise_s) {
-        auto mission = mission_of(cruise_s);
-        std::visit([&](MissionSetup& setup) { setup.reserve_soc_percent += margin_percent; }, mission);
-        return mission;
-    };
-    try {
-        return longest_cruise(with_margin).value;
-    } catch (const NoAnswerError&) {
-        return std::nullopt;
-    }
+/// `problem` or mission with a reserve so much higher.
+AnyMission with_margin(AnyMission mission, double margin_percent) {
+    std::visit([&](MissionSetup& setup) { setup.reserve_soc_percent += margin_percent; }, mission);
+    return mission;
 }
 
-std::optional<double> spare_without_fixed(PlanningProblem problem, double margin_percent) {
-    if (problem.fixed.empty()) return std::nullopt;
-    problem.fixed.clear();
-    const double spare = spare_percent(with_minimum_energy_schedule(problem)) - margin_percent;
-    return spare < 0.0 ? std::nullopt : std::optional(spare);
+/// An answer that depends on a margin above the reserve, and the mission that it makes.
+struct MarginQuestion {
+    std::function<double(double margin_percent)> answer;
+    std::function<Mission(double answer)> mission_of;
+};
+
+/// An answer, and the margin that its own flights need.
+struct AnswerWithMargin {
+    double value = 0.0;
+    double margin_percent = 0.0;
+};
+
+/// The answer with which `probability` of the flights, no more and no less, keep the reserve; without one, that of
+/// the flight as stated. Where its flights fail from one value to the next, the last with which they do not.
+AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::optional<double>& probability) {
+    constexpr int rounds = 40;
+    constexpr double close_part = 2e-4;  // of the flights' deviation
+    if (!probability) return {question.answer(0.0), 0.0};
+    MarginSearch search(0.0);
+    std::optional<AnswerWithMargin> last;
+    std::optional<NoAnswerError> none;
+    for (int round = 0; round < rounds && !search.is_exhausted(); ++round) {
+        const double margin_percent = search.margin_percent();
+        try {
+            const double value = question.answer(margin_percent);
+            const auto mission = question.mission_of(value);
+            require_known_spread(mission);
+            const auto quantile = landing_quantile(mission, find_spreads(mission), *probability);
+            const double slack_percent = quantile.left_percent - mission.reserve_soc_percent;
+            search.learn(slack_percent, 0.0);
+            const bool is_close = std::abs(slack_percent) <= close_part * quantile.sd_percent;
+            if (slack_percent >= 0.0 || is_close) last = {value, quantile.margin_percent};
+            if (is_close) break;
+        } catch (const NoAnswerError& error) {
+            none = error;
+            search.learn_too_much();
+        }
+    }
+    if (last) return *last;
+    throw none.value_or(NoAnswerError("no answer lands with the reserve often enough"));
 }
 
 }  // namespace
@@ -130,9 +172,12 @@ double spare_percent(const Mission& mission) {
            units::percent_of(summary.duration_s - powered_until_s(summary), summary.duration_s) - 1e-9;
 }
 
-FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
-    const auto mission_at = [&](double cruise_s) { return with_minimum_energy_schedule(mission_of(cruise_s)); };
-    const auto spare_of = [&](double cruise_s) { return spare_percent(mission_at(cruise_s)); };
+namespace {
+
+double longest_cruise_s_of(const MissionOfCruise& mission_of) {
+    const auto spare_of = [&](double cruise_s) {
+        return spare_percent(with_minimum_energy_schedule(mission_of(cruise_s)));
+    };
     // From a length that fits: schedules may need so much, never so little.
     double fits_s = shortest_cruise_s;
     while (fits_s < longest_cruise_s && !if_it_fits(mission_of, fits_s)) fits_s *= 2.0;
@@ -143,9 +188,21 @@ FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of) {
         bracket = bracket_of(spare_of, {fits_s, 2.0 * fits_s}, 2.0, longest_cruise_s);
     if (!bracket.bad)
         throw NoAnswerError(fmt::format("a cruise of {:.3g} s still lands with the reserve", bracket.good));
-    const double cruise_s = last_good(spare_of, bracket.good, *bracket.bad);
-    const double beyond_s = std::nextafter(cruise_s, *bracket.bad) * (1.0 + 1e-9);
-    return limit_at(cruise_s, mission_at(cruise_s), mission_at(beyond_s));
+    return last_good(spare_of, bracket.good, *bracket.bad);
+}
+
+}  // namespace
+
+FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of, const std::optional<double>& probability) {
+    const auto mission_at = [&](double cruise_s) { return with_minimum_energy_schedule(mission_of(cruise_s)); };
+    const auto longest_s = [&](double margin_percent) {
+        return longest_cruise_s_of([&](double cruise_s) { return with_margin(mission_of(cruise_s), margin_percent); });
+    };
+    const auto [cruise_s, margin_percent] = answer_with_chance({longest_s, mission_at}, probability);
+    const double beyond_s = std::nextafter(cruise_s, longest_cruise_s) * (1.0 + 1e-9);
+    auto most = limit_at(cruise_s, margin_percent, mission_at(cruise_s), mission_at(beyond_s));
+    if (probability) most.sources = find_spreads(mission_at(cruise_s)).sources;
+    return most;
 }
 
 Mission with_payload(const Mission& mission, double payload_w) {
@@ -153,12 +210,14 @@ Mission with_payload(const Mission& mission, double payload_w) {
     const auto index = loaded.compute.components.size();
     loaded.compute.components.push_back({"payload", compute::make_power_profile("payload", {}, {{{}, payload_w, {}}})});
     if (!loaded.utilities.empty()) loaded.utilities.resize(index + 1);
+    loaded.uncertainty.compute_sd_percent.resize(index + 1);
     for (auto& segment : loaded.schedule) segment.run.push_back({index, {}});
     return loaded;
 }
 
-FeasibilityLimit largest_payload(const AnyMission& mission) {
-    const auto bare = with_minimum_energy_schedule(mission);
+namespace {
+
+double largest_payload_w_of(const Mission& bare) {
     const auto spare_of = [&](double payload_w) { return spare_percent(with_payload(bare, payload_w)); };
     if (const double spare = spare_of(0.0); spare < 0.0) {
         if (const auto summary = simulate(bare).summary; !summary.feasible)
@@ -169,18 +228,13 @@ FeasibilityLimit largest_payload(const AnyMission& mission) {
     const auto bracket = bracket_of(spare_of, {0.0, 1.0}, 2.0, largest_payload_w);
     if (!bracket.bad)
         throw NoAnswerError(fmt::format("a payload of {:.3g} W still lands with the reserve", bracket.good));
-    const double payload_w = last_good(spare_of, bracket.good, *bracket.bad);
-    return limit_at(payload_w, with_payload(bare, payload_w), with_payload(bare, payload_w * (1.0 + 1e-9) + 1e-9));
+    return last_good(spare_of, bracket.good, *bracket.bad);
 }
 
-std::optional<double> least_capacity_ah(const AnyMission& mission) {
+/// None if no capacity is enough.
+std::optional<double> least_capacity_ah_of(const Mission& bare) {
     constexpr double most_times = 1000.0;
-    const auto bare = with_minimum_energy_schedule(mission);
-    const auto spare_of = [&](double capacity_ah) {
-        auto other = bare;
-        other.battery.capacity_ah = capacity_ah;
-        return spare_percent(other);
-    };
+    const auto spare_of = [&](double capacity_ah) { return spare_percent(with_capacity(bare, capacity_ah)); };
     const double own_ah = bare.battery.capacity_ah;
     double good_ah = own_ah;
     while (spare_of(good_ah) < 0.0) {
@@ -191,28 +245,67 @@ std::optional<double> least_capacity_ah(const AnyMission& mission) {
     return bracket.bad ? last_good(spare_of, bracket.good, *bracket.bad) : bracket.good;
 }
 
+}  // namespace
+
+FeasibilityLimit largest_payload(const AnyMission& mission, const std::optional<double>& probability) {
+    const auto bare = with_minimum_energy_schedule(mission);
+    const auto mission_at = [&](double payload_w) { return with_payload(bare, payload_w); };
+    const auto largest_w = [&](double margin_percent) {
+        return largest_payload_w_of(std::get<Mission>(with_margin(bare, margin_percent)));
+    };
+    const auto [payload_w, margin_percent] = answer_with_chance({largest_w, mission_at}, probability);
+    auto most = limit_at(payload_w, margin_percent, mission_at(payload_w), mission_at(payload_w * (1.0 + 1e-9) + 1e-9));
+    if (probability) most.sources = find_spreads(bare).sources;
+    return most;
+}
+
+std::optional<double> least_capacity_ah(const AnyMission& mission, const std::optional<double>& probability) {
+    const auto bare = with_minimum_energy_schedule(mission);
+    const auto least_ah = [&](double margin_percent) {
+        const auto capacity_ah = least_capacity_ah_of(std::get<Mission>(with_margin(bare, margin_percent)));
+        if (!capacity_ah) throw NoAnswerError("no capacity is enough");
+        return *capacity_ah;
+    };
+    try {
+        return answer_with_chance({least_ah, [&](double ah) { return with_capacity(bare, ah); }}, probability).value;
+    } catch (const NoAnswerError&) {
+        return std::nullopt;
+    }
+}
+
+namespace {
+
+std::optional<double> cruise_that_lands(const MissionOfCruise& mission_of, const std::optional<double>& probability) {
+    try {
+        return longest_cruise(mission_of, probability).value;
+    } catch (const NoAnswerError&) {
+        return std::nullopt;
+    }
+}
+
+std::optional<double> spare_without_fixed(PlanningProblem problem, const std::optional<double>& probability) {
+    if (problem.fixed.empty()) return std::nullopt;
+    problem.fixed.clear();
+    const auto least = with_minimum_energy_schedule(problem);
+    const double spare = probability ? landing_quantile(least, find_spreads(least), *probability).left_percent -
+                                           least.reserve_soc_percent
+                                     : spare_percent(least);
+    return spare < 0.0 ? std::nullopt : std::optional(spare);
+}
+
+}  // namespace
+
 InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,
-                                         const MissionOfCruise& mission_of) {
+                                         const MissionOfCruise& mission_of, const std::optional<double>& probability) {
     InfeasibilityReport report;
-    const double wanted = problem.reserve_soc_percent + plan.margin_percent;
-    const double least_depletion = problem.initial_soc_percent - plan.plan.final_soc_percent;
-    report.short_percent = wanted - plan.plan.final_soc_percent;
+    const double possible = plan.plan.final_soc_percent - plan.margin_percent;
+    report.short_percent = problem.reserve_soc_percent - possible;
     report.short_wh = units::part_of(full_energy_wh(problem.battery), report.short_percent);
     report.cut_off_at_s = plan.summary.cut_off_at_s;
-    report.cruise_s = cruise_that_lands(mission_of, plan.margin_percent);
-    report.fixed_spare_percent = spare_without_fixed(problem, plan.margin_percent);
-    const double possible = plan.plan.final_soc_percent - plan.margin_percent;
+    report.cruise_s = cruise_that_lands(mission_of, probability);
+    report.fixed_spare_percent = spare_without_fixed(problem, probability);
     if (possible >= 0.0 && plan.summary.feasible) report.reserve_soc_percent = possible;
-    if (problem.battery.thevenin || problem.cutoff_voltage_v > 0.0) {
-        auto with_margin = problem;
-        with_margin.reserve_soc_percent = wanted;
-        report.capacity_ah = least_capacity_ah(with_margin);
-        return report;
-    }
-    // Depletion and margin are parts of the capacity; the reserve stays what it is.
-    const double usable = problem.initial_soc_percent - problem.reserve_soc_percent;
-    if (usable > 0.0)
-        report.capacity_ah = problem.battery.capacity_ah * (least_depletion + plan.margin_percent) / usable;
+    report.capacity_ah = least_capacity_ah(problem, probability);
     return report;
 }
 

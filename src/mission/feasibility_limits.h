@@ -24,25 +24,32 @@ std::string to_string(FeasibilityBound bound);
 /// The most of something with which a mission still lands with its reserve.
 struct FeasibilityLimit {
     double value = 0.0;
-    double final_soc_percent = 0.0;  ///< then, simulated
-    double residual_percent = 0.0;   ///< that, less the reserve
+    double final_soc_percent = 0.0;                      ///< then, simulated
+    double margin_percent = 0.0;                         ///< for the sake of a probability
+    std::optional<DrawnSources> sources = std::nullopt;  ///< what may differ with that probability
+    double residual_percent = 0.0;                       ///< what is left, less reserve and margin
     FeasibilityBound limited_by = FeasibilityBound::charge;
 };
 
+/// With a `probability`, that part of the flights which sampling/flight_draws.h makes of the answer keep the reserve; and
+/// they throw as require_known_spread does.
+
 /// The longest cruise [s] with the mission's schedule, or if it is yet to be planned with the one that demands least
 /// energy. Throws NoAnswerError if no cruise that the schedule fits into is short enough, or none is too long.
-FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of);
+FeasibilityLimit longest_cruise(const MissionOfCruise& mission_of,
+                                const std::optional<double>& probability = std::nullopt);
 
 /// The greatest constant power [W] that the mission can feed besides, all the way. Throws NoAnswerError if it
 /// does not land with its reserve as it is.
-FeasibilityLimit largest_payload(const AnyMission& mission);
+FeasibilityLimit largest_payload(const AnyMission& mission, const std::optional<double>& probability = std::nullopt);
 
 /// The mission with a constant load besides.
 Mission with_payload(const Mission& mission, double payload_w);
 
 /// The least capacity [Ah] with which the mission lands with its reserve, its battery otherwise as it is,
 /// with the mission's own schedule or the one that demands least energy. None if no capacity is enough.
-std::optional<double> least_capacity_ah(const AnyMission& mission);
+std::optional<double> least_capacity_ah(const AnyMission& mission,
+                                        const std::optional<double>& probability = std::nullopt);
 
 /// State of charge at the end less the reserve [points]: by tables where they hold, else simulated. Negative
 /// if the reserve is not kept, and the more so the earlier the battery ends.
@@ -60,9 +67,10 @@ struct InfeasibilityReport {
     std::optional<double> capacity_ah;          ///< the least that suffices
 };
 
-/// `plan` is infeasible, of the mission that `mission_of` gives for the cruise as it is.
+/// `plan`, made with `probability`, is infeasible, of the mission that `mission_of` gives for the cruise as it is.
 InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,
-                                         const MissionOfCruise& mission_of);
+                                         const MissionOfCruise& mission_of,
+                                         const std::optional<double>& probability = std::nullopt);
 
 /// For people: "short by 2.1 points (0.23 Wh); ...".
 std::string describe(const MissionSetup& mission, const InfeasibilityReport& report);

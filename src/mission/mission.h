@@ -31,8 +31,8 @@ struct Utility {
     std::vector<double> points_value;  ///< not falling, as many
 };
 
-/// Standard deviations between flights that a mission states itself; what it does not state is looked for in
-/// its models.
+/// Standard deviations between flights that a mission states itself; sampling/flight_draws.h says what differs
+/// without them.
 struct Uncertainty {
     PerPhase<std::optional<double>> level_sd_percent;  ///< of the phase's mean mechanical power
     PerPhase<std::optional<double>> duration_sd_s;
@@ -48,8 +48,11 @@ struct MissionSetup {
     mechanical::PhaseClock phase_clock = mechanical::PhaseClock::stretched;
     /// The cruise's mean power under the stated conditions; `mechanical` has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
-    PerPhase<double> duration_s;  ///< 0: the phase is not flown
+    PerPhase<double> duration_s;        ///< 0: the phase is not flown
+    PerPhase<bool> duration_is_stated;  ///< by the mission, and not its model's: all flights take so long
     battery::Battery battery;
+    bool capacity_is_stated = false;  ///< by the mission, and not its battery's: all packs hold so much
+    bool may_charge = false;          ///< power below 0 is meant, and charges the battery
     compute::ComputeModel compute;
     std::vector<std::optional<Utility>> utilities;  ///< one a component (or none at all)
     double initial_soc_percent = 100.0;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::mission {
 namespace {
@@ -29,6 +30,13 @@ std::string to_string(ScheduleOrigin origin) {
 double powered_until_s(const MissionSummary& summary) {
     if (summary.undeliverable) return summary.undeliverable->time_s;
     return summary.depleted_at_s.value_or(summary.cut_off_at_s.value_or(summary.duration_s));
+}
+
+std::string describe(const DrawnSources& sources) {
+    auto text =
+        fmt::format("drawn: {}", sources.drawn.empty() ? "nothing" : fmt::format("{}", fmt::join(sources.drawn, ", ")));
+    if (!sources.not_drawn.empty()) text += fmt::format("; not drawn: {}", fmt::join(sources.not_drawn, ", "));
+    return text;
 }
 
 std::string describe(const MissionSummary& summary) {

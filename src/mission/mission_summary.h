@@ -39,6 +39,16 @@ struct SocBand {
     double p95_percent = 0.0;
 };
 
+/// What differs between flights that are drawn, and what it rests on; and what is the same in all for want of a spread,
+/// or because the mission states it.
+struct DrawnSources {
+    std::vector<std::string> drawn;
+    std::vector<std::string> not_drawn;
+};
+
+/// "drawn: ...; not drawn: ...", wherever a chance is told.
+std::string describe(const DrawnSources& sources);
+
 inline constexpr std::array<int, 5> shown_quantiles_percent{5, 25, 50, 75, 95};
 
 /// How flights that were drawn end. Those that run empty, are cut off or ask for more than the battery can deliver have
@@ -56,8 +66,7 @@ struct SampledFlights {
     double probability_below_reserve = 0.0;                 ///< the share of the flights
     double probability_below_reserve_standard_error = 0.0;  ///< sqrt(p (1 - p) / samples)
     battery::Interval probability_below_reserve_95;         ///< Wilson's score interval (1927)
-    std::vector<std::string> drawn;
-    std::vector<std::string> not_drawn;
+    DrawnSources sources;
     std::vector<SocBand> bands;
 };
 

@@ -1,7 +1,10 @@
 #include "mission/plan.h"
 
 #include "base/units.h"
+#include "mission/planning/margin_search.h"
 #include "mission/planning/planner.h"
+#include "mission/sampled_flights.h"
+#include "mission/sampling/landing_quantile.h"
 #include "mission/sampling/level_deviation.h"
 
 #include <algorithm>
@@ -14,6 +17,8 @@ namespace {
 constexpr int max_reserve_rounds = 20;
 constexpr int max_simulation_rounds = 16;
 constexpr double gap_that_is_none = 1e-5;
+constexpr int max_margin_rounds = 8;
+constexpr double slack_part = 2e-3;  // of the flights' deviation: 0.0002 of a chance of 0.05
 
 /// How far below `wanted_percent` a simulated mission ends [points], counting what it demanded after the
 /// battery ended as a part of what a full one holds. Negative if there is more.
@@ -113,8 +118,11 @@ Trial best_trial(const PlanningProblem& problem, const Trial& least, double boun
     return best;
 }
 
-/// The plan of a mission whose flights do not differ.
-MissionPlan plan_certain(const PlanningProblem& problem) {
+/// For a battery whose source follows its charge, or that may be cut off: the depletion by a slot then depends on what
+/// ran before it. Tables are made along the voltage of the last plan simulated, until a plan lands and the next is no
+/// better; the bound is that of the highest voltage that any schedule keeps. If the schedule of least energy demand
+/// does not land, none does, as it keeps the most charge and the highest voltage at any time.
+MissionPlan plan_by_simulation(const PlanningProblem& problem) {
     const auto planner = make_planner(problem);
     MissionPlan result;
     auto& plan = result.plan;
@@ -131,33 +139,16 @@ MissionPlan plan_certain(const PlanningProblem& problem) {
     plan.schedule = std::move(found.schedule);
     plan.final_soc_percent = problem.reserve_soc_percent - found.deficit_percent;
     result.summary = std::move(found.summary);
-    return result;
-}
-
-/// For a battery whose source follows its charge, or that may be cut off: the depletion by a slot then depends on what
-/// ran before it. Tables are made along the voltage of the last plan simulated, until a plan lands and the next is no
-/// better; the bound is that of the highest voltage that any schedule keeps. If the schedule of least energy demand
-/// does not land, none does, as it keeps the most charge and the highest voltage at any time.
-MissionPlan plan_by_simulation(const PlanningProblem& problem, const std::optional<double>& probability) {
-    auto result = plan_certain(probability ? mission_at_quantile(problem, *probability) : problem);
-    result.flown = {problem, result.plan.schedule};
-    if (!probability) return result;
-    const auto at_quantile = std::exchange(result.summary, simulate(result.flown).summary);
-    if (at_quantile.final_soc_percent && result.summary.final_soc_percent) {
-        result.margin_percent = *result.summary.final_soc_percent - *at_quantile.final_soc_percent;
-        result.plan.final_soc_percent += result.margin_percent;
-    }
+    result.flown = {problem, plan.schedule};
     return result;
 }
 
 /// Plans by tables, anew with more to spare where the simulation ends below the reserve.
-MissionPlan plan_by_tables(const PlanningProblem& problem, const std::optional<double>& probability) {
+MissionPlan plan_by_tables(const PlanningProblem& problem) {
     MissionPlan result;
     const auto planner = make_planner(problem);
-    if (probability) result.margin_percent = margin_percent(problem, planner.depletions.configurations, *probability);
     const auto start = start_of(problem);
-    const double wanted_percent = problem.reserve_soc_percent + result.margin_percent;
-    double planned_percent = wanted_percent;
+    double planned_percent = problem.reserve_soc_percent;
     std::optional<double> bound;
     Schedule schedule;
     bool lands = false;
@@ -168,7 +159,7 @@ MissionPlan plan_by_tables(const PlanningProblem& problem, const std::optional<d
         schedule = result.plan.deliverable ? result.plan.schedule : minimum_energy_schedule(problem);
         result.summary = simulate(problem, schedule).summary;
         if (!result.plan.feasible) break;
-        const double deficit_percent = reserve_deficit_percent(problem, result.summary, wanted_percent);
+        const double deficit_percent = reserve_deficit_percent(problem, result.summary, problem.reserve_soc_percent);
         lands = result.summary.feasible && deficit_percent <= 0.0;
         planned_percent += std::max(deficit_percent, 0.0) + 1e-12;
     }
@@ -177,11 +168,83 @@ MissionPlan plan_by_tables(const PlanningProblem& problem, const std::optional<d
     return result;
 }
 
+/// The plan of a mission whose flights do not differ.
+MissionPlan plan_certain(const PlanningProblem& problem) {
+    const bool by_simulation = problem.battery.thevenin || problem.cutoff_voltage_v > 0.0;
+    return by_simulation ? plan_by_simulation(problem) : plan_by_tables(problem);
+}
+
+/// The schedule of least energy demand as a plan, and what its flights land with.
+struct LeastPlan {
+    MissionPlan plan;
+    LandingQuantile quantile;
+};
+
+LeastPlan least_plan(const PlanningProblem& problem, const FlightSpreads& spreads, double probability) {
+    LeastPlan least;
+    auto& [plan, quantile] = least;
+    plan.flown = with_minimum_energy_schedule(problem);
+    plan.summary = simulate(plan.flown).summary;
+    plan.plan.schedule = plan.flown.schedule;
+    plan.plan.deliverable = !plan.summary.undeliverable;
+    quantile = landing_quantile(plan.flown, spreads, probability);
+    plan.margin_percent = quantile.margin_percent;
+    plan.plan.final_soc_percent = quantile.left_percent + quantile.margin_percent;
+    plan.plan.feasible = plan.summary.feasible && quantile.left_percent >= problem.reserve_soc_percent;
+    plan.plan.utility = plan.plan.bound = plan.summary.utility.value_or(0.0);
+    return least;
+}
+
+/// Plans with a margin above the reserve, and looks for the least with which enough of the plan's flights keep it.
+MissionPlan plan_with_chance(const PlanningProblem& problem, double probability) {
+    require_known_spread(problem);
+    const auto spreads = find_spreads(problem);
+    auto [best, quantile] = least_plan(problem, spreads, probability);
+    best.sources = spreads.sources;
+    if (!best.plan.feasible) {
+        best.plan.bound = 0.0;
+        return best;
+    }
+    const double close_percent = slack_part * quantile.sd_percent;
+    MarginSearch search(quantile.margin_percent);
+    bool is_least = true;
+    for (int round = 0; round < max_margin_rounds && !search.is_exhausted(); ++round) {
+        auto stricter = problem;
+        stricter.reserve_soc_percent += search.margin_percent();
+        auto plan = plan_certain(stricter);
+        if (!plan.plan.feasible) {
+            search.learn_too_much();
+            continue;
+        }
+        plan.flown.reserve_soc_percent = problem.reserve_soc_percent;
+        quantile = landing_quantile(plan.flown, spreads, probability);
+        const double slack_percent = quantile.left_percent - problem.reserve_soc_percent;
+        search.learn(slack_percent, close_percent / 2.0);
+        if (slack_percent < 0.0) continue;
+        const bool is_same = plan.flown.schedule == best.flown.schedule;
+        if (is_least || *plan.summary.utility >= *best.summary.utility) {
+            plan.margin_percent = quantile.margin_percent;
+            plan.sources = spreads.sources;
+            best = std::move(plan);
+        }
+        if (slack_percent <= close_percent || (is_same && !is_least)) break;
+        is_least = false;
+    }
+    best.summary = simulate(best.flown).summary;
+    return best;
+}
+
 }  // namespace
 
+void require_known_spread(const MissionSetup& mission) {
+    if (mission.mechanical)
+        require_known_levels(mission);
+    else
+        require_spread(mission);
+}
+
 MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability) {
-    const bool by_simulation = problem.battery.thevenin || problem.cutoff_voltage_v > 0.0;
-    return by_simulation ? plan_by_simulation(problem, probability) : plan_by_tables(problem, probability);
+    return probability ? plan_with_chance(problem, *probability) : plan_certain(problem);
 }
 
 MissionSummary labelled_summary(const MissionPlan& plan) {

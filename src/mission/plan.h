@@ -20,18 +20,27 @@ struct Plan {
 
 /// A plan of a whole mission that Runge-Kutta has flown.
 struct MissionPlan {
-    Plan plan;                    ///< its bound is of the tables, whatever Runge-Kutta says
-    Mission flown;                ///< the mission with the plan's schedule
-    MissionSummary summary;       ///< of that, simulated
-    double margin_percent = 0.0;  ///< kept above the reserve for the sake of the probability
+    Plan plan;                                           ///< its bound is of the tables, whatever Runge-Kutta says
+    Mission flown;                                       ///< the mission with the plan's schedule
+    MissionSummary summary;                              ///< of that, simulated
+    double margin_percent = 0.0;                         ///< kept above the reserve for the sake of the probability
+    std::optional<DrawnSources> sources = std::nullopt;  ///< what may differ with that probability
 };
 
 /// Plans a mission and simulates the result; where that ends below the reserve (by rounding, or because a full battery
 /// refused charge, which tables do not know), plans anew with more to spare. The bound holds nevertheless, as tables
-/// deplete the battery no more than the simulation. With `probability`, the reserve is kept with that chance: see
-/// sampling/level_deviation.h. Infeasible plans are returned as such. Throws InputError if the mission states no
-/// utility, or too many choices.
+/// deplete the battery no more than the simulation.
+///
+/// With `probability`, the reserve is kept by that part of the flights which flight_of makes of the plan
+/// (sampling/flight_draws.h), battery failures counted as below it: margins above the reserve are tried until the
+/// plan's flights do (sampling/landing_quantile.h). The bound is then that of schedules which, flown as stated, keep
+/// reserve and margin. Infeasible plans are returned as such. Throws InputError if the mission states no utility, or
+/// too many choices; with `probability` also as require_known_spread does.
 MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability = std::nullopt);
+
+/// Throws InputError where a mission does not say how its flights differ: the level of each phase that is flown; without
+/// a mechanical model anything.
+void require_known_spread(const MissionSetup& mission);
 
 /// What the flown mission comes to, labelled as optimal (its bound is within 0.1 %) or planned.
 MissionSummary labelled_summary(const MissionPlan& plan);

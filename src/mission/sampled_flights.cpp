@@ -4,70 +4,29 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/sampling/flight_draws.h"
-#include "mission/simulation/load_segments.h"
+#include "mission/sampling/flown_landing.h"
+#include "mission/sampling/workers.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
-#include <thread>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::mission {
 namespace {
 
 constexpr double most_samples = 1e7;
 
-/// How one flight ended.
-struct Landing {
-    double final_soc_percent = 0.0;
-    bool depleted = false;
-    bool battery_failure = false;
-    std::vector<double> soc_percent;  ///< at the band's times
-};
-
-/// A flight that was drawn.
-struct DrawnFlight {
-    const MissionSetup& setup;
-    battery::Battery battery;  ///< disturbed
-    std::vector<LoadSegment> segments;
-};
-
-/// Follows the charge through the segments and notes it at `times_s`.
-Landing land(const DrawnFlight& flight, const std::vector<double>& times_s) {
-    Landing landing;
-    battery::Discharge charge{{flight.setup.initial_soc_percent}};
-    auto& noted_percent = landing.soc_percent;
-    for (auto part : flight.segments) {
-        const double segment_end_s = part.end_s;
-        const auto follow_until = [&](double time_s) {
-            part.end_s = time_s;
-            charge = after_segment(flight.battery, flight.setup.cutoff_voltage_v, part, charge);
-            part.start_s = time_s;
-            part.soc_drop_percent = 0.0;
-        };
-        while (noted_percent.size() < times_s.size() && times_s[noted_percent.size()] < segment_end_s) {
-            follow_until(std::max(part.start_s, times_s[noted_percent.size()]));
-            noted_percent.push_back(charge.soc_percent);
-        }
-        follow_until(segment_end_s);
-    }
-    noted_percent.resize(times_s.size(), charge.soc_percent);
-    landing.final_soc_percent = charge.soc_percent;
-    const double lasted_s = flight.segments.back().end_s - lasting_tolerance_s;
-    landing.depleted = charge.empty_at_s && *charge.empty_at_s < lasted_s;
-    landing.battery_failure = charge.undeliverable || (charge.ended_at_s() && *charge.ended_at_s() < lasted_s);
-    return landing;
-}
-
 /// Draws and flies flights, and hands each to the place of its number.
 class Sampler {
   public:
     Sampler(const PreparedMission& prepared, const Disturbances& disturbances, const FlightSpreads& spreads,
             const SamplingOptions& options)
-        : prepared_(prepared), disturbances_(disturbances), spreads_(spreads), options_(options) {
+        : prepared_(prepared),
+          setup_(without_evidence(prepared.setup)),
+          disturbances_(disturbances),
+          spreads_(spreads),
+          options_(options) {
         const double duration_s = timeline_of(prepared.setup.duration_s).duration_s;
         for (std::size_t i = 0; i < options.band_times; ++i) {
             times_s_.push_back(duration_s * static_cast<double>(i) / static_cast<double>(options.band_times - 1));
@@ -78,21 +37,14 @@ class Sampler {
 
     std::vector<Landing> fly_all() const {
         std::vector<Landing> landings(options_.samples);
-        std::atomic<std::size_t> next = 0;
-        const auto work = [&] {
-            for (std::size_t i = next++; i < landings.size(); i = next++) landings[i] = fly_one(i);
-        };
-        std::vector<std::future<void>> workers;
-        for (unsigned k = 0; k < std::max(1U, std::thread::hardware_concurrency()); ++k)
-            workers.push_back(std::async(std::launch::async, work));
-        for (auto& worker : workers) worker.get();
+        for_each_index(landings.size(), [&](std::size_t i) { landings[i] = fly_one(i); });
         return landings;
     }
 
   private:
     Landing fly_one(std::size_t index) const {
-        const auto& planned_s = prepared_.setup.duration_s;
-        const auto setup = draw_flight(prepared_.setup, spreads_, options_.seed, index);
+        const auto& planned_s = setup_.duration_s;
+        const auto setup = draw_flight(setup_, spreads_, options_.seed, index);
         const auto disturbances = rescale_to_flown_durations(disturbances_, planned_s, setup.duration_s);
         auto times_s = times_s_;
         for (auto& time_s : times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
@@ -105,6 +57,7 @@ class Sampler {
     }
 
     const PreparedMission& prepared_;
+    MissionSetup setup_;
     const Disturbances& disturbances_;
     const FlightSpreads& spreads_;
     const SamplingOptions& options_;
@@ -126,9 +79,7 @@ void count_landings(const std::vector<Landing>& landings, SampledFlights& flight
     const auto share_of = [&](const auto& counts) {
         return static_cast<double>(std::ranges::count_if(landings, counts)) / n;
     };
-    const double p = share_of([&](const Landing& landing) {
-        return landing.battery_failure || landing.final_soc_percent < flights.reserve_soc_percent;
-    });
+    const double p = share_of([&](const Landing& landing) { return is_below(landing, flights.reserve_soc_percent); });
     flights.probability_depleted = share_of([](const Landing& landing) { return landing.depleted; });
     flights.probability_battery_failure = share_of([](const Landing& landing) { return landing.battery_failure; });
     flights.probability_below_reserve = p;
@@ -151,7 +102,7 @@ std::vector<SocBand> bands_of(const std::vector<Landing>& landings, const std::v
 
 }  // namespace
 
-bool has_spread(const MissionSetup& mission) { return !find_spreads(mission).drawn.empty(); }
+bool has_spread(const MissionSetup& mission) { return !find_spreads(mission).sources.drawn.empty(); }
 
 void require_spread(const MissionSetup& mission) {
     if (has_spread(mission)) return;
@@ -178,8 +129,7 @@ SampledFlights sample_flights(const PreparedMission& prepared, const Disturbance
     flights.reserve_soc_percent = prepared.setup.reserve_soc_percent;
     flights.samples = options.samples;
     flights.seed = options.seed;
-    flights.drawn = spreads.drawn;
-    flights.not_drawn = spreads.not_drawn;
+    flights.sources = spreads.sources;
     std::vector<double> final_percent;
     final_percent.reserve(landings.size());
     for (const auto& landing : landings) final_percent.push_back(landing.final_soc_percent);
@@ -203,9 +153,7 @@ std::string describe(const SampledFlights& flights) {
         flights.probability_below_reserve_95.low, flights.probability_below_reserve_95.high,
         flights.probability_depleted, flights.final_soc_mean_percent, flights.final_soc_sd_percent);
     for (std::size_t i = 0; i < q.size(); ++i) text += fmt::format(" {} %: {:.2f}", shown_quantiles_percent[i], q[i]);
-    text += fmt::format("; drawn: {}", fmt::join(flights.drawn, ", "));
-    if (!flights.not_drawn.empty()) text += fmt::format("; not drawn: {}", fmt::join(flights.not_drawn, ", "));
-    return text;
+    return text + "; " + describe(flights.sources);
 }
 
 std::string to_csv(const std::vector<SocBand>& bands) {

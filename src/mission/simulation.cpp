@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/units.h"
+#include "mission/simulation/least_power.h"
 #include "mission/simulation/load_segments.h"
 
 #include <algorithm>
@@ -18,11 +19,11 @@ constexpr double most_rows = 1e7;
 
 void require_output_step(double output_s, double duration_s) {
     if (!(output_s > 0.0) || !std::isfinite(output_s)) {
-        throw UsageError(fmt::format("an output step of {} s makes no sense, expected more than 0", output_s));
+        throw UsageError(fmt::format("an output step of {:.6g} s makes no sense, expected more than 0", output_s));
     }
     if (duration_s / output_s > most_rows) {
-        throw UsageError(
-            fmt::format("an output step of {} s makes more than {} rows of {} s", output_s, most_rows, duration_s));
+        throw UsageError(fmt::format("an output step of {:.6g} s makes more than {:.0e} rows of {:.6g} s", output_s,
+                                     most_rows, duration_s));
     }
 }
 
@@ -129,8 +130,10 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
 
 Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationSteps& steps,
                     const Disturbances& disturbances) {
-    const auto segments = disturbed(load_segments(mission, schedule), disturbances);
-    if (segments.empty()) throw std::invalid_argument("simulate: the mission has no schedule");
+    const auto stated = load_segments(mission, schedule);
+    if (stated.empty()) throw std::invalid_argument("simulate: the mission has no schedule");
+    refuse_charging(mission, stated);
+    const auto segments = disturbed(stated, disturbances);
     require_output_step(steps.output_s, segments.back().end_s);
     const Supply supply{disturbed(mission.battery, disturbances), steps.cuts_off ? mission.cutoff_voltage_v : 0.0};
     SocCurve curve;

@@ -41,8 +41,9 @@ struct SimulationSteps {
 
 /// Runs a mission with a schedule: mechanical and computing power, added, deplete the battery (Eqs. 8-10). Energies are
 /// exact integrals; state of charge is integrated numerically and empties once: neither power that flows back later nor
-/// a voltage that recovers after a cut-off revives it. `disturbances` happen in its course. Throws UsageError for an
-/// output step that is not positive or makes too many rows, and std::invalid_argument for an empty schedule.
+/// a voltage that recovers after a cut-off revives it. `disturbances` happen in its course. Throws InputError for a
+/// mission that, undisturbed, charges its battery and may not; UsageError for an output step that is not positive or
+/// makes too many rows; and std::invalid_argument for an empty schedule.
 Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationSteps& steps = {},
                     const Disturbances& disturbances = {});
 

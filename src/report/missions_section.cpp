@@ -75,10 +75,13 @@ Section schedule_section(Missions missions, const PublishedFigures& published) {
     add_figure(section, schedule_figure(missions, published, "schedules-soc"));
     std::vector<mission::MissionSummary> summaries;
     std::vector<std::string> failures;
+    std::vector<std::string> sources;
     for (const auto& simulated : missions) {
         auto summary = simulated.simulation.summary;
         summary.mission = simulated.title;
         if (summary.undeliverable) failures.push_back(describe(summary));
+        if (summary.samples)
+            sources.push_back(fmt::format("{}: {}", simulated.title, describe(summary.samples->sources)));
         summaries.push_back(std::move(summary));
     }
     section.html +=
@@ -88,6 +91,7 @@ Section schedule_section(Missions missions, const PublishedFigures& published) {
         "chance is that of 1000 flights drawn a mission, from what its models and its [uncertainty] say of "
         "how flights differ: 95 % intervals reach 3 percent points at most; \"-\": nothing says it.",
         "soft");
+    if (!sources.empty()) section.html += "<div class=\"soft\">" + list_html(sources) + "</div>\n";
     if (!failures.empty()) section.html += "<div class=\"warning\">" + list_html(failures) + "</div>\n";
     return section;
 }

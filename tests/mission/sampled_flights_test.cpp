@@ -114,8 +114,8 @@ TEST(SampledFlights, SayWhatIsDrawnAndWhatIsNot) {
     EXPECT_TRUE(has_spread(mission));
     mission.uncertainty.capacity_sd_percent = 0.0;
     const auto spreads = find_spreads(mission);
-    EXPECT_EQ(spreads.drawn, std::vector<std::string>{"power of detection (sd 2 %, stated)"});
-    EXPECT_EQ(spreads.not_drawn.size(), 10U);
+    EXPECT_EQ(spreads.sources.drawn, std::vector<std::string>{"power of detection (sd 2 %, stated)"});
+    EXPECT_EQ(spreads.sources.not_drawn.size(), 10U);
 }
 
 }  // namespace

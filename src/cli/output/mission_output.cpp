@@ -28,11 +28,15 @@ void add_to_json(const mission::SampledFlights& flights, nlohmann::ordered_json&
     auto& quantiles = json["final_soc_quantiles_percent"];
     for (std::size_t i = 0; i < mission::shown_quantiles_percent.size(); ++i)
         quantiles[std::to_string(mission::shown_quantiles_percent[i])] = flights.final_soc_quantiles_percent[i];
-    json["drawn"] = flights.drawn;
-    json["not_drawn"] = flights.not_drawn;
+    add_sources(flights.sources, json);
 }
 
 }  // namespace
+
+void add_sources(const mission::DrawnSources& sources, nlohmann::ordered_json& json) {
+    json["drawn"] = sources.drawn;
+    json["not_drawn"] = sources.not_drawn;
+}
 
 void add_sampling_options(StageDefinition& stage) {
     auto add = stage.options.add_options();
@@ -103,6 +107,7 @@ nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::
     json["final_soc_percent"] = optional_json(plan.summary.final_soc_percent);
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
     json["margin_percent"] = plan.margin_percent;
+    if (plan.sources) add_sources(*plan.sources, json);
     return json;
 }
 

@@ -29,6 +29,9 @@ std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, con
 /// Warns of what no drone has: negative power of the model or of a profile, a battery of another unit.
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission);
 
+/// What differs between flights and what does not, as "drawn" and "not_drawn".
+void add_sources(const mission::DrawnSources& sources, nlohmann::ordered_json& json);
+
 /// The summary as simulate and compare print it; null stands for "never".
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary);
 

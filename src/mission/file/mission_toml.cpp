@@ -93,10 +93,10 @@ double read_duration(const TomlTable& durations, std::string_view phase) {
     return number_in(between(shortest_phase_s, longest_phase_s), durations, phase, "or 0: not flown");
 }
 
-PerPhase<double> read_durations(const TomlTable& root, const std::optional<mechanical::MechanicalModel>& mechanical) {
-    PerPhase<double> durations;
+void read_durations(const TomlTable& root, MissionSetup& mission) {
+    const auto& mechanical = mission.mechanical;
     if (mechanical) {
-        for (const auto phase : all_phases) durations[phase] = mechanical->phases[phase].duration_s;
+        for (const auto phase : all_phases) mission.duration_s[phase] = mechanical->phases[phase].duration_s;
     } else if (!root.has("duration_s")) {
         throw InputError(root.where("mechanical"), "without a mechanical model the phases have no durations",
                          "add duration_s = { takeoff = ..., cruise = ..., landing = ... }");
@@ -105,22 +105,25 @@ PerPhase<double> read_durations(const TomlTable& root, const std::optional<mecha
     const auto given = root.optional_table("duration_s");
     for (const auto phase : all_phases) {
         const auto name = to_string(phase);
-        if (given && (!mechanical || given->has(name))) durations[phase] = read_duration(*given, name);
-        total_s += durations[phase];
+        if (given && (!mechanical || given->has(name))) {
+            mission.duration_s[phase] = read_duration(*given, name);
+            mission.duration_is_stated[phase] = true;
+        }
+        total_s += mission.duration_s[phase];
     }
     if (given) given->refuse_unknown_keys();
     if (total_s == 0.0) throw InputError(root.where("duration_s"), "all phases take 0 s, expected a mission");
-    return durations;
 }
 
-battery::Battery read_mission_battery(const TomlTable& root) {
-    auto battery = root.is_table("battery") ? battery::battery_from(root.table("battery"))
-                                            : battery::read_battery(file_of(root, "battery"));
-    if (const auto capacity_ah = optional_number_in(more_than_up_to(0.0, 1e6), root, "capacity_ah")) {
-        battery.capacity_ah = *capacity_ah;
-        battery.intervals.capacity_ah.reset();  // that was of the other capacity
-    }
-    return battery;
+void read_mission_battery(const TomlTable& root, MissionSetup& mission) {
+    auto& battery = mission.battery;
+    battery = root.is_table("battery") ? battery::battery_from(root.table("battery"))
+                                       : battery::read_battery(file_of(root, "battery"));
+    const auto capacity_ah = optional_number_in(more_than_up_to(0.0, 1e6), root, "capacity_ah");
+    mission.capacity_is_stated = capacity_ah.has_value();
+    if (!capacity_ah) return;
+    battery.capacity_ah = *capacity_ah;
+    battery.intervals.capacity_ah.reset();  // that was of the other capacity
 }
 
 compute::Component read_component(const TomlTable& table, const std::string& name) {
@@ -226,7 +229,7 @@ AnyMission parse_mission(std::string_view text, const std::filesystem::path& pat
     const auto root = parse_toml(text, path.string());
     root.refuse_keys_except({"format", "name", "mechanical", "duration_s", "phase_clock", "conditions", "battery",
                              "initial_soc_percent", "capacity_ah", "cutoff_voltage_v", "reserve_soc_percent",
-                             "components", "schedule", "plan", "policy", "uncertainty"});
+                             "may_charge", "components", "schedule", "plan", "policy", "uncertainty"});
     require_known_format(root);
     MissionSetup mission;
     mission.file = path.string();
@@ -235,9 +238,13 @@ AnyMission parse_mission(std::string_view text, const std::filesystem::path& pat
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
     if (const auto conditions = root.optional_table("conditions"))
         mission.cruise_level = apply_conditions(*conditions, mission.mechanical);
-    mission.duration_s = read_durations(root, mission.mechanical);
-    if (reading.cruise_s) mission.duration_s[Phase::cruise] = *reading.cruise_s;
-    mission.battery = read_mission_battery(root);
+    read_durations(root, mission);
+    if (reading.cruise_s) {
+        mission.duration_s[Phase::cruise] = *reading.cruise_s;
+        mission.duration_is_stated[Phase::cruise] = true;
+    }
+    read_mission_battery(root, mission);
+    mission.may_charge = root.optional_boolean("may_charge").value_or(false);
     read_components(root, mission);
     mission.initial_soc_percent = number_in_or(more_than_up_to(0.0, 100.0), root, "initial_soc_percent", 100.0);
     mission.cutoff_voltage_v = number_in_or(between(0.0, 1e6), root, "cutoff_voltage_v", 0.0);

@@ -15,7 +15,7 @@ namespace flightwatt::mission {
 namespace {
 
 std::string spell(Phase phase, double start_s, double end_s) {
-    return fmt::format("{} from {} s to {} s", to_string(phase), start_s, end_s);
+    return fmt::format("{} from {:.6g} s to {:.6g} s", to_string(phase), start_s, end_s);
 }
 
 /// The number before the '%' of "40 %".
@@ -58,7 +58,7 @@ void read_segment(const TomlTable& table, double duration_s, ScheduleEntry& entr
     }
     if (entry.start_s < -tolerance_s || entry.end_s > duration_s + tolerance_s) {
         throw InputError(table.where(key), fmt::format("the segment {} is not within the phase", segment),
-                         fmt::format("it takes {} s in this mission", duration_s));
+                         fmt::format("it takes {:.6g} s in this mission", duration_s));
     }
 }
 

@@ -103,10 +103,10 @@ void add_free_slots(PhaseSegment free, double slot_s, double tolerance_s, std::v
 
 void require_few_slots(const PlanningProblem& problem, double duration_s) {
     if (duration_s / problem.plan.slot_s <= most_slots) return;
-    throw InputError(
-        {problem.file},
-        fmt::format("{} s in slots of {} s are more than {} slots", duration_s, problem.plan.slot_s, most_slots),
-        "make slot_s in [plan] longer");
+    throw InputError({problem.file},
+                     fmt::format("{:.6g} s in slots of {:.6g} s are more than {} slots", duration_s,
+                                 problem.plan.slot_s, most_slots),
+                     "make slot_s in [plan] longer");
 }
 
 MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,

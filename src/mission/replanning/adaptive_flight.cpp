@@ -1,5 +1,6 @@
 #include "mission/replanning/adaptive_flight.h"
 
+#include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/simulation/load_segments.h"
@@ -7,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include <fmt/format.h>
 
 namespace flightwatt::mission {
 namespace {
@@ -25,6 +28,16 @@ constexpr double jump_factor = 2.0;  ///< of the depletion predicted: beyond, ch
 double energy_equivalent_soc_percent(const AdaptivePlanner& planner, double soc_percent) {
     if (!planner.open_circuit) return soc_percent;
     return voltage_integral(*planner.open_circuit, soc_percent) / planner.known.battery.voltage_v;
+}
+
+void require_few_decisions(const PlanningProblem& known) {
+    constexpr double most = 20000.0;
+    const double decisions = timeline_of(known.duration_s).duration_s / known.adaptive->decide_every_s;
+    if (decisions <= most) return;
+    throw InputError({known.file},
+                     fmt::format("a plan every {:.6g} s makes {:.3g} plans, more than {:.0f}",
+                                 known.adaptive->decide_every_s, decisions, most),
+                     "make decide_every_s in [policy] longer");
 }
 
 /// The times from one decision to the next, as planned.
@@ -170,6 +183,7 @@ class Flight {
 
 AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     if (!problem.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
+    require_few_decisions(problem);
     AdaptivePlanner planner{problem, std::nullopt, {}};
     auto& battery = planner.known.battery;
     if (battery.thevenin) {

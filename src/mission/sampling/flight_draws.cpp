@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "mechanical/prediction.h"
 #include "mission/sampling/level_deviation.h"
+#include "mission/simulation/least_power.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,8 @@ constexpr double sd_per_half_95 = 1.96;  ///< half the width of a normal 95 % in
 
 /// Notes down a source, as drawn or not.
 void note_source(FlightSpreads& spreads, bool is_drawn, const std::string& source, const std::string& basis) {
-    (is_drawn ? spreads.drawn : spreads.not_drawn).push_back(fmt::format("{} ({})", source, basis));
+    auto& [drawn, not_drawn] = spreads.sources;
+    (is_drawn ? drawn : not_drawn).push_back(fmt::format("{} ({})", source, basis));
 }
 
 std::string basis_of(const LevelDeviation& deviation) {
@@ -42,6 +44,7 @@ std::string basis_of(const LevelDeviation& deviation) {
     throw std::logic_error("basis_of: no such source of a deviation");
 }
 
+/// Throughout, what the mission states is fixed, and [uncertainty] alone gives it a spread.
 void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spreads) {
     const auto source = fmt::format("{} duration", to_string(phase));
     auto& sd_s = spreads.duration_sd_s[phase];
@@ -54,6 +57,8 @@ void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spre
     if (const auto stated_s = mission.uncertainty.duration_sd_s[phase]) {
         sd_s = *stated_s;
         basis = fmt::format("sd {:.4g} s, stated", sd_s);
+    } else if (mission.duration_is_stated[phase]) {
+        basis = "fixed, as the mission states it without duration_sd_s";
     } else if (flown_s.size() >= 2) {
         const double relative = sample_sd(flown_s) / mean(flown_s);
         sd_s = mission.duration_s[phase] * relative *
@@ -64,30 +69,47 @@ void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spre
 }
 
 void find_compute(const MissionSetup& mission, FlightSpreads& spreads) {
-    const auto& components = mission.compute.components;
-    for (std::size_t i = 0; i < components.size(); ++i) {
-        const auto stated_percent = mission.uncertainty.compute_sd_percent.at(i);
-        const bool has_errors = !components[i].profile.standard_error_w.empty();
-        note_source(spreads, stated_percent ? *stated_percent > 0.0 : has_errors,
-                    fmt::format("power of {}", components[i].name),
-                    stated_percent ? fmt::format("sd {:.4g} %, stated", *stated_percent)
-                    : has_errors   ? "standard errors of its profile"
-                                   : "its profile has no standard errors: profile it, or state compute_sd_percent");
+    for (std::size_t i = 0; i < mission.compute.components.size(); ++i) {
+        const auto& component = mission.compute.components[i];
+        const auto& errors_w = component.profile.standard_error_w;
+        ComponentSpread spread;
+        std::string basis = "its profile has no standard errors: profile it, or state compute_sd_percent";
+        if (const auto stated_percent = mission.uncertainty.compute_sd_percent.at(i)) {
+            spread.common_sd_percent = *stated_percent;
+            basis = fmt::format("sd {:.4g} %, stated", *stated_percent);
+        } else if (!errors_w.empty()) {
+            spread.node_sd_w = errors_w;
+            basis = "standard errors of its profile";
+        }
+        note_source(spreads, spread.common_sd_percent > 0.0 || !spread.node_sd_w.empty(),
+                    fmt::format("power of {}", component.name), basis);
+        spreads.components.push_back(std::move(spread));
     }
+}
+
+void find_capacity(const MissionSetup& mission, FlightSpreads& spreads) {
+    auto& interval = spreads.battery.capacity_ah;
+    std::string basis = interval ? "the battery's interval" : "the battery's file has no interval";
+    if (const auto percent = mission.uncertainty.capacity_sd_percent) {
+        const double reach_ah = sd_per_half_95 * units::part_of(mission.battery.capacity_ah, *percent);
+        interval.reset();
+        if (*percent > 0.0) interval = {mission.battery.capacity_ah - reach_ah, mission.battery.capacity_ah + reach_ah};
+        basis = fmt::format("sd {:.4g} %, stated", *percent);
+    } else if (mission.capacity_is_stated) {
+        interval.reset();
+        basis = "fixed, as the mission states capacity_ah without capacity_sd_percent";
+    }
+    note_source(spreads, interval.has_value(), "battery capacity", basis);
 }
 
 void find_battery(const MissionSetup& mission, FlightSpreads& spreads) {
     const auto& battery = mission.battery;
-    const auto& intervals = battery.intervals;
+    const auto& intervals = spreads.battery = battery.intervals;
     const auto find = [&](const std::string& source, bool has_interval) {
         note_source(spreads, has_interval, source,
                     has_interval ? "the battery's interval" : "the battery's file has no interval");
     };
-    if (const auto percent = mission.uncertainty.capacity_sd_percent) {
-        note_source(spreads, *percent > 0.0, "battery capacity", fmt::format("sd {:.4g} %, stated", *percent));
-    } else {
-        find("battery capacity", intervals.capacity_ah.has_value());
-    }
+    find_capacity(mission, spreads);
     if (battery.thevenin) {
         find("open-circuit voltage", !intervals.open_circuit_standard_error_v.empty());
         if (battery.thevenin->rc_resistance_ohm > 0.0) {
@@ -114,34 +136,41 @@ double moved_logarithm(double value, const std::optional<battery::Interval>& int
     return value * std::exp(z * sd);
 }
 
-/// Standard normal numbers, the same wherever they are drawn.
+/// A phase's level, `moved_w` from the model's.
+void move_level(mechanical::PhaseModel& phase, double moved_w, double shown_s) {
+    auto& curve = phase.fourier;
+    const auto as_planned = curve;
+    curve.a0_w += moved_w;
+    if (moved_w >= 0.0) return;
+    const double least_w = least_power_w(curve, {0.0, shown_s}).power_w;
+    if (least_w >= 0.0 || least_w - moved_w < 0.0) return;
+    const double mean_w = energy_j(as_planned, shown_s) / shown_s;
+    const double factor = std::max(0.0, (mean_w + moved_w) / mean_w);
+    curve.a0_w = factor * as_planned.a0_w;
+    for (auto* terms_w : {&curve.cos_w, &curve.sin_w})
+        for (auto& term_w : *terms_w) term_w *= factor;
+}
+
+/// The numbers that make a flight, in their order.
 class Normals {
   public:
-    Normals(std::uint64_t seed, std::uint64_t index) {
-        std::seed_seq words{seed & 0xFFFFFFFFU, seed >> 32U, index & 0xFFFFFFFFU, index >> 32U};
-        engine_.seed(words);
-    }
-    double operator()() { return normal_(engine_); }
+    explicit Normals(std::span<const double> numbers) : numbers_(numbers) {}
+    double operator()() { return numbers_[next_++]; }
 
   private:
-    std::mt19937_64 engine_;
-    boost::random::normal_distribution<double> normal_;
+    std::span<const double> numbers_;
+    std::size_t next_ = 0;
 };
 
-/// Every number is drawn, needed or not: missions that differ in one source have the others in common.
-void draw_battery(const Uncertainty& stated, Normals& normal, battery::Battery& battery) {
-    const auto& intervals = battery.intervals;
+/// Every number is taken, needed or not: missions that differ in one source have the others in common.
+void move_battery(const battery::BatteryIntervals& intervals, Normals& normal, battery::Battery& battery) {
     const double capacity_z = normal();
     const double voltage_z = normal();
     const double resistance_z = normal();
     const double rc_resistance_z = normal();
     const double time_constant_z = normal();
-    if (const auto percent = stated.capacity_sd_percent) {
-        battery.capacity_ah *= std::max(least_part, 1.0 + units::part_of(capacity_z, *percent));
-    } else {
-        battery.capacity_ah =
-            moved(battery.capacity_ah, intervals.capacity_ah, capacity_z, least_part * battery.capacity_ah);
-    }
+    battery.capacity_ah =
+        moved(battery.capacity_ah, intervals.capacity_ah, capacity_z, least_part * battery.capacity_ah);
     battery.voltage_v = moved(battery.voltage_v, intervals.voltage_v, voltage_z, least_part * battery.voltage_v);
     battery.resistance_ohm = moved(battery.resistance_ohm, intervals.resistance_ohm, resistance_z, 0.0);
     if (!battery.thevenin) return;
@@ -157,18 +186,13 @@ void draw_battery(const Uncertainty& stated, Normals& normal, battery::Battery& 
     }
 }
 
-void draw_compute(const Uncertainty& stated, Normals& normal, compute::ComputeModel& compute) {
-    for (std::size_t i = 0; i < compute.components.size(); ++i) {
-        auto& profile = compute.components[i].profile;
-        const double common_z = normal();
-        const auto percent = stated.compute_sd_percent.at(i);
-        const double factor = std::max(0.0, 1.0 + units::part_of(common_z, percent.value_or(0.0)));
-        const bool own_errors = !percent && !profile.standard_error_w.empty();
-        for (std::size_t k = 0; k < profile.power_w.size(); ++k) {
-            const double node_z = normal();
-            profile.power_w[k] *= factor;
-            if (own_errors) profile.power_w[k] += node_z * profile.standard_error_w[k];
-        }
+void move_component(const ComponentSpread& spread, Normals& normal, std::vector<double>& power_w) {
+    const double factor = std::max(0.0, 1.0 + units::part_of(normal(), spread.common_sd_percent));
+    for (std::size_t k = 0; k < power_w.size(); ++k) {
+        const double node_z = normal();
+        const double least_w = std::min(0.0, power_w[k]);
+        power_w[k] *= factor;
+        if (!spread.node_sd_w.empty()) power_w[k] = std::max(least_w, power_w[k] + node_z * spread.node_sd_w[k]);
     }
 }
 
@@ -190,21 +214,64 @@ FlightSpreads find_spreads(const MissionSetup& mission) {
     return spreads;
 }
 
-MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,
-                         std::uint64_t index) {
-    Normals normal(seed, index);
+std::size_t count_normals(const MissionSetup& mission) {
+    constexpr std::size_t of_phases = 2 * all_phases.size();
+    constexpr std::size_t of_battery = 5;
+    std::size_t count = of_phases + of_battery;
+    for (const auto& component : mission.compute.components) count += 1 + component.profile.power_w.size();
+    return count;
+}
+
+std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uint64_t index) {
+    std::seed_seq words{seed & 0xFFFFFFFFU, seed >> 32U, index & 0xFFFFFFFFU, index >> 32U};
+    std::mt19937_64 engine(words);
+    boost::random::normal_distribution<double> normal;
+    std::vector<double> normals(count);
+    for (auto& number : normals) number = normal(engine);
+    return normals;
+}
+
+MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals) {
+    Normals normal(normals);
     auto flight = mission;
     for (const auto phase : all_phases) {
-        const double level_z = normal();
-        const double duration_z = normal();
-        if (flight.mechanical) flight.mechanical->phases[phase].fourier.a0_w += level_z * spreads.level_sd_w[phase];
+        const double moved_w = normal() * spreads.level_sd_w[phase];
         const double planned_s = mission.duration_s[phase];
-        flight.duration_s[phase] =
-            std::max(shortest_part * planned_s, planned_s + duration_z * spreads.duration_sd_s[phase]);
+        const double flown_s = planned_s + normal() * spreads.duration_sd_s[phase];
+        flight.duration_s[phase] = std::max(shortest_part * planned_s, flown_s);
+        if (!flight.mechanical || planned_s == 0.0) continue;
+        auto& model = flight.mechanical->phases[phase];
+        const bool stretched = mission.phase_clock == mechanical::PhaseClock::stretched;
+        move_level(model, moved_w, stretched ? model.duration_s : flight.duration_s[phase]);
     }
-    draw_battery(mission.uncertainty, normal, flight.battery);
-    draw_compute(mission.uncertainty, normal, flight.compute);
+    move_battery(spreads.battery, normal, flight.battery);
+    for (std::size_t i = 0; i < spreads.components.size(); ++i)
+        move_component(spreads.components[i], normal, flight.compute.components[i].profile.power_w);
     return flight;
+}
+
+MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,
+                         std::uint64_t index) {
+    return flight_of(mission, spreads, draw_normals(count_normals(mission), seed, index));
+}
+
+MissionSetup without_evidence(MissionSetup mission) {
+    if (mission.mechanical) {
+        mission.mechanical->flights.clear();
+        for (const auto phase : all_phases) {
+            const auto& model = mission.mechanical->phases[phase];
+            mechanical::PhaseModel curve;
+            curve.fourier = model.fourier;
+            curve.duration_s = model.duration_s;
+            mission.mechanical->phases[phase] = std::move(curve);
+        }
+    }
+    mission.battery.intervals = {};
+    for (auto& component : mission.compute.components) {
+        component.profile.standard_error_w.clear();
+        component.profile.is_measured.clear();
+    }
+    return mission;
 }
 
 }  // namespace flightwatt::mission

@@ -3,29 +3,54 @@
 #include "mission/mission.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace flightwatt::mission {
 
-/// How the flights of a mission differ, from what the mission states and else from what its models know.
+/// How the power of one component differs between flights.
+struct ComponentSpread {
+    double common_sd_percent = 0.0;  ///< of all its nodes together
+    std::vector<double> node_sd_w;   ///< of each by itself; or empty
+};
+
+/// What differs between the flights of a mission: the one definition of it, for plans that keep a reserve with a
+/// chance and for flights that are drawn. What is not in it is the same in every flight: initial charge, schedule,
+/// cut-off voltage, and the course of the power within a flight beside its phases' levels.
 struct FlightSpreads {
     PerPhase<double> level_sd_w;  ///< of a phase's mean mechanical power
     PerPhase<double> duration_sd_s;
-    std::vector<std::string> drawn;      ///< what is drawn, and what that rests on
-    std::vector<std::string> not_drawn;  ///< what is taken as it is, for want of a spread
+    std::vector<ComponentSpread> components;  ///< one a component of the mission
+    battery::BatteryIntervals battery;        ///< 95 % intervals of what differs
+    DrawnSources sources;
 };
 
-/// Levels: as level_deviation. Durations: duration_sd_s, or what the model's flights show, with the same factor and in
-/// proportion to the mission's duration. Computing: compute_sd_percent, or the standard errors of the profile's nodes.
-/// Battery: capacity_sd_percent, and the 95 % intervals of its file.
+/// What the mission's [uncertainty] states. Else: levels as level_deviation says; durations as the model's flights
+/// show, in proportion, with the same factor for a flight to come, unless the mission states the duration; computing by
+/// the standard errors of the profile's nodes; the battery by the 95 % intervals of its file, but not a capacity that
+/// the mission states.
 FlightSpreads find_spreads(const MissionSetup& mission);
 
-/// The mission as flight number `index` flies it: all normal, independent of each other, and of `seed` and `index`
-/// alone. Levels move a phase's whole curve; a component's nodes move together, unless they have standard errors of
-/// their own, as the knots of an open-circuit voltage do; an interval has a deviation for each side; a time constant is
-/// normal in its logarithm. Durations stop at a tenth of the planned, what cannot be negative at 0 (or a thousandth).
+/// How many standard normal numbers make a flight.
+std::size_t count_normals(const MissionSetup& mission);
+
+/// Flight number `index`'s, of `seed` and `index` alone.
+std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uint64_t index);
+
+/// The mission as the flight of these numbers flies it, each of which moves one quantity by so many deviations: of each
+/// phase level and duration, of the battery capacity, voltage, resistance, RC resistance and RC time constant, of each
+/// component its power and that of each node. Levels move a phase's whole curve; where that would be negative, which it
+/// was not, the curve is scaled to the same mean, down to 0. The knots of an open-circuit voltage move together, each
+/// by its own error. An interval has a deviation for each side; a time constant is normal in its logarithm. Durations
+/// stop at a tenth of the planned, what cannot be negative at 0 (or a thousandth).
+MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals);
+
+/// The flight that draw_normals makes.
 MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,
                          std::uint64_t index);
+
+/// The mission without what only says where its models come from, which copies faster.
+MissionSetup without_evidence(MissionSetup mission);
 
 }  // namespace flightwatt::mission

@@ -3,7 +3,6 @@
 #include "mission/mission.h"
 
 #include <cstddef>
-#include <vector>
 
 namespace flightwatt::mission {
 
@@ -28,23 +27,11 @@ struct LevelDeviation {
 /// few, taken as known. Needs a mechanical model.
 LevelDeviation level_deviation(const MissionSetup& mission, Phase phase);
 
-/// The deviation [W] where it is how flights differ. Throws InputError where there is no mechanical model, or
-/// one that does not say so.
+/// The deviation [W] where it is how flights differ. Throws InputError where the model does not say so. Needs one too.
 double level_sd_w(const MissionSetup& mission, Phase phase);
 
-/// Standard deviation [points] of a mission's depletion (docs/methods.md, Eq. 34), each phase flown beside the
-/// configuration that draws most. Throws InputError as level_sd_w; NoAnswerError where the battery could not deliver
-/// one standard deviation more of mechanical power.
-double soc_depletion_sd_percent(const MissionSetup& mission, const std::vector<compute::Configuration>& configurations);
-
-/// What to plan for above a reserve, so that it is kept with `probability`: that quantile of a Gaussian with the
-/// deviation above. Throws std::invalid_argument for a probability not from 0.5 to below 1.
-double margin_percent(const MissionSetup& mission, const std::vector<compute::Configuration>& configurations,
-                      double probability);
-
-/// The mission with mechanical power raised by what flights exceed with 1 - probability: every phase by its deviation
-/// times its part in that of the energy, times the Gaussian quantile. Its final state of charge is, to first order,
-/// the (1 - probability) quantile of the flights'. Throws as margin_percent does.
-PlanningProblem mission_at_quantile(const PlanningProblem& problem, double probability);
+/// Throws InputError where the mechanical model does not say of each phase that is flown how flights differ: a chance
+/// without that would be a promise about nothing.
+void require_known_levels(const MissionSetup& mission);
 
 }  // namespace flightwatt::mission

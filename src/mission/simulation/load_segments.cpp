@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/math/quadrature/gauss.hpp>
+
 namespace flightwatt::mission {
 namespace {
 
@@ -34,20 +36,51 @@ void disturb_power(const Disturbance& disturbance, LoadSegment& segment) {
         for (auto& term_w : *terms_w) term_w *= disturbance.mechanical_factor;
 }
 
-/// A bound: no harmonic can be more negative than its amplitude.
-bool never_charges(const LoadSegment& segment) {
-    double least_w = segment.compute_w;
-    if (segment.mechanical) {
-        const auto& curve = *segment.mechanical;
-        least_w += curve.a0_w;
-        for (std::size_t n = 0; n < curve.cos_w.size(); ++n) least_w -= std::hypot(curve.cos_w[n], curve.sin_w[n]);
-    }
-    return least_w >= 0.0;
+/// Bounds of a segment's power: no harmonic is greater than its amplitude.
+struct PowerBounds {
+    double low_w = 0.0;
+    double high_w = 0.0;
+};
+
+PowerBounds bounds_of(const LoadSegment& segment) {
+    PowerBounds bounds{segment.compute_w, segment.compute_w};
+    if (!segment.mechanical) return bounds;
+    const auto& curve = *segment.mechanical;
+    double amplitude_w = 0.0;
+    for (std::size_t n = 0; n < curve.cos_w.size(); ++n) amplitude_w += std::hypot(curve.cos_w[n], curve.sin_w[n]);
+    bounds.low_w += curve.a0_w - amplitude_w;
+    bounds.high_w += curve.a0_w + amplitude_w;
+    return bounds;
 }
 
-double depleted_percent(const battery::Battery& battery, const LoadSegment& segment, double until_s) {
-    const double energy_j = mechanical_energy_j(segment, until_s) + compute_energy_j(segment, until_s);
-    return units::percent_of(energy_j / battery.voltage_v, units::coulomb_from_ah(battery.capacity_ah));
+/// Whether the source is constant, and nothing but an empty battery can end the segment.
+bool depends_on_power_alone(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment) {
+    if (battery.thevenin) return false;
+    const auto [low_w, high_w] = bounds_of(segment);
+    return low_w >= 0.0 && high_w < power_limit_w(battery) &&
+           terminal_voltage_v(battery, {}, internal_current_a(battery, high_w)) >= cutoff_voltage_v;
+}
+
+/// What such a segment takes: without resistance the closed integral of Eq. 1, with it Gauss quadrature.
+double depleted_percent(const battery::Battery& battery, const LoadSegment& segment) {
+    constexpr double pieces_a_turn = 4.0;  // of the highest harmonic: exact to rounding
+    const double capacity_as = units::coulomb_from_ah(battery.capacity_ah);
+    if (battery.resistance_ohm == 0.0) {
+        const double energy_j = mechanical_energy_j(segment, segment.end_s) + compute_energy_j(segment, segment.end_s);
+        return units::percent_of(energy_j / battery.voltage_v, capacity_as);
+    }
+    const double length_s = segment.end_s - segment.start_s;
+    double turns = 0.0;
+    if (segment.mechanical)
+        turns = static_cast<double>(segment.mechanical->cos_w.size()) * segment.mechanical->omega_rad_per_s * length_s /
+                units::rad_per_turn;
+    const double pieces = std::min(1.0 + std::floor(turns * pieces_a_turn), std::max(16.0, length_s));
+    const auto current_a = [&](double time_s) { return internal_current_a(battery, power_w(segment, time_s)); };
+    double charge_as = 0.0;
+    for (double k = 0.0; k < pieces; ++k)
+        charge_as += boost::math::quadrature::gauss<double, 7>::integrate(
+            current_a, segment.start_s + length_s * k / pieces, segment.start_s + length_s * (k + 1.0) / pieces);
+    return units::percent_of(charge_as, capacity_as);
 }
 
 }  // namespace
@@ -134,9 +167,8 @@ battery::Discharge after_segment(const battery::Battery& battery, double cutoff_
     if (state.ended_at_s() || state.undeliverable) return state;
     if (segment.soc_drop_percent > 0.0) state = after_drop(state, segment);
     if (state.ended_at_s()) return state;
-    if (!battery.thevenin && battery.resistance_ohm == 0.0 && battery.voltage_v >= cutoff_voltage_v &&
-        never_charges(segment)) {
-        const double left_percent = state.soc_percent - depleted_percent(battery, segment, segment.end_s);
+    if (depends_on_power_alone(battery, cutoff_voltage_v, segment)) {
+        const double left_percent = state.soc_percent - depleted_percent(battery, segment);
         if (left_percent > 0.0) {
             state.soc_percent = left_percent;
             return state;

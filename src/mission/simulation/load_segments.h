@@ -51,8 +51,8 @@ double compute_energy_j(const LoadSegment& segment, double time_s);
 /// The battery after the charge that it loses at once as a segment starts.
 battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segment);
 
-/// The battery after a segment, for flights that are flown by the thousand: the closed integral where the source is
-/// constant, without resistance, and nothing charges; elsewhere Runge-Kutta with steps of a second. A battery that has
+/// The battery after a segment, for flights that are flown by the thousand: an integral of the power where the source
+/// is constant and nothing but its charge can end it; elsewhere Runge-Kutta with steps of a second. A battery that has
 /// ended, or cannot deliver, stays as it is.
 battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment,
                                  battery::Discharge state);

@@ -6,7 +6,7 @@
 #include "mission/plan.h"
 #include "mission/planning/depletion_table.h"
 #include "mission/planning/planner.h"
-#include "mission/sampling/level_deviation.h"
+#include "mission/sampled_flights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -178,23 +178,16 @@ TEST(SimulatedPlan, KeepsTheReserveWithAProbability) {
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_GT(plan.margin_percent, 0.5);
     EXPECT_NEAR(*plan.summary.final_soc_percent, 20.0 + plan.margin_percent, 0.05);
-    std::mt19937 random(1);
-    std::normal_distribution<double> normal;
-    constexpr int flights = 400;
-    int below = 0;
-    for (int i = 0; i < flights; ++i) {
-        auto flown = plan.flown;
-        for (const auto phase : flight::all_phases)
-            flown.mechanical->phases[phase].fourier.a0_w += level_sd_w(mission, phase) * normal(random);
-        if (!simulate(flown, {1e3, 2.0}).summary.keeps_reserve) ++below;
-    }
-    const double part = static_cast<double>(below) / flights;
-    EXPECT_NEAR(part, 0.05, 3.0 * std::sqrt(0.05 * 0.95 / flights));
+    constexpr std::size_t flights = 1000;
+    const auto sampled = sample_flights({plan.flown, plan.flown.schedule, std::nullopt}, {}, {flights, 1, 0});
+    EXPECT_NEAR(sampled.probability_below_reserve, 0.05, 3.0 * std::sqrt(0.05 * 0.95 / flights));
+    EXPECT_EQ(sampled.sources.drawn, plan.sources->drawn);
 }
 
 TEST(SimulatedPlan, ProvesNothingWhereTheBatteryIsCharged) {
     auto mission = thevenin_plan()(1800.0);
     mission.mechanical->phases[flight::Phase::landing].fourier.a0_w = -60.0;
+    mission.may_charge = true;
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
     EXPECT_FALSE(plan.plan.bound_is_proven);

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <numeric>
+#include <optional>
+
+namespace flightwatt::mission {
+
+/// Looks for the least margin above a reserve whose answer keeps the reserve with a chance. More margin, more is left.
+class MarginSearch {
+  public:
+    explicit MarginSearch(double first_percent) : margin_percent_(first_percent) {}
+
+    double margin_percent() const { return margin_percent_; }
+
+    /// What the flights of the answer keep with that chance above the reserve, and what they should at most.
+    void learn(double slack_percent, double wanted_percent) {
+        auto& end_percent = slack_percent >= 0.0 ? enough_percent_ : too_little_percent_;
+        end_percent = margin_percent_;
+        move_to(margin_percent_ - slack_percent + wanted_percent);
+    }
+
+    /// There is no answer with so much.
+    void learn_too_much() {
+        enough_percent_ = margin_percent_;
+        move_to(std::midpoint(too_little_percent_.value_or(0.0), margin_percent_));
+    }
+
+    /// Nothing is left between what is enough and what is not.
+    bool is_exhausted() const {
+        return too_little_percent_ && enough_percent_ && *enough_percent_ - *too_little_percent_ < 1e-6;
+    }
+
+  private:
+    void move_to(double margin_percent) {
+        margin_percent_ = margin_percent;
+        if (!too_little_percent_ || !enough_percent_) return;
+        if (!(margin_percent_ > *too_little_percent_ && margin_percent_ < *enough_percent_))
+            margin_percent_ = std::midpoint(*too_little_percent_, *enough_percent_);
+    }
+
+    double margin_percent_;
+    std::optional<double> too_little_percent_;
+    std::optional<double> enough_percent_;
+};
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,90 @@
+// What --probability asked for is what --samples finds, in missions of every kind.
+
+#include "helpers/generated_missions.h"
+#include "mission/feasibility_limits.h"
+#include "mission/plan.h"
+#include "mission/sampled_flights.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr std::size_t samples = 4000;
+
+double share_below(const Mission& mission) {
+    return sample_flights({mission, mission.schedule, std::nullopt}, {}, {samples, 11, 0}).probability_below_reserve;
+}
+
+double standard_errors(double share, double probability) {
+    return (share - (1.0 - probability)) / std::sqrt(probability * (1.0 - probability) / static_cast<double>(samples));
+}
+
+class PlannedProbability : public testing::TestWithParam<unsigned> {};
+
+TEST_P(PlannedProbability, IsWhatTheFlightsOfThePlanKeep) {
+    const auto [problem, probability, kind] = test::generated_mission(GetParam());
+    const auto plan = plan_mission(problem, probability);
+    ASSERT_TRUE(plan.plan.feasible) << kind;
+    EXPECT_LT(*plan.summary.utility, std::sqrt(32.0) - 0.01) << "it could have spent more";
+    EXPECT_NEAR(standard_errors(share_below(plan.flown), probability), 0.0, 3.5) << kind;
+    EXPECT_GE(*plan.summary.final_soc_percent, problem.reserve_soc_percent + plan.margin_percent - 1e-6);
+}
+
+TEST_P(PlannedProbability, IsWhatTheFlightsOfAnAnswerKeep) {
+    const auto generated = test::generated_mission(GetParam());
+    const auto& problem = generated.problem;
+    const auto least = with_minimum_energy_schedule(problem);
+    const auto payload = largest_payload(least, generated.probability);
+    EXPECT_NEAR(standard_errors(share_below(with_payload(least, payload.value)), generated.probability), 0.0, 3.5)
+        << generated.kind;
+    EXPECT_NEAR(payload.residual_percent, 0.0, 0.02);
+    const auto capacity_ah = least_capacity_ah(least, generated.probability);
+    ASSERT_TRUE(capacity_ah);
+    auto smaller = least;
+    smaller.battery.capacity_ah = *capacity_ah;
+    EXPECT_NEAR(standard_errors(share_below(smaller), generated.probability), 0.0, 3.5) << generated.kind;
+    const auto mission_of = [&](double cruise_s) {
+        auto other = problem;
+        other.fixed.clear();
+        other.duration_s[flight::Phase::cruise] = cruise_s;
+        other.duration_is_stated[flight::Phase::cruise] = true;
+        return other;
+    };
+    const auto cruise = longest_cruise(mission_of, generated.probability);
+    EXPECT_NEAR(
+        standard_errors(share_below(with_minimum_energy_schedule(mission_of(cruise.value))), generated.probability),
+        0.0, 3.5)
+        << generated.kind;
+}
+
+INSTANTIATE_TEST_SUITE_P(Generated, PlannedProbability, testing::Range(1U, 7U));
+
+TEST(PlannedProbability, NamesRemediesThatAreOnes) {
+    auto [problem, probability, kind] = test::generated_mission(3);
+    problem.battery.capacity_ah *= 0.7;
+    const auto plan = plan_mission(problem, probability);
+    ASSERT_FALSE(plan.plan.feasible);
+    const auto mission_of = [&](double cruise_s) {
+        auto other = problem;
+        other.duration_s[flight::Phase::cruise] = cruise_s;
+        other.duration_is_stated[flight::Phase::cruise] = true;
+        return other;
+    };
+    const auto report = infeasibility_report(problem, plan, mission_of, probability);
+    EXPECT_GT(report.short_percent, 0.0);
+    ASSERT_TRUE(report.cruise_s && report.capacity_ah);
+    EXPECT_TRUE(plan_mission(mission_of(*report.cruise_s - 0.5), probability).plan.feasible);
+    EXPECT_FALSE(plan_mission(mission_of(*report.cruise_s + 0.5), probability).plan.feasible);
+    for (const double more_ah : {-0.005, 0.005}) {
+        auto other = problem;
+        other.battery.capacity_ah = *report.capacity_ah + more_ah;
+        EXPECT_EQ(plan_mission(other, probability).plan.feasible, more_ah > 0.0);
+    }
+}
+
+}  // namespace
+}  // namespace flightwatt::mission
