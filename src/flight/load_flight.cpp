@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_use.h"
 #include "flight/chosen_track.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"
@@ -69,6 +70,7 @@ std::string exclusion_of(const LoadedFlight& flight, const LoadOptions& options)
 }  // namespace
 
 FlightFile::FlightFile(const std::filesystem::path& path) : path_(path) {
+    note_input(path);
     if (path.extension() == ".csv" && std::filesystem::is_regular_file(path)) {
         series_text_ = read_file(path);
         return;
