@@ -195,7 +195,7 @@ ended, the same command goes on where it stopped and comes to the same results.)
     cli::add_fit_options(stage.options);
     auto add = stage.options.add_options();
     add("name", cli::value("NAME")->default_value("batch"), "the model's name");
-    add("published", cli::value("MODEL.toml"), "show Table I beside this model's");
+    add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
     add("jobs", cli::value("N")->default_value("0", "one a core"), "logs at a time");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, run_over_logs);

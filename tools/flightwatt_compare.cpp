@@ -109,7 +109,7 @@ lasts longer comes first. A mission without a schedule is planned first, one wit
 flight. --json lists the summaries in that order.)"};
     auto add = stage.options.add_options();
     add("markdown", "write the table as Markdown");
-    add("disturb", cli::value("FILE"), "let the disturbances of FILE happen to all (missions/disturbances/)");
+    add("disturb", cli::input_file("FILE"), "let the disturbances of FILE happen to all (missions/disturbances/)");
     add_sampling_options(stage);
     return cli::run_stage(argc, argv, stage, compare_missions);
 }

@@ -115,13 +115,13 @@ as TOML; with -o it goes to the file and Table I is shown.)"};
     add_fit_options(stage.options, cli::AutoOrder::accepted);
     auto add = stage.options.add_options();
     add("name", cli::value("NAME"), "the model's name");
-    add("published", cli::value("MODEL.toml"), "show Table I beside this model's");
-    add("table", cli::value("FILE"), "write Table I as .txt, .csv, .md or .tex");
+    add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
+    add("table", cli::output_file("FILE"), "write Table I as .txt, .csv, .md or .tex");
     add("errors",
         "analyse the fit: standard errors, R2, condition, autocorrelation, frequency profile, spread "
         "between flights, into the model and the JSON");
     add("intervals", "Table I with half widths of 95 % intervals; implies --errors");
-    add("curves", cli::value("FILE.csv"),
+    add("curves", cli::output_file("FILE.csv"),
         "write the curves with their band and the flights' envelope; implies --errors");
     add("level-covariate", cli::value("NAME"),
         "let the cruise level follow what 'flightwatt validate --covariate all' found to predict it: "

@@ -212,7 +212,7 @@ The remaining energy is that of --remaining more seconds of cruise and of a land
 flights, the drift within one, and that the model rests on few flights.)"};
     stage.max_inputs = 1;
     auto add = stage.options.add_options();
-    add("model", cli::value("MODEL.toml"), "from flightwatt fit, of two flights or more");
+    add("model", cli::input_file("MODEL.toml"), "from flightwatt fit, of two flights or more");
     add("until", cli::value<double>("S"),
         "the moment, in seconds since lift-off as flightwatt segment finds it in what was flown");
     add("until-log-time", cli::value<double>("S"), "the moment in the log's own seconds, instead of --until");

@@ -174,7 +174,7 @@ Samplers: auto, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supp
     stage.output_help = "the folder of the results";
     auto add = stage.options.add_options();
     add("sampler", cli::value("KIND"), "sample with this instead of what SPEC says");
-    add("sysfs", cli::value("ROOT"), "look for sensors below ROOT instead of /sys");
+    add("sysfs", cli::input_file("ROOT"), "look for sensors below ROOT instead of /sys");
     add("above-idle", "profiles hold the power above that of the idle computer");
     add("powprofiler", "write powprofiler's formats too, to DIR/powprofiler");
     add("trials", cli::value("N"),

@@ -161,9 +161,9 @@ model, validation, battery) and of missions (software, schedules, quality of ser
 Vega-Lite specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node)
 and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
     auto add = stage.options.add_options();
-    add("figures", cli::value("DIR"), "write every figure to DIR");
-    add("published", cli::value("MODEL.toml"), "show Table I beside this model's");
-    add("reference-figures", cli::value("DIR"),
+    add("figures", cli::output_file("DIR"), "write every figure to DIR");
+    add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
+    add("reference-figures", cli::input_file("DIR"),
         "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others");
     add("title", cli::value("TITLE"), "of the page");
     add("max-validation-flights", cli::value("N")->default_value("30"),

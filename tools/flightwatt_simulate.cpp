@@ -76,11 +76,11 @@ their final state of charge; the CSV stays that of the mission as it is stated.)
     auto add = stage.options.add_options();
     add("step", cli::value<double>("S")->default_value(1.0, "1"),
         "seconds between rows; jumps of power have rows besides");
-    add("disturb", cli::value("FILE"), "let the disturbances of FILE happen (missions/disturbances/)");
-    add("schedule-out", cli::value("FILE"), "write the mission with the schedule that was flown to FILE");
+    add("disturb", cli::input_file("FILE"), "let the disturbances of FILE happen (missions/disturbances/)");
+    add("schedule-out", cli::output_file("FILE"), "write the mission with the schedule that was flown to FILE");
     add_sampling_options(stage);
     stage.options.add_options()(
-        "samples-csv", cli::value("FILE"),
+        "samples-csv", cli::output_file("FILE"),
         "with --samples: write the state of charge over time that 5, 50 and 95 % of the flights are below");
     return cli::run_stage(argc, argv, stage, simulate_mission);
 }

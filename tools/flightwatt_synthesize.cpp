@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/file_use.h"
 #include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
@@ -80,6 +81,21 @@ struct LogIdentity {
     std::string made_by;
 };
 
+std::string log_name(const std::string& name, std::size_t number, const std::string& hazard) {
+    return fmt::format("{}_{:02}{}{}", name, number, hazard.empty() ? "" : "_", hazard);
+}
+
+/// Refuses what would replace an input before the first log is written.
+template <typename Hazards>
+void declare_logs(const cli::StageCall& call, const std::string& name, std::size_t count, const Hazards& hazards) {
+    for (std::size_t i = 1; i <= count; ++i) {
+        for (const auto& hazard : hazards) {
+            const auto stem = (std::filesystem::path(*call.output) / log_name(name, i, hazard.first)).string();
+            for (const auto* ending : {".log", ".data", ".truth.csv"}) declare_output(stem + ending);
+        }
+    }
+}
+
 /// Writes NAME.log, NAME.data and, if asked for, NAME.truth.csv; returns the log's size in bytes.
 std::size_t write_log(const cli::StageCall& call, const synthetic::SyntheticScenario& scenario,
                       const synthetic::SyntheticSensors& sensors, const LogIdentity& identity, std::uint64_t seed) {
@@ -147,6 +163,7 @@ int synthesize(const cli::StageCall& call) {
     sensors.sends_other_messages = !call.has("flight-messages-only");
     const auto hazard_list = chosen_hazards(call.get<std::string>("hazard"));
     const auto model = read_model(call);
+    declare_logs(call, name, count, hazard_list);
     make_directories(*call.output);
     const auto flights = draw_flights(model, count, seed, spread);
     nlohmann::ordered_json written = nlohmann::ordered_json::array();
@@ -156,7 +173,7 @@ int synthesize(const cli::StageCall& call) {
         const auto log_seed = random();
         for (const auto& [hazard_name, hazard] : hazard_list) {
             LogIdentity identity;
-            identity.name = fmt::format("{}_{:02}{}{}", name, i + 1, hazard_name.empty() ? "" : "_", hazard_name);
+            identity.name = log_name(name, i + 1, hazard_name);
             identity.made_by =
                 fmt::format("Made by flightwatt synthesize: model {}, flight {} of {}, seed {}{}{}.", model.name, i + 1,
                             count, seed, hazard_name.empty() ? "" : ", hazard ", hazard_name);

@@ -1,9 +1,12 @@
 #include "base/atomic_file.h"
 
 #include "base/error.h"
+#include "base/file_use.h"
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
+#include <random>
 #include <string>
 
 #include <fcntl.h>
@@ -28,30 +31,110 @@ bool write_all(int file, std::string_view content) {
     return true;
 }
 
+constexpr std::string_view unfinished_prefix = ".flightwatt-";
+constexpr std::size_t unfinished_digits = 16;
+
+/// What a result of that name goes to.
+struct Destination {
+    std::filesystem::path file;              ///< behind all links
+    bool is_special = false;                 ///< a device or a pipe, which cannot be replaced
+    std::optional<struct stat> before = {};  ///< of the file that is replaced
+};
+
+Destination destination_of(const std::filesystem::path& path) {
+    Destination destination{path};
+    constexpr int most_links = 40;  // as the kernel
+    for (int links = 0;; ++links) {
+        // What the system links to an open file (-o /dev/stdout) has a name that means nothing.
+        destination.is_special = destination.is_special || destination.file.string().starts_with("/proc/");
+        std::error_code none;
+        const auto next = std::filesystem::read_symlink(destination.file, none);
+        if (none) break;
+        if (links == most_links) fail(path, ELOOP);
+        destination.file = next.is_absolute() ? next : destination.file.parent_path() / next;
+    }
+    struct stat found {};
+    if (::stat(path.c_str(), &found) != 0) return destination;
+    if (S_ISDIR(found.st_mode)) fail(path, EISDIR);
+    destination.is_special = destination.is_special || !S_ISREG(found.st_mode);
+    if (destination.is_special) {
+        destination.file = path;
+    } else {
+        destination.before = found;
+    }
+    return destination;
+}
+
+/// A new file in the folder, whose name does not depend on the result's: that may be as long as names can be.
+int open_unfinished(const std::filesystem::path& folder, std::filesystem::path& file) {
+    constexpr int tries = 100;
+    for (int i = 0; i < tries; ++i) {
+        std::random_device random;
+        file = folder / fmt::format("{}{:08x}{:08x}", unfinished_prefix, random(), random());
+        const int opened = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (opened >= 0 || errno != EEXIST) return opened;
+    }
+    return -1;
+}
+
+/// Who may do what with the file that is replaced holds for the new one too.
+bool keep_permissions(int file, const struct stat& before) {
+    if (::fchown(file, before.st_uid, before.st_gid) != 0 &&
+        ::fchown(file, static_cast<uid_t>(-1), before.st_gid) != 0) {
+        return ::fchmod(file, before.st_mode & 0777) == 0;  // another's file: ours now, without its special bits
+    }
+    return ::fchmod(file, before.st_mode & 07777) == 0;
+}
+
+void write_directly(const std::filesystem::path& path, std::string_view content) {
+    const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (file < 0) fail(path, errno);
+    const bool written = write_all(file, content);
+    const int error = errno;
+    if (::close(file) != 0) fail(path, errno);
+    if (!written) fail(path, error);
+}
+
+/// False where the folder of unfinished files is not there, or of another file system than the destination.
+bool replace(const std::filesystem::path& path, const Destination& destination, std::string_view content,
+             const std::filesystem::path& folder) {
+    std::filesystem::path unfinished;
+    const int file = open_unfinished(folder, unfinished);
+    if (file < 0 && errno == ENOENT) return false;
+    if (file < 0) fail(path, errno);
+    bool done = write_all(file, content) && (!destination.before || keep_permissions(file, *destination.before));
+    int error = errno;
+    if (::close(file) != 0 && done) {
+        error = errno;
+        done = false;
+    }
+    if (done && ::rename(unfinished.c_str(), destination.file.c_str()) == 0) return true;
+    if (done) error = errno;
+    ::unlink(unfinished.c_str());
+    if (done && error == EXDEV) return false;
+    fail(path, error);
+}
+
 }  // namespace
 
-void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
-    std::error_code unknown;  // a name that is too long, say: opening it will tell
-    if (std::filesystem::is_directory(path, unknown)) fail(path, EISDIR);
-    // Devices and pipes (-o /dev/stdout) cannot be replaced: write them directly.
-    std::error_code ignored;
-    const bool special = std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
-    std::string target = special ? path.string() : path.string() + ".XXXXXX";
-    const int file = special ? ::open(target.c_str(), O_WRONLY | O_CLOEXEC) : ::mkstemp(target.data());
-    if (file < 0) fail(path, errno);
-    const bool written = write_all(file, content) && (special || ::fchmod(file, 0644) == 0);
-    int error = errno;
-    const bool closed = ::close(file) == 0;
-    if (written && !closed) error = errno;
-    if (!written || !closed) {
-        if (!special) ::unlink(target.c_str());
-        fail(path, error);
+void write_file_atomically(const std::filesystem::path& path, std::string_view content,
+                           const std::filesystem::path& unfinished) {
+    const auto destination = destination_of(path);
+    if (destination.is_special) return write_directly(path, content);
+    refuse_to_lose(path);
+    // Without the right to write it a file is not replaced either, though its folder would allow that.
+    if (destination.before && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) fail(path, errno);
+    auto beside = destination.file.parent_path();
+    if (beside.empty()) beside = ".";
+    if (unfinished.empty() || !replace(path, destination, content, unfinished)) {
+        if (!replace(path, destination, content, beside)) fail(path, ENOENT);
     }
-    if (!special && ::rename(target.c_str(), path.c_str()) != 0) {
-        error = errno;
-        ::unlink(target.c_str());
-        fail(path, error);
-    }
+    note_written(path);
+}
+
+bool is_unfinished_name(std::string_view name) {
+    return name.starts_with(unfinished_prefix) && name.size() == unfinished_prefix.size() + unfinished_digits &&
+           name.find_first_not_of("0123456789abcdef", unfinished_prefix.size()) == std::string_view::npos;
 }
 
 void make_directories(const std::filesystem::path& path) {

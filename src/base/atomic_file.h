@@ -7,9 +7,16 @@
 
 namespace flightwatt {
 
-/// Writes `content` to a file beside `path` and renames it over `path`, so that a reader (or a crash) sees
-/// the old content or the new one, never a part. Throws OutputError naming the path and the cause.
-void write_file_atomically(const std::filesystem::path& path, std::string_view content);
+/// Writes `content` to a file beside `path` (or in `unfinished`, a folder of the same file system) and renames it over
+/// `path`, so that a reader (or a crash) sees the old content or the new one, never a part. Where `path` is a symbolic
+/// link, what it points to is written. A file that is replaced keeps its permissions, and its owner where that is
+/// allowed; a new one follows the umask. Devices and pipes are written directly. Throws OutputError naming the path
+/// and the cause, and UsageError where that would lose what the command has read or written (file_use.h).
+void write_file_atomically(const std::filesystem::path& path, std::string_view content,
+                           const std::filesystem::path& unfinished = {});
+
+/// The name of a file that write_file_atomically has not renamed yet: ".flightwatt-" and sixteen hexadecimal digits.
+bool is_unfinished_name(std::string_view name);
 
 /// Makes the folder and those above it. Throws OutputError.
 void make_directories(const std::filesystem::path& path);

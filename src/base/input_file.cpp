@@ -1,6 +1,7 @@
 #include "base/input_file.h"
 
 #include "base/error.h"
+#include "base/file_use.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -29,8 +30,9 @@ std::size_t read_some(const InputFile& file, char* to, std::size_t most) {
 
 }  // namespace
 
-InputFile::InputFile(const std::filesystem::path& path)
-    : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
+    note_input(path);
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor_ < 0) cannot_read(path, errno);
     struct stat status {};
     const int error = ::fstat(descriptor_, &status) == 0 ? 0 : errno;

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_use.h"
 #include "base/toml_reader.h"
 
 #include <algorithm>
@@ -81,7 +82,7 @@ void close_standard_output() {
 StageCall parse(int argc, char** argv, const StageDefinition& definition, po::options_description& visible) {
     StageCall call;
     call.program = "flightwatt-" + definition.name;
-    visible.add_options()("output,o", po::value<std::string>()->value_name("FILE"), definition.output_help.c_str())(
+    visible.add_options()("output,o", output_file("FILE"), definition.output_help.c_str())(
         "json", "print the summary as JSON")("help,h", "show this help")("version", "show the version");
     po::options_description all = visible;
     all.add_options()(inputs_option, po::value<std::vector<std::string>>());
@@ -106,15 +107,22 @@ std::string usage_line(const StageDefinition& definition) {
     return fmt::format("usage: flightwatt {} {} [options]", definition.name, definition.arguments);
 }
 
-/// A result that replaces what it was made from would lose a log for good.
-void refuse_to_overwrite_inputs(const StageCall& call) {
-    if (!call.output || !std::filesystem::is_regular_file(*call.output)) return;
-    for (const auto& input : call.inputs) {
-        std::error_code unknown;
-        if (!std::filesystem::equivalent(*call.output, input, unknown)) continue;
-        throw UsageError(
-            fmt::format("--output {} is the input {}, which would be lost; name another file", *call.output, input));
-    }
+/// Tells which files the user named are read and written: a result that replaces what it was made from would lose a
+/// log for good.
+void declare_files(const StageCall& call, const po::options_description& options) {
+    watch_file_use();
+    for (const auto& input : call.inputs) note_input(input);
+    const auto visit = [&](FileRole role, const auto& use) {
+        for (const auto& option : options.options()) {
+            const auto* file = dynamic_cast<const FileValue*>(option->semantic().get());
+            const auto name = option->long_name();
+            if (file != nullptr && file->role() == role && call.has(name)) use(call.get<std::string>(name), name);
+        }
+    };
+    visit(FileRole::input, [](const std::string& file, const std::string&) { note_input(file); });
+    visit(FileRole::output, [](const std::string& file, const std::string& name) {
+        if (file != "-") declare_output(file, "--" + name);
+    });
 }
 
 int run(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
@@ -137,7 +145,7 @@ int run(int argc, char** argv, const StageDefinition& definition, const StageBod
         throw UsageError(
             fmt::format("unexpected argument '{}'; {}", call.inputs[definition.max_inputs], usage_line(definition)));
     }
-    refuse_to_overwrite_inputs(call);
+    declare_files(call, visible);
     return body(call);
 }
 

@@ -18,6 +18,23 @@ auto* value(const char* name) {
     return boost::program_options::value<T>()->value_name(name);
 }
 
+/// What the file (or folder) that an option names is to the stage.
+enum class FileRole { input, output };
+
+/// An option that names a file, as --help names it. Files to write are refused before the work where they are files to
+/// read, or two of them are one.
+class FileValue : public boost::program_options::typed_value<std::string> {
+  public:
+    FileValue(const char* name, FileRole role) : typed_value(nullptr), role_(role) { value_name(name); }
+    FileRole role() const { return role_; }
+
+  private:
+    FileRole role_;
+};
+
+inline FileValue* input_file(const char* name) { return new FileValue(name, FileRole::input); }
+inline FileValue* output_file(const char* name) { return new FileValue(name, FileRole::output); }
+
 /// What a stage program is called and accepts beyond --help, --version, --json and --output.
 struct StageDefinition {
     std::string name;         ///< "fit"; the program is flightwatt-fit

@@ -168,6 +168,7 @@ ComponentEstimate estimate_component(const ProfiledComponent& component, std::si
 ProfileOutcome profile(const ProfileSpecification& specification, const ProfilerOptions& options) {
     ProfileOutcome outcome;
     outcome.runs = planned_runs(specification, chosen_nodes(specification, options.trials));
+    claim_results(specification, outcome.runs, options.folder);
     recall_runs(outcome.runs, options.folder);
     const bool is_recorded = specification.sampler.kind == SamplerKind::recorded;
     PowerSampler sampler{SamplerKind::recorded, "recorded", {}, {}};

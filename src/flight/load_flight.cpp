@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_use.h"
 #include "flight/chosen_track.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"

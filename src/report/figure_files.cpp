@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_use.h"
 
 #include <cerrno>
 #include <cstring>
@@ -56,6 +57,11 @@ std::string standalone(const Figure& figure, const VegaJson& theme) {
 
 FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
                           const std::filesystem::path& folder) {
+    for (const auto& section : sections) {
+        for (const auto& figure : section.figures) {
+            for (const auto* ending : {".vl.json", ".svg", ".pdf"}) declare_output(folder / (figure.id + ending));
+        }
+    }
     make_directories(folder);
     const auto theme = VegaJson::parse(web.theme);
     FigureFiles files;

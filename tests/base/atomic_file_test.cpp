@@ -1,11 +1,13 @@
 #include "base/atomic_file.h"
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 namespace flightwatt {
 namespace {
@@ -25,7 +27,65 @@ TEST(AtomicFile, RefusesWhatCannotBeWrittenAndKeepsWhatWasThere) {
     EXPECT_TRUE(std::filesystem::is_directory(folder));
     EXPECT_THROW(write_file_atomically("/dev/full", "x"), OutputError);
     EXPECT_THROW(write_file_atomically(folder / std::string(300, 'x'), "x"), OutputError);
+    std::filesystem::create_symlink("loop", folder / "loop");
+    EXPECT_THROW(write_file_atomically(folder / "loop", "x"), OutputError);
     EXPECT_THROW(make_directories(folder / "a.txt" / "b" / std::string(300, 'x')), OutputError);
+}
+
+std::filesystem::perms permissions(const std::filesystem::path& file) {
+    return std::filesystem::status(file).permissions();
+}
+
+TEST(AtomicFile, WritesWhatALinkPointsTo) {
+    const auto folder = test::scratch_dir();
+    std::filesystem::create_directories(folder / "results");
+    write_file_atomically(folder / "results" / "a.txt", "old");
+    std::filesystem::create_symlink("results/a.txt", folder / "link");
+    std::filesystem::create_symlink(folder / "link", folder / "link to link");
+    std::filesystem::create_symlink("results/new.txt", folder / "to nothing");
+    write_file_atomically(folder / "link to link", "new");
+    write_file_atomically(folder / "to nothing", "first");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link to link"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "to nothing"));
+    EXPECT_EQ(read_file(folder / "results" / "a.txt"), "new");
+    EXPECT_EQ(read_file(folder / "results" / "new.txt"), "first");
+}
+
+TEST(AtomicFile, FollowsTheUmaskAndKeepsThePermissionsOfWhatItReplaces) {
+    const auto folder = test::scratch_dir();
+    const auto before = ::umask(027);
+    write_file_atomically(folder / "new", "x");
+    ::umask(077);
+    write_file_atomically(folder / "secret", "x");
+    using std::filesystem::perms;
+    std::filesystem::permissions(folder / "new", perms{0664});
+    write_file_atomically(folder / "new", "y");
+    ::umask(before);
+    EXPECT_EQ(permissions(folder / "secret"), perms{0600});
+    EXPECT_EQ(permissions(folder / "new"), perms{0664});
+    write_file_atomically(folder / "secret", "y");
+    EXPECT_EQ(permissions(folder / "secret"), perms{0600});
+}
+
+TEST(AtomicFile, TakesNamesAsLongAsTheyCanBe) {
+    const auto folder = test::scratch_dir();
+    write_file_atomically(folder / std::string(255, 'x'), "x");
+    EXPECT_EQ(read_file(folder / std::string(255, 'x')), "x");
+}
+
+TEST(AtomicFile, LeavesUnfinishedFilesWhereItIsTold) {
+    const auto folder = test::scratch_dir();
+    std::filesystem::create_directories(folder / "unfinished");
+    write_file_atomically(folder / "a", "x", folder / "unfinished");
+    write_file_atomically(folder / "b", "x", folder / "not there");
+    EXPECT_EQ(read_file(folder / "a") + read_file(folder / "b"), "xx");
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "unfinished"));
+    EXPECT_TRUE(is_unfinished_name(".flightwatt-0123456789abcdef"));
+    for (const auto* name : {".flightwatt-0123456789abcde", "flightwatt-0123456789abcdef",
+                             ".flightwatt-0123456789abcdeg", "flights.csv.Ab3dEf"}) {
+        EXPECT_FALSE(is_unfinished_name(name)) << name;
+    }
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "compute/profiling/component_run.h"
 
+#include "base/error.h"
+#include "base/file_use.h"
 #include "compute/processes/supervised_processes.h"
 #include "compute/profiling/run_statistics.h"
 
@@ -30,6 +32,7 @@ class OutputFile {
   public:
     explicit OutputFile(const std::filesystem::path& path) : path_(path) {
         if (path.empty()) return;
+        refuse_to_lose(path);
         file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
         if (file_ < 0) {
             throw OutputError(fmt::format("cannot write {}: {}", path.string(), std::strerror(errno)));

@@ -2,6 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
+#include "base/error.h"
+#include "base/file_use.h"
 #include "base/fingerprint.h"
 #include "base/number.h"
 #include "compute/qos_range.h"
@@ -127,7 +129,34 @@ std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
     return runs;
 }
 
+void claim_results(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs,
+                   const std::filesystem::path& folder) {
+    std::error_code none;
+    const bool has_runs = std::filesystem::is_regular_file(folder / runs_name, none);
+    const OwnFiles own;
+    if (has_runs && !read_file(folder / runs_name).starts_with("component,configuration,repeat,")) {
+        throw UsageError(
+            fmt::format("{} is no list of runs of flightwatt profile and would be replaced; choose another "
+                        "folder with -o",
+                        (folder / runs_name).string()));
+    }
+    std::vector<std::string> names{"idle"};
+    for (const auto& component : specification.components) names.push_back(component.name);
+    declare_output(folder / runs_name);
+    for (const auto& name : names) {
+        const auto file = folder / (name + ".csv");
+        declare_output(file);
+        if (has_runs || !std::filesystem::is_regular_file(file, none)) continue;
+        throw UsageError(
+            fmt::format("{} is no result of flightwatt profile, as there is no {} beside it, and would be "
+                        "replaced; choose another folder with -o",
+                        file.string(), runs_name));
+    }
+    for (const auto& run : runs) declare_output(folder / run.layer1);
+}
+
 void recall_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& folder) {
+    const OwnFiles own;
     std::map<std::string, Record> records;
     try {
         records = read_records(folder);
@@ -163,6 +192,7 @@ void write_runs(const std::vector<ProfileRun>& runs, const std::filesystem::path
                    "fingerprint"});
     for (const auto& run : runs)
         if (run.is_done) add_row(csv, run);
+    const OwnFiles own;  // after each run anew
     write_file_atomically(folder / runs_name, csv.text());
 }
 

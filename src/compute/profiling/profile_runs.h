@@ -38,6 +38,11 @@ struct ProfileRun {
 std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
                                      const std::vector<std::vector<std::size_t>>& chosen);
 
+/// Makes sure that the results replace nothing but those of an earlier profile. Throws UsageError where the folder has
+/// files of their names and no runs.csv of a profile, or where one of them is an input.
+void claim_results(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs,
+                   const std::filesystem::path& folder);
+
 /// Marks the runs that an earlier call did with the same fingerprint, status ok, as done, with what they measured.
 /// Others, also those that failed, are to be done again. A runs.csv that cannot be read counts as none.
 void recall_runs(std::vector<ProfileRun>& runs, const std::filesystem::path& folder);

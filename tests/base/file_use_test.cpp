@@ -1,0 +1,112 @@
+#include "base/file_use.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "helpers/test_paths.h"
+
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace flightwatt {
+namespace {
+
+/// Whether the body ends as it should, in a process of its own: watching has no end.
+bool holds_when_watched(const std::function<bool()>& body) {
+    const auto child = ::fork();
+    if (child == 0) {
+        watch_file_use();
+        std::_Exit(body() ? 0 : 1);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+bool refused(const std::function<void()>& body) {
+    try {
+        body();
+    } catch (const UsageError&) {
+        return true;
+    }
+    return false;
+}
+
+class FileUse : public testing::Test {
+  protected:
+    std::filesystem::path folder = test::scratch_dir();
+    std::filesystem::path input = folder / "input";
+
+    void SetUp() override {
+        write_file_atomically(input, "only copy");
+        std::filesystem::create_symlink("input", folder / "symlink");
+        std::filesystem::create_hard_link(input, folder / "hardlink");
+        write_file_atomically(folder / "other", "x");
+    }
+};
+
+TEST_F(FileUse, LetsNoResultReplaceWhatWasReadByWhateverName) {
+    for (const auto* name :
+         {"input", "symlink", "hardlink", "../FileUse.LetsNoResultReplaceWhatWasReadByWhateverName/input"}) {
+        EXPECT_TRUE(holds_when_watched([&] {
+            read_file(folder / "symlink");
+            write_file_atomically(folder / "other", "y");
+            return refused([&] { write_file_atomically(folder / name, "y"); });
+        })) << name;
+    }
+    EXPECT_EQ(read_file(input), "only copy");
+}
+
+TEST_F(FileUse, RefusesToReadWhatAResultIsToReplace) {
+    EXPECT_TRUE(holds_when_watched([&] {
+        declare_output(folder / "hardlink", "--output");
+        return refused([&] { read_file(input); });
+    }));
+    EXPECT_TRUE(holds_when_watched([&] {
+        read_file(input);
+        return refused([&] { declare_output(folder / "symlink", "--output"); });
+    }));
+}
+
+TEST_F(FileUse, RefusesTwoResultsInOneFile) {
+    EXPECT_TRUE(holds_when_watched([&] {
+        declare_output(folder / "new");
+        return refused([&] { declare_output(folder / "." / "new"); });
+    }));
+    EXPECT_TRUE(holds_when_watched([&] {
+        declare_output(input);
+        return refused([&] { declare_output(folder / "hardlink"); });
+    }));
+    EXPECT_TRUE(holds_when_watched([&] {
+        write_file_atomically(folder / "new", "x");
+        return refused([&] { write_file_atomically(folder / "new", "y"); });
+    }));
+    EXPECT_TRUE(holds_when_watched([&] {
+        declare_output("/dev/null");
+        declare_output("/dev/null");
+        return true;
+    }));
+}
+
+TEST_F(FileUse, LetsAProgramReplaceItsOwnRecords) {
+    EXPECT_TRUE(holds_when_watched([&] {
+        const OwnFiles own;
+        read_file(input);
+        write_file_atomically(input, "x");
+        write_file_atomically(input, "y");
+        return read_file(input) == "y";
+    }));
+}
+
+TEST_F(FileUse, IsNotWatchedUnlessAsked) {
+    declare_output(input);
+    write_file_atomically(input, read_file(input));
+    write_file_atomically(input, read_file(input));
+    EXPECT_EQ(read_file(input), "only copy");
+}
+
+}  // namespace
+}  // namespace flightwatt
