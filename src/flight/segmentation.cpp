@@ -23,6 +23,8 @@ double gap_around_s(const std::vector<double>& sample_s, double time_s) {
     return after == sample_s.begin() || after == sample_s.end() ? 0.0 : *after - *(after - 1);
 }
 
+constexpr double long_gap_s = 10.0;  // for an edge between altitudes
+
 /// What is noted beside an edge.
 struct Witnesses {
     Track altitude;
@@ -71,6 +73,18 @@ Sortie make_sortie(const Witnesses& witnesses, const FlightGrid& grid, const Act
     add(Phase::cruise, cruise_from, cruise_to, edges.takeoff_end_s.has_value() && edges.landing_start_s.has_value());
     if (edges.landing_start_s) add(Phase::landing, cruise_to, last_s, edges.touchdown_s.has_value());
     return sortie;
+}
+
+/// Warns of edges that lie somewhere within a long time without an altitude.
+void warn_of_gaps(const Sortie& sortie, std::vector<std::string>& warnings) {
+    for (std::size_t i = 0; i <= sortie.phases.size(); ++i) {
+        const bool last = i == sortie.phases.size();
+        const auto& edge = last ? sortie.phases.back().end : sortie.phases[i].start;
+        if (edge.gap_s <= long_gap_s) continue;
+        warnings.push_back(fmt::format(
+            "sortie {}: the {} at {:.1f} s lies somewhere in {:.0f} s without an altitude", sortie.number,
+            last ? "end" : fmt::format("start of the {}", to_string(sortie.phases[i].phase)), edge.time_s, edge.gap_s));
+    }
 }
 
 }  // namespace
@@ -122,6 +136,7 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
         }
         phases.sorties.push_back(make_sortie(witnesses, grid, activity, heights, options));
         phases.sorties.back().number = phases.sorties.size();
+        warn_of_gaps(phases.sorties.back(), phases.warnings);
     }
     return phases;
 }

@@ -18,7 +18,7 @@ struct AircraftConfiguration {
     std::optional<double> ground_altitude_m;
     std::map<int, std::string> block_names;
     CurrentOrigin current_origin = CurrentOrigin::unknown;
-    std::string firmware;  ///< "fixedwing", "rotorcraft", "rover"; empty if it is not told
+    std::string firmware = {};  ///< "fixedwing", "rotorcraft", "rover"; empty if it is not told
 };
 
 /// What a Paparazzi .log says: message definitions by name, and the aircraft by id.

@@ -158,8 +158,10 @@ TEST(RealFlights, GoThroughTheWholeBatch) {
                                          {"20_07_10__06_53_03", 321, 1100, 22.0}};
     std::size_t found = 0;
     for (const auto& flight : flights) {
-        // The other two measured no current.
-        EXPECT_EQ(flight.record.accepted, flight.record.flight.starts_with("20_07_")) << flight.record.flight;
+        // The other two measured no current, and one of them stands still.
+        const bool measured = flight.record.flight.starts_with("20_07_");
+        EXPECT_EQ(flight.record.accepted, measured || flight.record.flight.starts_with("17_07_"));
+        EXPECT_EQ(flight.record.accepted && flight.record.lacks_power.empty(), measured) << flight.record.flight;
         for (const auto& [name, lift_off_s, touchdown_s, cruise_w] : known) {
             if (flight.record.flight != name) continue;
             ++found;
@@ -170,6 +172,26 @@ TEST(RealFlights, GoThroughTheWholeBatch) {
         }
     }
     EXPECT_EQ(found, known.size());
+}
+
+TEST(RealFlights, WithoutPowerAreListedAndNotFitted) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto flights = test::batch(test::shared_dir() / "archives" / "no-power", test::scratch_dir() / "out");
+    EXPECT_EQ(flights.size(), 4U);
+    for (const auto& flight : flights) {
+        EXPECT_TRUE(flight.record.accepted) << flight.record.error;
+        EXPECT_FALSE(flight.record.phases.empty());
+        EXPECT_TRUE(flight.selection.flights.empty());
+        ASSERT_EQ(flight.selection.exclusions.size(), 1U);
+        EXPECT_EQ(flight.selection.exclusions[0].reason, flight.record.lacks_power);
+    }
+}
+
+TEST(RealFlights, AreNotWhatRoversDo) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto flights = test::batch(test::shared_dir() / "archives" / "rovers", test::scratch_dir() / "out");
+    EXPECT_EQ(flights.size(), 4U);
+    for (const auto& flight : flights) EXPECT_FALSE(flight.record.accepted) << flight.record.flight;
 }
 
 double weight_of(const mechanical::MechanicalModel& model, const std::string& flight, flight::Phase phase) {
@@ -191,6 +213,7 @@ TEST(RealFlights, ConvergeToAModel) {
         // The weighted average of the flights' measured energy is what the model's curve needs.
         double measured_w = 0.0;
         for (const auto& flight : flights) {
+            if (!flight.record.lacks_power.empty()) continue;
             for (const auto& recorded : flight.record.phases) {
                 if (recorded.phase != phase) continue;
                 measured_w += weight_of(model, flight.record.flight, phase) *

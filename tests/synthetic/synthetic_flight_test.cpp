@@ -84,7 +84,7 @@ TEST(Hazards, HaveNamesOfTheirOwn) {
         EXPECT_TRUE(names.insert(name).second) << name;
         EXPECT_NE(hazard, Hazard::none) << name;
     }
-    EXPECT_EQ(names.size(), 8U);
+    EXPECT_EQ(names.size(), 10U);
 }
 
 TEST(ScenarioWith, ChangesWhatTheHazardSays) {

@@ -18,7 +18,7 @@ constexpr auto older = R"xml(<configuration><conf>
 <aircraft name="Zagi" ac_id="17">
 <flight_plan GROUND_ALT="30" ALT="130"><exception COND="z > 3 && y < 2"/>
 <block NAME="Takeoff" pre_call="f(a > b)"/><block name="Standby"/></flight_plan>
-<airframe><define NAME="XBEE_INIT" VALUE="\"ATPL2\\rATRN1\""/><define NAME="MILLIAMP_AT_FULL_THROTTLE" VALUE="9000"/></airframe>
+<airframe><firmware NAME="test_progs"/><firmware NAME="fixedwing"><target name="ap"/></firmware><define NAME="XBEE_INIT" VALUE="\"ATPL2\\rATRN1\""/><define NAME="MILLIAMP_AT_FULL_THROTTLE" VALUE="9000"/></airframe>
 </aircraft></conf>
 <protocol><class NAME="datalink"><message NAME="BAT"><field NAME="wrong" TYPE="uint8"/></message></class>
 <class NAME="telemetry"><message NAME="BAT" ID="12"><field NAME="voltage" TYPE="uint8" UNIT="1e-1V"/>text
@@ -40,6 +40,8 @@ TEST(LogConfiguration, ReadsBothCasesFromAFileThatIsNotWellFormed) {
     EXPECT_EQ(zagi.block_names.at(0), "Takeoff");
     EXPECT_EQ(zagi.block_names.at(1), "Standby");
     EXPECT_EQ(zagi.current_origin, CurrentOrigin::throttle);
+    EXPECT_EQ(zagi.firmware, "fixedwing");
+    EXPECT_EQ(configuration.aircraft.at("5").firmware, "");
     EXPECT_EQ(configuration.aircraft.at("5").current_origin, CurrentOrigin::unknown);
 }
 

@@ -78,13 +78,16 @@ void mark(std::vector<bool>& out, std::size_t begin, std::size_t end) {
 std::size_t leave_out_excursions(Track& track) {
     const auto jumps = jumps_of(track);
     std::vector<bool> out(track.time_s.size(), false);
+    const auto stuck = stuck_samples(track);
     std::size_t after = 0;  // the first sample after what was left out last
     for (std::size_t a = 0; a < jumps.size(); ++a) {
         const auto first = jumps[a];
         if (first < after) continue;
         for (std::size_t b = a + 1; b < std::min(jumps.size(), a + returns); ++b) {
             const auto back = jumps[b];
-            if (track.time_s[back] - track.time_s[first - 1] > excursion_s) break;
+            const bool stands_still = b == a + 1 && stuck[first] && stuck[back - 1];
+            const double longest_s = stands_still ? fix_loss_s : excursion_s;
+            if (track.time_s[back] - track.time_s[first - 1] > longest_s) break;
             if (is_beyond(track, first - 1, back, fix_jump_m, fix_jump_m_per_s)) continue;
             mark(out, first, back);
             after = back;

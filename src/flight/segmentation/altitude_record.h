@@ -19,6 +19,8 @@ inline constexpr double fix_jump_m = 60.0;
 inline constexpr double fix_jump_m_per_s = 5.0;
 /// An altitude that comes back from a jump within this time was somewhere else meanwhile [s].
 inline constexpr double excursion_s = 30.0;
+/// So did one that stood still meanwhile, as an estimator does that has lost its fix [s].
+inline constexpr double fix_loss_s = 120.0;
 /// With more jumps than this nothing can be concluded from an altitude.
 inline constexpr std::size_t most_jumps = 10;
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -57,6 +58,22 @@ void add_altitude(FlightGrid& grid, const AltitudeRecord& record, const std::vec
         }
         sample = next_sample;
     }
+}
+
+/// Where no speed tells rest from flight: the points from which it comes down by the height of a flight, or more, before
+/// the motor runs again. There it glides, though it may keep its height for a while.
+std::vector<bool> gliding_points(const FlightGrid& grid, double idle_percent, double height_m) {
+    std::vector<bool> gliding(grid.size(), false);
+    if (grid.motor_percent.empty() || !grid.ground_speed_m_per_s.empty()) return gliding;
+    for (const auto& piece : grid.pieces) {
+        double lowest_m = std::numeric_limits<double>::infinity();  // until the motor runs
+        for (auto i = piece.end; i-- > piece.begin;) {
+            if (grid.motor_percent[i] > idle_percent) lowest_m = std::numeric_limits<double>::infinity();
+            lowest_m = std::min(lowest_m, grid.altitude_m[i]);
+            gliding[i] = lowest_m <= grid.altitude_m[i] - height_m;
+        }
+    }
+    return gliding;
 }
 
 /// The grid's times. Throws InputError where they are none.
@@ -172,6 +189,7 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
             is_still(piece.end - edge, piece.end, 0.3 * options.rest_height_m))
             mark(piece.end - edge, piece.end);
     }
+    const auto gliding = gliding_points(grid, idle_percent, options.flight_height_m);
     std::vector<GridSpan> rests;
     for (std::size_t i = 0; i < grid.size(); ++i) {
         if (!resting[i]) continue;
@@ -179,6 +197,7 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
         if (rests.empty() || rests.back().end != i || begins_piece) rests.push_back({i, i});
         rests.back().end = i + 1;
     }
+    std::erase_if(rests, [&](const GridSpan& rest) { return gliding[rest.end - 1]; });
     return rests;
 }
 

@@ -66,30 +66,38 @@ std::vector<double> altitudes_within(const Track& track, double start_s, double 
     return values;
 }
 
-/// Another altitude of the log that says that nothing moved: "GPS.alt by 2 m"; empty if none does.
+/// Whether a receiver is alive: without a fix it repeats its last value.
+bool is_alive(const std::vector<double>& values) {
+    constexpr std::size_t enough = 10;
+    std::size_t changes = 0;
+    for (std::size_t i = 1; i < values.size(); ++i) changes += values[i] != values[i - 1] ? 1 : 0;
+    return values.size() >= enough && 2 * changes >= values.size();
+}
+
+/// A GPS that says that nothing moved, where no other altitude of the log does: "ESTIMATOR.z moves by 40 m, GPS.alt by
+/// 2.0 m"; empty if there is none.
 std::string contradiction(const FlightSeries& series, const FlightGrid& grid, const Activity& activity,
                           const SegmentationOptions& options) {
-    constexpr std::size_t enough = 10;
     const double start_s = grid.time_s(activity.moving.begin);
     const double end_s = grid.time_s(activity.moving.end - 1);
     const auto chosen = chosen_track(series, "altitude_m");
     const auto own = altitudes_within(chosen, start_s, end_s);
-    if (own.size() < enough) return "";
-    const double own_m = spread_of(own);
+    const double own_m = own.empty() ? 0.0 : spread_of(own);
     if (own_m < options.flight_height_m) return "";
+    std::string contradicts;
     for (const auto& track : series.tracks) {
         if (track.name != "altitude_m" || track.source == chosen.source) continue;
         const auto other = altitudes_within(track, start_s, end_s);
-        const bool says_nothing =
-            other.size() < enough || std::ranges::count(other, other.front()) == std::ssize(other);
-        if (says_nothing) continue;  // without a fix it repeats one value
-        const double other_m = spread_of(other);
-        if (other_m < contradicting_part * own_m && other_m < 0.5 * options.flight_height_m) {
-            return fmt::format("{} moves by {:.0f} m, {} by {:.1f} m: an estimator that ran away", chosen.source, own_m,
-                               track.source, other_m);
+        const double other_m = other.empty() ? 0.0 : spread_of(other);
+        if (other_m >= confirming_part * own_m) return "";
+        const bool stands =
+            is_alive(other) && other_m < contradicting_part * own_m && other_m < 0.5 * options.flight_height_m;
+        if (stands && track.source.starts_with("GPS")) {
+            contradicts = fmt::format("{} moves by {:.0f} m, {} by {:.1f} m: an estimator that ran away", chosen.source,
+                                      own_m, track.source, other_m);
         }
     }
-    return "";
+    return contradicts;
 }
 
 /// Whether an activity that shows no ground, and no climb, is as slow as what drives.

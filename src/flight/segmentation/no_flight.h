@@ -12,9 +12,10 @@ namespace flightwatt::flight {
 /// A small aircraft climbs or dives no faster than this for 5 s, and than that for 30 s [m/s].
 inline constexpr double fastest_5_s_m_per_s = 60.0;
 inline constexpr double fastest_30_s_m_per_s = 30.0;
-/// An altitude that moves by ten metres or more contradicts another one of the log that moves by less than this part
-/// of it, and by less than half of the ten metres.
+/// An altitude that moves as far as a flight is contradicted by a GPS that moves by less than this part of it, and by
+/// less than half of the least height of a flight, unless another altitude moves by the other part of it.
 inline constexpr double contradicting_part = 0.25;
+inline constexpr double confirming_part = 0.5;
 /// Without ground in sight and at one height, what never gets faster than this is no fixed wing [m/s].
 inline constexpr double slowest_flight_m_per_s = 5.0;
 

@@ -54,6 +54,30 @@ TEST(AltitudeRecord, LeavesOutAnEstimatorThatLosesItsFixForAWhile) {
     EXPECT_THAT(phases.warnings[0], HasSubstr("altitudes were left out: it jumped away and back, first at 2"));
 }
 
+TEST(AltitudeRecord, LeavesOutAnEstimatorThatStandsStillForLonger) {
+    const auto phases = phases_with([](double t, double& altitude_m) {
+        if (t > 200 && t < 300) altitude_m = -17.0;
+    });
+    expect_as_flown(phases);
+    EXPECT_EQ(phases.warnings.size(), 1u);
+}
+
+TEST(AltitudeRecord, SaysThatAnEdgeLiesInATimeWithoutAltitude) {
+    auto series = test::series_of(columns_of(sortie(100, 50.0)));
+    for (auto& track : series.tracks) {
+        if (track.name != "altitude_m") continue;
+        Track kept{.name = track.name, .source = track.source};
+        for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+            if (track.time_s[i] > 80 && track.time_s[i] < 115) continue;
+            kept.time_s.push_back(track.time_s[i]);
+            kept.value.push_back(track.value[i]);
+        }
+        track = kept;
+    }
+    EXPECT_THAT(segment(series).warnings,
+                testing::ElementsAre(HasSubstr("s lies somewhere in 36 s without an altitude")));
+}
+
 TEST(AltitudeRecord, GivesEachSideOfAJumpAGroundOfItsOwn) {
     const auto phases = phases_with([](double t, double& altitude_m) {
         if (t < 75) altitude_m = -17.0;  // no fix yet

@@ -50,8 +50,17 @@ TEST(NoFlight, WhereAnotherAltitudeSaysThatNothingMoved) {
     for (std::size_t i = 0; i < gps.value.size(); ++i) gps.value[i] = 600.0 + 0.5 * static_cast<double>(i % 5);
     series.tracks.push_back(gps);
     EXPECT_THAT(why_none(series), HasSubstr("series CSV moves by 74 m, GPS.alt by 2.0 m: an estimator that ran away"));
-    // Without a fix it repeats one value, which says nothing.
+    // A third altitude that moves as well confirms the first.
+    auto confirmed = series;
+    confirmed.tracks.push_back(chosen_track(series, "altitude_m"));
+    confirmed.tracks.back().source = "AIR_DATA.amsl_baro";
+    EXPECT_EQ(why_none(confirmed), "1 sorties");
+    // Without a fix it repeats one value, which says nothing, and a barometer alone may be broken.
+    auto broken = series;
+    broken.tracks.back().source = "AIR_DATA.amsl_baro";
+    EXPECT_EQ(why_none(broken), "1 sorties");
     series.tracks.back().value.assign(gps.value.size(), 0.0);
+    series.tracks.back().value.front() = 2.0;
     EXPECT_EQ(why_none(series), "1 sorties");
 }
 

@@ -63,6 +63,15 @@ TEST(PhaseEdges, WorkFarBelowTheTransitIsACruise) {
     EXPECT_NEAR(landing_start_s(sortie), 626.0, 4.0);
 }
 
+TEST(PhaseEdges, AGliderThatKeepsItsHeightWithTheMotorOffDoesNotRest) {
+    // In a thermal, and the log has no speed.
+    const auto sortie =
+        flown({{200, 60, 0}, {201, 60, 0}, {260, 61, 0}, {300, 60, 0}, {360, 30, 0}, {380, 0, 0}}, 199.0);
+    ASSERT_EQ(sortie.phases.size(), 3u);
+    EXPECT_NEAR(sortie.start_s(), 100.0, 3.0);
+    EXPECT_NEAR(landing_start_s(sortie), 311.0, 4.0);
+}
+
 TEST(PhaseEdges, LiftOffIsNotBeforeTheMotorFirstRuns) {
     // An estimator that wanders on the ground for minutes, as far as a quarter of the height flown.
     auto columns = test::columns_of({{0, 0, 0},
