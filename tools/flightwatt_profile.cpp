@@ -41,6 +41,7 @@ int check_interpolation(const cli::StageCall& call) {
     auto json = nlohmann::ordered_json::array();
     for (const auto& file : call.inputs) {
         const auto profile = read_power_profile(file, naming_of(call));
+        if (const auto negative = negative_power_warning(profile); !negative.empty()) cli::warn(call, negative);
         const auto errors = compute::interpolation_errors(profile);
         if (!text.empty()) text += "\n";
         text += cli::interpolation_text(file, profile.power_w.size(), errors);

@@ -78,6 +78,20 @@ std::string exclusion_of(const LoadedFlight& flight, const LoadOptions& options)
     return describe_power_faults(flight.power.power_faults);
 }
 
+/// What was flown before the log began or after it ended is in no sum.
+void warn_of_missing_ends(LoadedFlight& loaded) {
+    for (const auto& sortie : loaded.phases.sorties) {
+        const auto& first = sortie.phases.front();
+        const auto& last = sortie.phases.back();
+        const auto warn = [&](const char* what, double time_s) {
+            loaded.warnings.push_back(fmt::format(
+                "the log {} in the air, at {:.0f} s: its energy is only that of what it shows", what, time_s));
+        };
+        if (first.phase != Phase::takeoff || !first.complete) warn("begins", sortie.start_s());
+        if (last.phase != Phase::landing || !last.complete) warn("ends", sortie.end_s());
+    }
+}
+
 std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
     std::vector<FlightSeries> candidates;
     std::vector<std::string> ids;
@@ -184,7 +198,9 @@ LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
 }
 
 LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options) {
-    return examine_flight(read_series(file, options.aircraft_id, options.power_required), options);
+    auto loaded = examine_flight(read_series(file, options.aircraft_id, options.power_required), options);
+    warn_of_missing_ends(loaded);  // not in examine_flight: predict looks at what is still in the air
+    return loaded;
 }
 
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options) {

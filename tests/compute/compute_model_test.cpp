@@ -138,6 +138,14 @@ TEST(ComputeModel, ComponentsAdd) {
     }
 }
 
+TEST(PowerProfile, IsWarnedOfWhereItsPowerIsNegative) {
+    EXPECT_EQ(negative_power_warning(line()), "");
+    const auto below = make_power_profile("below.csv", {"fps"}, {{{5.0}, -0.2, {}}, {{10.0}, 24.0, {}}});
+    EXPECT_EQ(negative_power_warning(below),
+              "below.csv: -0.2 W at fps = 5: software that gives power back does not exist; within the noise of the "
+              "profile it is 0");
+}
+
 TEST(ComputeModel, DrawsNothingWhenNothingRuns) { EXPECT_EQ(power_w(paper_model(), {}), 0.0); }
 
 TEST(ComputeModel, HoldsThePaperProfile) {

@@ -30,7 +30,7 @@ constexpr double doubtful_powerless_part = 0.15;  // of the samples at such a th
 constexpr double greatest_pack_v = 60.0;          // 14 LiPo cells
 constexpr double least_pack_v = 2.5;              // one cell, empty
 constexpr double least_voltage_part = 0.55;       // 2.3 V of a cell that began full
-constexpr double least_mean_power_w = 1.0;
+constexpr double least_mean_power_w = 3.0;
 
 /// The record and its energy in flight [J].
 struct FlownPower {
@@ -182,10 +182,12 @@ void warn_of_standing(const FlownPower& flown, Warnings& warnings) {
         for (auto begin = first; begin < last;) {
             auto end = begin + 1;
             while (end < last && power_w[end] == power_w[begin]) ++end;
-            const double part = power_w[begin] * (time_s[end - 1] - time_s[begin]) / flown.energy_j;
+            const double lasts_s =
+                power_w[begin] == 0.0 ? 0.0 : time_s[end - 1] - time_s[begin];  // 0: the motor is off
+            const double part = std::max(power_w[begin] * lasts_s / flown.energy_j, lasts_s / flown.duration_s);
             if (end - begin >= standing_samples && end - begin < last - first && part > doubtful_standing_part) {
                 warnings.push_back(
-                    fmt::format("power stands still at {:.2f} W from {:.1f} to {:.1f} s: {} % of the energy",
+                    fmt::format("power stands still at {:.2f} W from {:.1f} to {:.1f} s, {} % of the flight",
                                 power_w[begin], time_s[begin], time_s[end - 1], percent(part)));
             }
             begin = end;
@@ -225,26 +227,6 @@ void warn_of_powerless_throttle(const FlownPower& flown, Warnings& warnings) {
                                    percent(part), powerless_throttle_percent));
 }
 
-/// What was flown before the log began or after it ended is in no sum.
-void warn_of_missing_ends(const FlownPower& flown, Warnings& warnings) {
-    for (const auto& sortie : flown.evidence.phases.sorties) {
-        if (sortie.phases.empty()) continue;
-        const auto& first = sortie.phases.front();
-        const auto& last = sortie.phases.back();
-        const bool begins = first.complete && first.phase == Phase::takeoff;
-        const bool ends = last.complete && last.phase == Phase::landing;
-        if (!begins) {
-            warnings.push_back(
-                fmt::format("the log begins in the air, at {:.0f} s: what was flown before is not in its energy",
-                            sortie.start_s()));
-        }
-        if (!ends) {
-            warnings.push_back(fmt::format(
-                "the log ends in the air, at {:.0f} s: what was flown after is not in its energy", sortie.end_s()));
-        }
-    }
-}
-
 void warn_of_voltage(const FlownPower& flown, Warnings& warnings) {
     std::vector<double> voltages;
     if (flown.record.voltage_v.empty()) return;
@@ -271,7 +253,6 @@ std::vector<std::string> power_warnings_of(const PowerEvidence& evidence) {
         flown.energy_j += integrated(evidence.record.time_s, evidence.record.power_w, sortie.start_s(), sortie.end_s());
         flown.duration_s += sortie.end_s() - sortie.start_s();
     }
-    warn_of_missing_ends(flown, warnings);
     warn_of_rest(flown, warnings);
     warn_of_voltage(flown, warnings);
     if (!(flown.energy_j > 0.0)) return warnings;  // a fault
@@ -283,7 +264,8 @@ std::vector<std::string> power_warnings_of(const PowerEvidence& evidence) {
     warn_of_negative(flown, warnings);
     warn_of_powerless_throttle(flown, warnings);
     if (const double mean_w = flown.energy_j / flown.duration_s; mean_w < least_mean_power_w) {
-        warnings.push_back(fmt::format("a mean of {:.3g} W in flight: nothing flies on that; is its unit W?", mean_w));
+        warnings.push_back(
+            fmt::format("a mean of {:.3g} W in flight: hardly anything flies on that; is its unit W?", mean_w));
     }
     return warnings;
 }

@@ -21,6 +21,7 @@ constexpr std::size_t many_reports = 30;
 constexpr double repeated_part = 0.05;  // of a device's reports: less is damage
 constexpr double burst_part = 0.4;      // of the intervals, that are a fifth of the mean or less
 constexpr double short_interval = 0.2;
+constexpr double least_summed_part = 0.25;  // of the times: with less there is no power record
 
 /// One device, and what it reports more than once at one time.
 struct Device {
@@ -78,9 +79,12 @@ void judge_ids(const std::vector<Device>& devices, std::string_view message, Dev
     for (const auto& device : devices) {
         const auto [reports, differing] = repetition_of(device);
         if (static_cast<double>(reports) > repeated_part * static_cast<double>(device.track.time_s.size())) {
-            if (2 * differing > reports) {
-                sum.ambiguity = fmt::format("{} {} reports different values at one time: several devices under one id",
-                                            message, device.id);
+            const auto often = static_cast<double>(device.repeated.back().time_s.size()) >
+                               repeated_part * static_cast<double>(device.track.time_s.size());
+            if (2 * differing > reports || (often && device.repeated.size() > 1)) {
+                sum.ambiguity = fmt::format("{} {} reports {} times at one time{}: several devices under one id",
+                                            message, device.id, device.repeated.size() + 1,
+                                            2 * differing > reports ? ", and differently" : "");
             } else if (devices.size() == 1) {
                 sum.notes.push_back(fmt::format(
                     "{} {} reports up to {} times at one time: doubled lines, or several devices under one id; counted "
@@ -155,6 +159,11 @@ DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, st
     sum.track = devices.front().track;
     const double clock_s = usual_interval_s(sum.track.time_s);
     for (std::size_t d = 1; d < devices.size(); ++d) add_device(sum.track, devices[d], clock_s, message, sum.notes);
+    if (static_cast<double>(sum.track.time_s.size()) < least_summed_part * static_cast<double>(most)) {
+        sum.ambiguity = sum.notes.back();
+        sum.track = {};
+        return sum;
+    }
     sum.track.device.clear();
     sum.track.source = fmt::format("{}, summed over {} devices", sum.track.source, devices.size());
     return sum;

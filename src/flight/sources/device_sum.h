@@ -11,14 +11,15 @@ namespace flightwatt::flight {
 /// What several devices (ESCs, circuits) report one at a time, in sum.
 struct DeviceSum {
     Track track;                     ///< on the clock of the device that reports most; empty if none does
-    std::string ambiguity;           ///< why they cannot be summed: one id stands for several devices
+    std::string ambiguity;           ///< why there is no sum: one id stands for several devices, one is mostly silent
     std::vector<std::string> notes;  ///< devices that fall silent, that hardly report, that come in bursts
 };
 
 /// Sum over the devices of `message` that report `name`. There is a value where every device reports: not where one is
 /// silent for longer than five of its usual intervals, or longer than three before its first or after its last report.
 /// A device with less than 1 % of the most frequent one's reports (or 3 of 30) is none. Several reports at one time
-/// under one id that differ are several devices: no sum. `source` says of how many.
+/// under one id that differ, or three and more, are several devices: no sum; nor is one where all report at less than a
+/// quarter of the times. `source` says of how many.
 DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message);
 
 /// Several reports of one device at one time are tracks of their own: "0", "0~2" for the second, "0~3" ...

@@ -104,7 +104,7 @@ TEST(PowerWarnings, TellOfUnitsThatNoPackHas) {
     const auto by_a_hundredth = with_energy(true, [](test::Words& words, int) {
         for (const auto field : {current, power, charge, energy}) scale(words, field, 0.01);
     });
-    EXPECT_THAT(test::said_of(by_a_hundredth), HasSubstr("nothing flies on that"));
+    EXPECT_THAT(test::said_of(by_a_hundredth), HasSubstr("hardly anything flies on that"));
 }
 
 TEST(PowerWarnings, TellOfASensorThatFails) {

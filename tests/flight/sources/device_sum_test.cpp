@@ -54,7 +54,8 @@ TEST(DeviceSum, HasNoValueWhereAMotorIsSilent) {
         const bool is_silent = motor == 3 && time_s > 300.0 && time_s < 400.0;
         return is_silent ? "" : line(time_s, sender, fields, motor);
     });
-    EXPECT_THAT(test::said_of(loaded), AllOf(HasSubstr("ESC 3 is silent at 80 of 628 times"), HasSubstr("1 gap in the power, 10")));
+    EXPECT_THAT(test::said_of(loaded),
+                AllOf(HasSubstr("ESC 3 is silent at 80 of 628 times"), HasSubstr("1 gap in the power, 10")));
     const auto power = power_track(loaded.series);
     EXPECT_TRUE(std::ranges::none_of(power.time_s, [](double t) { return t > 310.0 && t < 390.0; }));
 }
@@ -73,7 +74,16 @@ TEST(DeviceSum, IsRefusedWhereOneIdStandsForSeveralMotors) {
                         return line(time_s, sender, fields, 0);
                     });
                 }),
-                HasSubstr("ESC 0 reports different values at one time: several devices under one id"));
+                HasSubstr("ESC 0 reports 4 times at one time, and differently: several devices under one id"));
+}
+
+TEST(DeviceSum, IsRefusedWhereAMotorIsSilentFromTheGroundOn) {
+    EXPECT_THAT(test::rejected([] {
+                    with_motors([](int motor, double time_s, const std::string& sender, const std::string& fields) {
+                        return motor == 3 && time_s > 60.0 ? "" : line(time_s, sender, fields, motor);
+                    });
+                }),
+                HasSubstr("ESC 3 is silent at"));
 }
 
 TEST(DeviceSum, IsDoubtedWhereOneIdComesInBursts) {
@@ -88,6 +98,14 @@ TEST(DeviceSum, TakesEqualReportsAtOneTimeOnceAndSaysSo) {
         return motor > 0 ? "" : line(time_s, sender, fields, 0) + line(time_s, sender, fields, 0);
     });
     EXPECT_THAT(test::said_of(loaded), HasSubstr("ESC 0 reports up to 2 times at one time"));
+    EXPECT_THAT(test::rejected([] {
+                    with_motors([](int motor, double time_s, const std::string& sender, const std::string& fields) {
+                        if (motor > 0) return std::string();
+                        const auto once = line(time_s, sender, fields, 0);
+                        return once + once + once + once;
+                    });
+                }),
+                HasSubstr("ESC 0 reports 4 times at one time: several devices under one id"));
 }
 
 }  // namespace
