@@ -62,13 +62,14 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
 }
 
 int make_plan(const cli::StageCall& call, const MissionFile& file) {
+    const auto chance = probability(call);
     const auto mission = file.read();
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
         throw InputError({setup_of(mission).file}, "the mission has a schedule already: there is nothing to plan",
                          "add [plan], and what [[schedule]] says is fixed and the rest planned");
     }
-    const auto plan = plan_mission(*problem, probability(call));
+    const auto plan = plan_mission(*problem, chance);
     if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
     const auto text = describe(plan, *problem);
     // The files that the result names are found from where it will stand.
