@@ -6,9 +6,11 @@
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -163,6 +165,53 @@ TEST_F(HostileInput, IsABomb) {
     results_with((folder / "bomb.data.zst").string());
     const auto parsed = test::run_shell("flightwatt parse bomb.data.zst --max-log-mb 3", folder);
     EXPECT_THAT(parsed.err, HasSubstr("bomb.data.zst: error: unpacks to more than 3 MB"));
+}
+
+/// Each is segmented to see whether it flew.
+TEST_F(HostileInput, IsALogOfManyAircraft) {
+    std::string text;
+    for (int i = 0; i < 40; ++i) {
+        const auto sender = 100 + i % 20 + (i >= 20 ? 20 : 0);
+        text += fmt::format("{0} {1} ENERGY 69 11.7 3.1 36.6 0.03 0.31\n{0} {1} ESTIMATOR 1 0\n", 0.1 * i, sender);
+    }
+    test::write_text(folder / "many.data", text);
+    const auto result = test::run_shell("flightwatt segment many.data", folder);
+    EXPECT_EQ(result.code, 3);
+    EXPECT_THAT(result.err,
+                HasSubstr("many.data: error: 40 senders may be aircraft: 100, 101, 102, 103, 104, 105, 106, "
+                          "107, 108, 109, 110, 111 ... and 28 more; choose one with --aircraft ID"));
+}
+
+/// Each phase is looked up among all samples.
+TEST_F(HostileInput, IsALogOfManySorties) {
+    std::string text;
+    for (int i = 0; i < 120000; ++i) {
+        const bool flies = i / 50 % 2 == 1;
+        text += fmt::format("{0:.1f} 1 ESTIMATOR {1} 0\n{0:.1f} 1 ENERGY {2} 12 1 12 1 1\n", 6.4 * i, flies ? 100 : 0,
+                            flies ? 50 : 0);
+    }
+    test::write_text(folder / "many.data", text);
+    const auto result = test::run_shell("flightwatt segment many.data", folder);
+    EXPECT_EQ(result.code, 3);
+    EXPECT_THAT(result.err, HasSubstr("many.data: error: 1200 sorties in 120000 samples of power; is it the log of one "
+                                      "flight? Split it, or choose one with --sortie N"));
+    EXPECT_EQ(test::run_shell("flightwatt segment many.data --sortie 3 -o phases.csv", folder).code, 0);
+}
+
+/// Ended by SIGBUS, and the batch with it. When it is cut is left to chance: any moment must do.
+TEST_F(HostileInput, IsCutWhileABatchReadsIt) {
+    const auto log = read_file(folder / "opterra_synthetic_01.data");
+    std::filesystem::create_directory(folder / "in");
+    test::write_text(folder / "in" / "sound.data", log);
+    for (int round = 0; round < 6; ++round) {
+        test::write_text(folder / "in" / "cut.data", repeated(log, 60));
+        const auto batch = test::start_program("flightwatt-batch", {"in", "-o", "out", "--jobs", "2"}, folder);
+        std::this_thread::sleep_for(std::chrono::milliseconds(8 * round));
+        std::filesystem::resize_file(folder / "in" / "cut.data", 5000);
+        EXPECT_THAT(test::exit_code_of(batch), AnyOf(0, 3));
+        EXPECT_TRUE(std::filesystem::exists(folder / "out" / "flights" / "sound.series.csv"));
+        EXPECT_TRUE(std::filesystem::exists(folder / "out" / "model.toml"));
+    }
 }
 
 /// Numbers that no option means.
