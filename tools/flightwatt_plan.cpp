@@ -70,6 +70,7 @@ void note_sources(const cli::StageCall& call, const mission::MissionSetup& missi
 }
 
 int make_plan(const cli::StageCall& call, const MissionFile& file) {
+    const auto chance = probability(call);
     const auto mission = file.read();
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
@@ -77,7 +78,7 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
                          "add [plan], and what [[schedule]] says is fixed and the rest planned");
     }
     cli::warn_of_setup(call, *problem);
-    const auto plan = plan_mission(*problem, probability(call));
+    const auto plan = plan_mission(*problem, chance);
     if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
     const auto text = describe(plan, *problem);
     // The files that the result names are found from where it will stand.

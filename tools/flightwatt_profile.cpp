@@ -74,8 +74,9 @@ void apply_options(const cli::StageCall& call, compute::ProfileSpecification& sp
     if (const auto sysfs = call.maybe<std::string>("sysfs")) {
         std::error_code error;
         if (!std::filesystem::is_directory(*sysfs, error)) {
+            const bool is_absent = !error || error == std::errc::no_such_file_or_directory;
             throw UsageError(
-                fmt::format("--sysfs {}: {}", *sysfs, error ? error.message() : "there is no such folder"));
+                fmt::format("--sysfs {}: {}", *sysfs, is_absent ? "there is no such folder" : error.message()));
         }
         sampler.sysfs = *sysfs;
     }

@@ -120,7 +120,14 @@ void write_figure_files(const cli::StageCall& call, const std::vector<report::Se
     if (files.has_svg && !files.has_pdf) cli::warn(call, "rsvg-convert is not there: no PDF was made");
 }
 
+/// Before any work, and whether they will be needed or not.
+void refuse_bad_numbers(const cli::StageCall& call) {
+    for (const auto* option : {"max-validation-flights", "max-battery-flights"}) cli::count_option(call, option);
+    cli::positive_option(call, "capacity", "Ah");
+}
+
 int write_page(const cli::StageCall& call) {
+    refuse_bad_numbers(call);
     const auto inputs = read_inputs(call);
     Page page{{"FlightWatt report", {}, {}}, {}};
     if (const auto title = call.maybe<std::string>("title")) page.head.title = report::valid_utf8(*title);

@@ -10,15 +10,13 @@
 #include <algorithm>
 #include <new>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
-
-/// Each is segmented to see whether it flew.
-constexpr std::size_t most_candidates = 32;
 
 /// The messages of a log, the most frequent first: "GPS 310, ALIVE 12, ...".
 std::string census(const FlightFile& file) {
@@ -71,6 +69,15 @@ void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::str
 
 std::string parenthesised(const std::string& text) { return text.empty() ? "" : fmt::format(" ({})", text); }
 
+/// What is told of each phase goes over all samples: a log of a day with twenty sorties at 10 Hz has 17 million.
+void refuse_endless_work(const FlightSeries& series, const FlightPhases& phases) {
+    constexpr std::size_t most_work = 100'000'000;
+    const auto samples = power_track(series).time_s.size();
+    if (phases.sorties.size() * samples <= most_work) return;
+    throw InputError({series.file}, fmt::format("{} sorties in {} samples of power", phases.sorties.size(), samples),
+                     "is it the log of one flight? Split it, or choose one with --sortie N");
+}
+
 std::string exclusion_of(const LoadedFlight& flight, const LoadOptions& options) {
     if (options.excluded.contains(flight.series.flight)) return "--exclude names it";
     if (!flight.lacks_power.empty()) return flight.lacks_power;
@@ -92,6 +99,28 @@ void warn_of_missing_ends(LoadedFlight& loaded) {
     }
 }
 
+/// Each is segmented to see whether it flew, and holds what was skipped of the whole log.
+std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
+    constexpr std::size_t most_candidates = 32;
+    constexpr std::size_t most_skips = 10'000'000;
+    auto senders = telemetry_senders(log);
+    if (senders.empty()) senders.emplace_back();
+    auto skipped = std::exchange(log.skipped, {});
+    std::size_t skips = 0;
+    for (const auto& kind : skipped) skips += kind.lines.size();
+    if (senders.size() > most_candidates || (senders.size() > 1 && skips * senders.size() > most_skips)) {
+        throw InputError({log.data_file.string()},
+                         fmt::format("{} senders may be aircraft: {}", senders.size(), short_list(senders)),
+                         "choose one with --aircraft ID");
+    }
+    std::vector<FlightSeries> candidates;
+    for (const auto& sender : senders) {
+        candidates.push_back(flight_series(log, sender));
+        candidates.back().skipped = &sender == &senders.back() ? std::move(skipped) : skipped;
+    }
+    return candidates;
+}
+
 std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
     std::vector<FlightSeries> candidates;
     std::vector<std::string> ids;
@@ -100,13 +129,9 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
         ids.push_back(candidates.front().aircraft_id);
         if (!aircraft_id || ids.front().empty() || ids.front() == *aircraft_id) return candidates;
     } else {
-        const auto log = read_log(file);
+        auto log = read_log(file);
         for (const auto& sender : log.senders) ids.push_back(sender.id);
-        if (!aircraft_id) {
-            for (const auto& id : telemetry_senders(log)) candidates.push_back(flight_series(log, id));
-            if (candidates.empty()) candidates.push_back(flight_series(log, ""));
-            return candidates;
-        }
+        if (!aircraft_id) return all_candidates(std::move(log));
         if (std::find(ids.begin(), ids.end(), *aircraft_id) != ids.end()) {
             return {flight_series(log, *aircraft_id)};
         }
@@ -148,13 +173,6 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
 
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
     if (candidates.size() == 1) return std::move(candidates.front());
-    if (candidates.size() > most_candidates) {
-        std::vector<std::string> senders;
-        for (const auto& candidate : candidates) senders.push_back(candidate.aircraft_id);
-        throw InputError({candidates.front().file},
-                         fmt::format("{} senders may be aircraft: {}", candidates.size(), short_list(senders)),
-                         "choose one with --aircraft ID");
-    }
     std::vector<Sighting> sightings(candidates.size());
     std::ranges::transform(candidates, sightings.begin(), look_at);
     const bool any = std::ranges::any_of(sightings, &Sighting::flew);
@@ -185,6 +203,7 @@ LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
     if (can_segment) loaded.phases = segment(series, options.segmentation);
     if (options.flight_required) require_sortie(series, loaded.phases, series.file);
     if (options.sortie) restrict_to_sortie(loaded.phases, *options.sortie, series.file);
+    if (options.flight_required) refuse_endless_work(series, loaded.phases);
     loaded.power.origin = series.current_origin;
     if (can_segment && has_power) loaded.power = check_power_record(series, loaded.phases, options.segmentation);
     if (options.correct_idle_offset && has_power) correct_idle_offset(series, loaded.power.idle);

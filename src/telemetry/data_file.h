@@ -11,9 +11,9 @@
 
 namespace flightwatt::telemetry {
 
-/// What a compressed log may unpack to, and a series hold, unless told: some ten hours of flight at fifty messages a
-/// second. More is refused, as reading takes up to seven times as much memory.
-inline constexpr std::size_t usual_most_log_bytes = 128'000'000;
+/// What a compressed log may unpack to, and a series hold, unless told: some ten hours of flight. More is refused, as
+/// reading takes up to nine times as much memory.
+inline constexpr std::size_t usual_most_log_bytes = 100'000'000;
 
 /// The text of a .data file: mapped, or decompressed into memory (.gz, .bz2, .xz, .zst, told by content).
 /// Throws InputError for a missing file, a folder, an empty file, a ZIP archive, broken compression, or one that

@@ -57,7 +57,7 @@ void add_flight_options(po::options_description& options) {
     add("ground-fraction", number("X", defaults.ground_fraction, "0.025"),
         "below this fraction of the flight's height it is on the ground");
     add("flight-height", number("M", defaults.flight_height_m, "10"), "what stays below this height [m] is no flight");
-    add("max-log-mb", value("MB")->default_value("128"),
+    add("max-log-mb", value("MB")->default_value("100"),
         "refuse a compressed log that unpacks to more, and a larger series file");
     options.add(group);
 }

@@ -49,6 +49,11 @@ TEST(PowprofilerConfig, RefusesWhatIsNoCombination) {
     EXPECT_EQ(of("[component.a]\nrange=4,1,1\n"),
               "c.cfg:2: range = 4,1,1 is empty or endless; min is 0 or more, max not less, step more than 0, n of "
               "pow(n) more than 1");
+    for (const std::string endless :
+         {"0,1e9,1e-9", "0,1e308,1e-308", "1,1e300,pow(1.0000001)", "0,1e300,pow(1.001)", "1e-300,1e300,pow(1.01)"}) {
+        EXPECT_EQ(of("[component.a]\nrange=" + endless + "\n"),
+                  "c.cfg:2: range = " + endless + " makes too many values");
+    }
     EXPECT_EQ(of("[component.a]\nrange=1,4,pow(1)\n").substr(0, 30), "c.cfg:2: range = 1,4,pow(1) is");
     EXPECT_EQ(of("[component.a]\nsource=b\n"),
               "c.cfg:2: unknown property 'source' of a component; known are src, range, fixed and runtime");
