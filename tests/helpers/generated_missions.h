@@ -139,7 +139,11 @@ class MissionGenerator {
         problem.battery.capacity_ah /=
             between(60.0, 85.0) / (100.0 - simulate(flown).summary.final_soc_percent.value());
         flown.battery.capacity_ah = problem.battery.capacity_ah;
-        const double least_percent = left_percent();
+        double least_percent = left_percent();
+        while (least_percent < 10.0) {  // too many fail
+            flown.battery.capacity_ah = problem.battery.capacity_ah *= 1.2;
+            least_percent = left_percent();
+        }
         for (auto& segment : flown.schedule) segment.run.front().qos = {fps_.back()};
         const double most_percent = std::max(left_percent(), 0.0);
         problem.reserve_soc_percent = most_percent + between(0.3, 0.7) * (least_percent - most_percent);

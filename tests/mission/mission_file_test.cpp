@@ -184,7 +184,7 @@ const BadMission bad_missions[] = {
     {"= 90", "= 100.5", "m.toml:5:1: initial_soc_percent = 100.5, expected more than 0 and at most 100"},
     {"= 90", "= \"90\"", "m.toml:5:23: 'initial_soc_percent' is a TOML string, expected a finite number"},
     {"initial_soc", "capacity_ah = 0\ninitial_soc",
-     "m.toml:5:1: capacity_ah = 0, expected more than 0 and at most 1000000"},
+     "m.toml:5:1: capacity_ah = 0, expected 0.001 to 1000000"},
     {"initial_soc", "reserve_soc_percent = 101\ninitial_soc",
      "m.toml:5:1: reserve_soc_percent = 101, expected 0 to 100"},
     {"initial_soc", "cutoff_voltage_v = -1\ninitial_soc", "m.toml:5:1: cutoff_voltage_v = -1, expected 0 to 1000000"},
@@ -266,6 +266,40 @@ const BadMission bad_missions[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(MissionFile, BadMissions, testing::ValuesIn(bad_missions));
+
+TEST(MissionFile, SaysWhyAFileCannotBeLookedFor) {
+    const auto folder = mission_folder();
+    const std::string name(300, 'x');
+    const auto text = rejected(
+        [&] {
+            parse_mission("mechanical = \"none\"\nduration_s = { takeoff = 0, cruise = 1, landing = 0 }\nbattery = \"" +
+                              name + "\"\n",
+                          folder / "m.toml");
+        },
+        folder);
+    EXPECT_EQ(text, "m.toml:3:1: battery: cannot look for " + name +
+                        ": File name too long; paths are relative to the mission file");
+}
+
+TEST(MissionFile, RemembersWhatItStates) {
+    const auto folder = mission_folder();
+    const auto setup = [&](const std::string& more) {
+        const auto mission = parse_mission(
+            "mechanical = \"opterra.toml\"\nbattery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }\n" + more,
+            folder / "m.toml");
+        return setup_of(mission);
+    };
+    const auto bare = setup("");
+    EXPECT_FALSE(bare.capacity_is_stated || bare.may_charge);
+    for (const bool stated : bare.duration_is_stated.values) EXPECT_FALSE(stated);
+    const auto stated = setup("duration_s = { cruise = 600 }\ncapacity_ah = 2\nmay_charge = true\n");
+    EXPECT_TRUE(stated.capacity_is_stated && stated.may_charge && stated.duration_is_stated[flight::Phase::cruise]);
+    EXPECT_FALSE(stated.duration_is_stated[flight::Phase::landing]);
+    const auto asked = parse_mission(
+        "mechanical = \"opterra.toml\"\nbattery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }\n",
+        folder / "m.toml", {false, 500.0});
+    EXPECT_TRUE(setup_of(asked).duration_is_stated[flight::Phase::cruise]) << "the question states it";
+}
 
 TEST(MissionFile, RefusesAMissionThatDoesNotFitItsParts) {
     const auto folder = mission_folder();

@@ -166,6 +166,7 @@ TEST(Simulation, BeginsWithTheInitialCharge) {
 TEST(Simulation, ChargesOnNegativePowerAndStaysBelowFull) {
     const battery::Battery pack{"", 10.0, 0.01, 1.0};
     auto mission = flight(-10.0, 360.0, pack);
+    mission.may_charge = true;
     EXPECT_EQ(*simulate(mission).summary.final_soc_percent, 100.0);
     mission.initial_soc_percent = 50.0;
     const auto summary = simulate(mission).summary;

@@ -11,6 +11,8 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double shortest_phase_s = 1e-3;
+constexpr double least_capacity_ah_of_a_pack = 1e-3;  // below, it is a mistake in the unit
+constexpr double largest_sd_percent = 1000.0;
 constexpr double longest_phase_s = 1e7;  // a third of a year: beyond, it is a mistake in the unit
 
 /// The file that a key names, relative to the mission file.
@@ -119,8 +121,11 @@ void read_mission_battery(const TomlTable& root, MissionSetup& mission) {
     auto& battery = mission.battery;
     battery = root.is_table("battery") ? battery::battery_from(root.table("battery"))
                                        : battery::read_battery(file_of(root, "battery"));
-    const auto capacity_ah = optional_number_in(more_than_up_to(0.0, 1e6), root, "capacity_ah");
+    const auto capacity_ah = optional_number_in(between(least_capacity_ah_of_a_pack, 1e6), root, "capacity_ah");
     mission.capacity_is_stated = capacity_ah.has_value();
+    if (!capacity_ah && battery.capacity_ah < least_capacity_ah_of_a_pack)
+        throw InputError(root.where("battery"), fmt::format("the battery holds {:.3g} Ah", battery.capacity_ah),
+                         fmt::format("expected {} Ah or more", least_capacity_ah_of_a_pack));
     if (!capacity_ah) return;
     battery.capacity_ah = *capacity_ah;
     battery.intervals.capacity_ah.reset();  // that was of the other capacity
@@ -153,15 +158,16 @@ void read_components(const TomlTable& root, MissionSetup& mission) {
     }
 }
 
-std::optional<double> optional_sd(const TomlTable& table, std::string_view key) {
-    return optional_number_in(at_least(0.0), table, key);
+std::optional<double> optional_sd_percent(const TomlTable& table, std::string_view key) {
+    return optional_number_in(between(0.0, largest_sd_percent), table, key);
 }
 
-PerPhase<std::optional<double>> read_phases(const TomlTable& uncertainty, std::string_view key) {
+PerPhase<std::optional<double>> read_phases(const TomlTable& uncertainty, std::string_view key, double largest) {
     PerPhase<std::optional<double>> phases;
     const auto table = uncertainty.optional_table(key);
     if (!table) return phases;
-    for (const auto phase : all_phases) phases[phase] = optional_sd(*table, to_string(phase));
+    for (const auto phase : all_phases)
+        phases[phase] = optional_number_in(between(0.0, largest), *table, to_string(phase));
     table->refuse_unknown_keys();
     return phases;
 }
@@ -176,12 +182,12 @@ Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeMod
         throw InputError(table->where("level_sd_percent"), "level_sd_percent has no meaning with mechanical = \"none\"",
                          "leave it out");
     }
-    read.level_sd_percent = read_phases(*table, "level_sd_percent");
-    read.duration_sd_s = read_phases(*table, "duration_sd_s");
-    read.capacity_sd_percent = optional_sd(*table, "capacity_sd_percent");
+    read.level_sd_percent = read_phases(*table, "level_sd_percent", largest_sd_percent);
+    read.duration_sd_s = read_phases(*table, "duration_sd_s", longest_phase_s);
+    read.capacity_sd_percent = optional_sd_percent(*table, "capacity_sd_percent");
     if (const auto components = table->optional_table("compute_sd_percent")) {
         for (std::size_t i = 0; i < compute.components.size(); ++i)
-            read.compute_sd_percent[i] = optional_sd(*components, compute.components[i].name);
+            read.compute_sd_percent[i] = optional_sd_percent(*components, compute.components[i].name);
         components->refuse_unknown_keys();
     }
     return read;

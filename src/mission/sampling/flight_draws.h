@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mission/mission.h"
+#include "mission/mission_summary.h"
 
 #include <cstdint>
 #include <span>

@@ -13,7 +13,7 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr std::size_t samples = 4000;
+constexpr std::size_t samples = 2000;
 
 double share_below(const Mission& mission) {
     return sample_flights({mission, mission.schedule, std::nullopt}, {}, {samples, 11, 0}).probability_below_reserve;

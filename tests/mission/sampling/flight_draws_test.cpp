@@ -40,5 +40,47 @@ TEST(FlightDraws, TakeWhatTheModelsKnow) {
     EXPECT_NEAR(std::sqrt(power_square_sum / flights), 0.5, 0.025);
 }
 
+TEST(FlightDraws, LeaveAloneWhatTheMissionStates) {
+    auto mission = test::paper_mission("phased");
+    for (const double duration_s : {570.0, 630.0}) {
+        mechanical::FlightContribution flight;
+        flight.phases[flight::Phase::cruise] = mechanical::PhaseContribution{0.5, duration_s, 1.0, 100};
+        mission.mechanical->flights.push_back(flight);
+    }
+    mission.battery.intervals.capacity_ah = battery::Interval{3.0, 3.3};
+    EXPECT_GT(find_spreads(mission).duration_sd_s[flight::Phase::cruise], 0.0);
+    mission.duration_is_stated[flight::Phase::cruise] = true;
+    mission.capacity_is_stated = true;
+    auto spreads = find_spreads(mission);
+    EXPECT_EQ(spreads.duration_sd_s[flight::Phase::cruise], 0.0);
+    EXPECT_EQ(draw_flight(mission, spreads, 1, 1).battery.capacity_ah, mission.battery.capacity_ah);
+    const auto said = describe(spreads.sources);
+    EXPECT_NE(said.find("not drawn: "), std::string::npos);
+    EXPECT_NE(said.find("cruise duration (fixed, as the mission states it without duration_sd_s)"), std::string::npos);
+    EXPECT_NE(said.find("capacity (fixed, as the mission states capacity_ah without capacity_sd_percent)"),
+              std::string::npos);
+    mission.uncertainty.duration_sd_s[flight::Phase::cruise] = 7.0;
+    mission.uncertainty.capacity_sd_percent = 2.0;
+    spreads = find_spreads(mission);
+    EXPECT_EQ(spreads.duration_sd_s[flight::Phase::cruise], 7.0);
+    EXPECT_NE(draw_flight(mission, spreads, 1, 1).battery.capacity_ah, mission.battery.capacity_ah);
+}
+
+TEST(FlightDraws, CopyFasterWithoutEvidenceAndFlyTheSame) {
+    auto mission = test::paper_mission("phased");
+    mission.uncertainty.capacity_sd_percent = 2.0;
+    mission.compute.components[0].profile.standard_error_w.assign(mission.compute.components[0].profile.power_w.size(),
+                                                                  0.2);
+    const auto spreads = find_spreads(mission);
+    const auto lean = without_evidence(mission);
+    EXPECT_EQ(count_normals(lean), count_normals(mission));
+    const auto whole = draw_flight(mission, spreads, 3, 4);
+    const auto same = draw_flight(lean, spreads, 3, 4);
+    EXPECT_EQ(whole.battery.capacity_ah, same.battery.capacity_ah);
+    EXPECT_EQ(whole.compute.components[0].profile.power_w, same.compute.components[0].profile.power_w);
+    EXPECT_EQ(whole.mechanical->phases[flight::Phase::cruise].fourier.a0_w,
+              same.mechanical->phases[flight::Phase::cruise].fourier.a0_w);
+}
+
 }  // namespace
 }  // namespace flightwatt::mission
