@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/file_use.h"
 #include "flight/chosen_track.h"
+#include "flight/flight_identity.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"
 
@@ -32,6 +33,13 @@ telemetry::TelemetryLog read_log(const FlightFile& file) {
     std::optional<telemetry::LogConfiguration> configuration;
     if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
     return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
+}
+
+/// A synthetic log says in its first line what its .log says by the aircraft's name.
+void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidates) {
+    if (file.text().substr(0, file.text().find('\n')).find("INFO_MSG \"SYNTHETIC:") == std::string_view::npos) return;
+    for (auto& series : candidates)
+        if (series.aircraft_name.empty()) series.aircraft_name = unnamed_synthetic;
 }
 
 /// Altitude and throttle alone, on the altitude's clock: enough to see whether an aircraft flew.
@@ -95,10 +103,13 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
         if (!aircraft_id) {
             for (const auto& id : telemetry_senders(log)) candidates.push_back(flight_series(log, id));
             if (candidates.empty()) candidates.push_back(flight_series(log, ""));
+            name_synthetic(file, candidates);
             return candidates;
         }
         if (std::find(ids.begin(), ids.end(), *aircraft_id) != ids.end()) {
-            return {flight_series(log, *aircraft_id)};
+            candidates.push_back(flight_series(log, *aircraft_id));
+            name_synthetic(file, candidates);
+            return candidates;
         }
     }
     throw InputError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),
