@@ -2,10 +2,12 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_use.h"
 #include "base/signal_watch.h"
 #include "batch/batch_files.h"
 #include "batch/batch_fit.h"
 #include "batch/batch_run.h"
+#include "batch/manifest.h"
 #include "batch/write_guard.h"
 #include "cli/numeric_options.h"
 #include "cli/output/fit_options.h"
@@ -14,6 +16,7 @@
 #include "cli/output/json_text.h"
 #include "cli/progress.h"
 #include "cli/stage.h"
+#include "telemetry/log_configuration.h"
 
 #include <algorithm>
 #include <atomic>
@@ -43,7 +46,10 @@ batch::BatchProgress progress_of(const cli::StageCall& call, BatchProgressState&
             state.bar->show(done, all);
             return;
         }
-        const auto* what = !flight.record.accepted ? "rejected" : flight.was_up_to_date ? "up to date" : "done";
+        const auto* what = !flight.record.accepted ? "rejected"
+                           : flight.is_kept        ? "kept, its log is gone"
+                           : flight.was_up_to_date ? "up to date"
+                                                   : "done";
         cli::note(call, fmt::format("[{}/{}] {}: {}", done, all, flight.record.flight, what));
     };
 }
@@ -70,7 +76,8 @@ void report_notes(const cli::StageCall& call, const std::vector<batch::BatchFlig
 
 /// On failure no model of an earlier run stays behind to be taken for this one's.
 void remove_model(const std::filesystem::path& out) {
-    for (const auto* name : batch::model_names) std::filesystem::remove(out / name);
+    std::error_code ignored;
+    for (const auto* name : batch::model_names) std::filesystem::remove(out / name, ignored);
 }
 
 /// Fits what the batch accepted. Takes the samples out of `flights`: of thousands, two copies are too many.
@@ -90,6 +97,18 @@ batch::BatchFit fit_batch(const cli::StageCall& call, std::vector<batch::BatchFl
         remove_model(out);
         throw;
     }
+}
+
+/// One model of several aircraft is a model of none.
+void refuse_mix(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights,
+                const std::filesystem::path& out) {
+    const auto mix = call.has("mix-aircraft") ? "" : mix_of(flights);
+    if (mix.empty()) return;
+    remove_model(out);
+    throw NoAnswerError(
+        fmt::format("the catalogue is written, and no model: the flights are of several aircraft: {}; "
+                    "--exclude flights, or fit all as if they were of one with --mix-aircraft",
+                    mix));
 }
 
 nlohmann::ordered_json summary_json(const std::vector<batch::BatchFlight>& flights,
@@ -118,62 +137,125 @@ batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechani
 /// Writes the model and its Table I as files.
 void write_model(const batch::BatchFit& fit, const TextTable& table, const batch::BatchOptions& options) {
     const batch::WriteGate::Pass pass(*options.gate);
-    for (const auto* name : batch::table_names) write_file_atomically(options.out / name, cli::table_text(table, name));
+    for (const auto* name : batch::table_names) {
+        write_file_atomically(options.out / name, cli::table_text(table, name), options.out / batch::unfinished_folder);
+    }
     write_batch_fit(fit, options.out);
 }
 
-/// What follows the logs: the catalogue and the fit. Returns the exit code.
+/// 3 if a log of this run was rejected.
+int exit_code(const cli::StageCall& call, std::size_t rejected, std::size_t logs) {
+    if (rejected == 0) return cli::ok;
+    cli::note(call, fmt::format("{} of {} logs rejected; the others are done", rejected, logs));
+    return cli::input_rejected;
+}
+
+/// What follows the logs: the catalogue and the fit. Everything is written before anything is shown, so that a
+/// standard output that nobody reads loses nothing. Returns the exit code.
 int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, const batch::BatchOptions& options,
            const std::optional<mechanical::MechanicalModel>& published) {
+    const auto copies = exclude_copies(flights);
     report_notes(call, flights);
     {
         const batch::WriteGate::Pass pass(*options.gate);
-        write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights));
+        write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
+                              options.out / batch::unfinished_folder);
     }
-    if (!call.json) cli::print(to_text(flights_table(flights)));
-    const auto rejected = std::ranges::count_if(flights, [](const auto& flight) { return !flight.record.accepted; });
-    if (static_cast<std::size_t>(rejected) == flights.size()) {
-        remove_model(options.out);
-        throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", rejected));
+    const auto shown = to_text(flights_table(flights));
+    const auto is_rejected = [](const auto& flight) { return !flight.record.accepted; };
+    const auto of_this_run = std::ranges::count_if(flights, &batch::BatchFlight::is_of_this_run);
+    const auto rejected = std::ranges::count_if(
+        flights, [&](const auto& flight) { return flight.is_of_this_run && is_rejected(flight); });
+    try {
+        if (std::ranges::all_of(flights, is_rejected)) {
+            remove_model(options.out);
+            throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", flights.size()));
+        }
+        refuse_mix(call, flights, options.out);
+        auto fit = fit_batch(call, flights, options.out);
+        fit.copies = copies;
+        fit.excluded = options.load.excluded;
+        fit.keep = options.load.keep;
+        const auto table = cli::table_of(fit.model, published);
+        write_model(fit, table, options);
+        warn_of_model(call, fit.model);
+        cli::print(call.json ? cli::json_text(summary_json(flights, fit.model)) : shown + "\n" + to_text(table));
+    } catch (const InputError&) {
+        if (!call.json) cli::print(shown);
+        throw;
+    } catch (const NoAnswerError&) {
+        if (!call.json) cli::print(shown);
+        throw;
     }
-    auto fit = fit_batch(call, flights, options.out);
-    fit.excluded = options.load.excluded;
-    fit.keep = options.load.keep;
-    const auto& model = fit.model;
-    const auto table = cli::table_of(model, published);
-    write_model(fit, table, options);
-    warn_of_model(call, model);
-    if (call.json)
-        cli::print(cli::json_text(summary_json(flights, model)));
-    else
-        cli::print("\n" + to_text(table));
-    if (rejected > 0) {
-        cli::note(call, fmt::format("{} of {} logs rejected; the others are done", rejected, flights.size()));
-        return cli::input_rejected;
-    }
-    return cli::ok;
+    return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
 }
+
+/// What the run will do to the folder, before it does it.
+batch::BatchPlan make_plan(const cli::StageCall& call, const batch::BatchOptions& options) {
+    auto logs = batch::find_logs(call.inputs);
+    for (const auto& log : logs) {
+        note_input(log.path);
+        if (const auto file = telemetry::find_log_file(log.path)) note_input(*file);
+    }
+    auto plan = batch::plan_batch(std::move(logs), options.out, call.has("prune"));
+    refuse_files_of_others(plan, options.out);
+    std::vector<std::string> names(plan.logs.size());
+    std::ranges::transform(plan.logs, names.begin(), &batch::LogFile::flight);
+    cli::refuse_unknown_flights(options.load, names);
+    return plan;
+}
+
+void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
+    if (plan.earlier.is_of_earlier_version) {
+        cli::note(call, fmt::format("{} has no {}: taken for the folder of an earlier version, whose records say that "
+                                    "{} flights in it are the batch's",
+                                    *call.output, batch::manifest_name, plan.earlier.flights.size()));
+    }
+    for (const auto& dropped : plan.dropped) {
+        cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
+    }
+    const auto earlier =
+        std::ranges::count_if(plan.logs, [](const batch::LogFile& log) { return !log.is_of_this_run; });
+    if (earlier == 0) return;
+    cli::note(call,
+              fmt::format("{} flights of earlier runs stay in {}; --prune drops what is not among this run's logs",
+                          earlier, *call.output));
+    for (const auto& log : plan.logs) {
+        if (!log.is_gone) continue;
+        cli::note(call, fmt::format("{}: its log {} is gone; its results are kept as they are", log.flight,
+                                    log.path.string()));
+    }
+}
+
+/// A folder that is removed when all in it is gone.
+struct EmptyAtEnd {
+    std::filesystem::path folder;
+    ~EmptyAtEnd() {
+        std::error_code ignored;
+        std::filesystem::remove(folder, ignored);
+    }
+};
 
 int run_over_logs(const cli::StageCall& call) {
     const auto fit_options = read_fit_options(call);  // refuses bad options before the work
     auto options = read_batch_options(call, fit_options);
     const auto published = cli::read_published(call);
-    const auto logs = batch::find_logs(call.inputs);
-    std::vector<std::string> names(logs.size());
-    std::ranges::transform(logs, names.begin(), &batch::LogFile::flight);
-    cli::refuse_unknown_flights(options.load, names);
+    std::optional<batch::FolderLock> lock;
+    std::error_code none;
+    if (std::filesystem::is_directory(options.out, none)) lock.emplace(options.out);
+    const auto plan = make_plan(call, options);
+    tell_plan(call, plan);
     make_directories(options.out);
-    const batch::FolderLock lock(options.out);
-    for (const auto& dropped : batch::find_dropped(logs, options.out)) {
-        cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
-    }
+    if (!lock) lock.emplace(options.out);
+    prepare_folder(plan, options.out);
+    const EmptyAtEnd unfinished{options.out / batch::unfinished_folder};
     batch::WriteGate gate;
     options.gate = &gate;
     BatchProgressState state;
-    state.all = logs.size();
+    state.all = plan.logs.size();
     if (::isatty(STDERR_FILENO) != 0) state.bar.emplace(stderr, "logs");
     const batch::Interruption interruption(gate, on_signal(call, state));
-    auto flights = run_batch(logs, options, progress_of(call, state));
+    auto flights = run_batch(plan.logs, options, progress_of(call, state));
     if (state.bar) state.bar->clear();
     return finish(call, std::move(flights), options, published);
 }
@@ -186,8 +268,10 @@ int main(int argc, char** argv) {
         R"(Parses and segments every .data log (folders are searched to the bottom) into OUT/flights, several at a
 time, and fits them: OUT/model.toml, OUT/table1.txt, .csv, .md, and OUT/flights.csv, a row a flight and
 phase. Logs whose results are up to date are not done again. A log that cannot be used is reported and the
-others go on; the exit code is then 3. Flights whose log is gone are dropped. Logs of a folder below FOLDER
-that holds a file not-fitted.txt are listed and excluded from the fit; its first line says why.
+others go on; the exit code is then 3. Flights of earlier runs into OUT stay, also those whose log is gone;
+--prune drops what is not among the logs that are given. Nothing in OUT is replaced or removed but what
+OUT/batch.json lists as the batch's. Logs of a folder below FOLDER that holds a file not-fitted.txt are
+listed and excluded from the fit; its first line says why.
 
 SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. However it
 ended, the same command goes on where it stopped and comes to the same results.)"};
@@ -196,7 +280,9 @@ ended, the same command goes on where it stopped and comes to the same results.)
     auto add = stage.options.add_options();
     add("name", cli::value("NAME")->default_value("batch"), "the model's name");
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
+    add("prune", "drop the flights of earlier runs that are not among the logs given");
     add("jobs", cli::value("N")->default_value("0", "one a core"), "logs at a time");
+    cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, run_over_logs);
 }

@@ -120,6 +120,7 @@ whose current was computed from throttle are refused.)"};
         "else a guess after the usual chart of LiPo cells");
     add("cells", cli::value("N"), "cells in series; default: by the highest resting voltage");
     add("name", cli::value("NAME"), "the battery's name; default: FILE's");
+    cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, identify);
 }

@@ -127,6 +127,7 @@ as TOML; with -o it goes to the file and Table I is shown.)"};
         "let the cruise level follow what 'flightwatt validate --covariate all' found to predict it: "
         "airspeed_m_per_s, height_m, wind_m_per_s ...; a mission then states it in [conditions]");
     add("loss", cli::value("HOW")->default_value("none"), "none or huber: how outliers count in the last refinement");
+    cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, fit);
 }

@@ -90,6 +90,7 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
     battery::IdentificationOptions identification;
     identification.capacity_ah = cli::positive_option(call, "capacity", "Ah");
     const auto content = report::read_batch_content(out);
+    for (const auto& damaged : content.damaged) cli::warn(call, damaged);
     page.head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
     page.sections.push_back(
         report::flights_section(content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt));

@@ -110,6 +110,7 @@ whose power is near zero. Bias is predicted less measured.)"};
         "also predict the cruise by what is known before the flight (height_m, initial_voltage_v, "
         "time_to_cruise_s) or in the first 60 s of the cruise (wind_m_per_s, airspeed_m_per_s, "
         "ground_speed_m_per_s, airspeed_cubed_m3_per_s3), or all: one further model by_NAME each");
+    cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, validate_flights);
 }

@@ -14,6 +14,7 @@ namespace flightwatt::batch {
 inline constexpr auto series_ending = ".series.csv";
 inline constexpr auto phases_ending = ".phases.csv";
 inline constexpr auto record_ending = ".record.json";
+inline constexpr std::array result_endings{record_ending, series_ending, phases_ending};
 
 /// What a batch writes into OUT itself; the first one is the catalogue, the others are the fit's.
 inline constexpr auto catalogue_name = "flights.csv";
@@ -24,28 +25,29 @@ inline constexpr std::array table_names{"table1.txt", "table1.csv", "table1.md"}
 inline constexpr std::array model_names{model_name,     model_errors_name, fit_name,
                                         table_names[0], table_names[1],    table_names[2]};
 
-/// A flight of an earlier run whose log is no longer among those of the batch, and what became of it.
-struct DroppedFlight {
-    std::string flight;
-    std::string reason;  ///< "its log is gone", "its log LOG is not in this batch", "it is called NAME now"
-};
+/// The flights that have a record in the folder OUT/flights, by name.
+std::vector<std::string> recorded_flights(const std::filesystem::path& folder);
 
-/// The flights that have a record in OUT/flights and are not among `logs`, by name.
-std::vector<DroppedFlight> find_dropped(const std::vector<LogFile>& logs, const std::filesystem::path& out);
+/// Removes what a batch wrote of a flight.
+void remove_results(const std::filesystem::path& out, const std::string& flight);
 
-/// Removes what earlier runs left in OUT of flights that are not among `logs`, and what killed ones left
-/// unfinished. Files that no batch wrote stay.
-void remove_left_overs(const std::vector<LogFile>& logs, const std::filesystem::path& out);
+/// Of the files that an accepted log left; empty if one is missing.
+std::string results_fingerprint(const std::filesystem::path& out, const std::string& flight);
+
+/// The record of a flight whose files are all as the batch wrote them. Throws InputError for others.
+FlightRecord read_intact_record(const std::filesystem::path& out, const std::string& flight);
 
 /// A log as a batch left it in its folder.
 struct StoredFlight {
     FlightRecord record;
     flight::FlightSeries series;  ///< of an accepted log
     flight::FlightPhases phases;  ///< with the evidence at their edges, which the record does not hold
+    std::string damage = {};      ///< why its files are not used: they are not as the batch wrote them
 };
 
-/// What a batch wrote into OUT, flight by flight, by name. Throws InputError where OUT is no batch's folder,
-/// a record is damaged, or an accepted flight's files are missing or not as the batch writes them.
+/// What a batch wrote into OUT, flight by flight, by name. Throws InputError where OUT is no batch's folder, or the
+/// files of a flight are missing, damaged or changed; where its log is gone too, so that no batch could mend that, the
+/// flight is given as damaged instead.
 std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out);
 
 }  // namespace flightwatt::batch

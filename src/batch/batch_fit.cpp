@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/toml_reader.h"
 #include "batch/batch_files.h"
+#include "batch/manifest.h"
 
 #include <cstddef>
 #include <stdexcept>
@@ -83,6 +84,7 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
         fit.options = options_from(json.at("options"));
         fit.excluded = json.at("exclude").get<std::set<std::string>>();
         fit.keep = json.at("keep").get<std::set<std::string>>();
+        for (const auto& copy : json.at("copies")) fit.copies[copy.at("flight")] = copy.at("of");
         for (const auto phase : flight::all_phases) {
             fit.bands[phase] = band_from(json.at("bands").at(std::string(to_string(phase))));
         }
@@ -98,7 +100,7 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options) {
     auto fitted = fit_model(flights, options);
     const auto analyses = mechanical::analyse_model(fitted);
-    BatchFit fit{options, {}, {}, {}, curve_bands(fitted, analyses)};
+    BatchFit fit{options, {}, {}, {}, {}, curve_bands(fitted, analyses)};
     fit.model = std::move(fitted.model);
     return fit;
 }
@@ -106,19 +108,20 @@ BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const m
 void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
     Json bands = Json::object();
     for (const auto phase : flight::all_phases) bands[std::string(to_string(phase))] = band_json(fit.bands[phase]);
-    const Json json{{"format", format_version},
-                    {"options", options_json(fit.options)},
-                    {"exclude", fit.excluded},
-                    {"keep", fit.keep},
-                    {"bands", bands}};
-    write_file_atomically(out / fit_name, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-    write_file_atomically(out / model_errors_name, to_toml(fit.model));
+    Json copies = Json::array();
+    for (const auto& [flight, other] : fit.copies) copies.push_back({{"flight", flight}, {"of", other}});
+    const Json json{{"format", format_version}, {"options", options_json(fit.options)},
+                    {"exclude", fit.excluded},  {"keep", fit.keep},
+                    {"copies", copies},         {"bands", bands}};
+    write_file_atomically(out / fit_name, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n",
+                          out / unfinished_folder);
+    write_file_atomically(out / model_errors_name, to_toml(fit.model), out / unfinished_folder);
     auto plain = fit.model;
     for (auto& phase : plain.phases.values) {
         phase.errors.reset();
         phase.spread.reset();
     }
-    write_file_atomically(out / model_name, to_toml(plain));
+    write_file_atomically(out / model_name, to_toml(plain), out / unfinished_folder);
 }
 
 std::optional<BatchFit> read_batch_fit(const std::filesystem::path& out) {

@@ -4,6 +4,7 @@
 #include "mechanical/model_fit.h"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,9 +14,10 @@ namespace flightwatt::batch {
 /// The fit of a batch, with all that is shown of it: nobody has to fit again.
 struct BatchFit {
     mechanical::ModelFitOptions options;
-    std::set<std::string> excluded;     ///< flights that were not to be used
-    std::set<std::string> keep;         ///< flights that were used in spite of what spoke against it
-    mechanical::MechanicalModel model;  ///< with its errors
+    std::set<std::string> excluded;             ///< flights that were not to be used
+    std::set<std::string> keep;                 ///< flights that were used in spite of what spoke against it
+    std::map<std::string, std::string> copies;  ///< flights that are another one under a second name, and which
+    mechanical::MechanicalModel model;          ///< with its errors
     flight::PerPhase<mechanical::CurveBand> bands;
 };
 

@@ -2,8 +2,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_use.h"
 #include "base/fingerprint.h"
 #include "batch/batch_files.h"
+#include "batch/manifest.h"
 #include "batch/write_guard.h"
 #include "flight/load_flight.h"
 #include "flight/phases_file.h"
@@ -13,6 +15,8 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
@@ -20,17 +24,15 @@
 namespace flightwatt::batch {
 namespace {
 
-std::filesystem::path flights_folder(const BatchOptions& options) { return options.out / "flights"; }
-
 std::filesystem::path result_path(const BatchOptions& options, const std::string& flight, const char* ending) {
-    return flights_folder(options) / (flight + ending);
+    return options.out / "flights" / (flight + ending);
 }
 
 void write_result(const BatchOptions& options, const std::string& flight, const char* ending,
                   const std::string& content) {
     std::optional<WriteGate::Pass> pass;
     if (options.gate != nullptr) pass.emplace(*options.gate);
-    write_file_atomically(result_path(options, flight, ending), content);
+    write_file_atomically(result_path(options, flight, ending), content, options.out / unfinished_folder);
 }
 
 /// Of everything that the result depends on.
@@ -53,17 +55,6 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     return fingerprint.hex();
 }
 
-/// Of the files that an accepted log left; empty if one is missing.
-std::string results_fingerprint(const BatchOptions& options, const std::string& flight) {
-    Fingerprint fingerprint;
-    for (const auto* ending : {series_ending, phases_ending}) {
-        const auto path = result_path(options, flight, ending);
-        if (!std::filesystem::is_regular_file(path)) return "";
-        fingerprint.add(read_file(path));
-    }
-    return fingerprint.hex();
-}
-
 bool has_results(const BatchOptions& options, const std::string& flight) {
     return std::filesystem::exists(result_path(options, flight, series_ending)) ||
            std::filesystem::exists(result_path(options, flight, phases_ending));
@@ -72,22 +63,17 @@ bool has_results(const BatchOptions& options, const std::string& flight) {
 /// The remembered result of a log, if it is that of this fingerprint and its files are as they were written.
 std::optional<FlightRecord> remembered(const BatchOptions& options, const LogFile& log,
                                        const std::string& fingerprint) {
-    const auto path = result_path(options, log.flight, record_ending);
-    if (!std::filesystem::is_regular_file(path)) return std::nullopt;
-    auto record = record_from_json(read_file(path));
-    if (!record || record->fingerprint != fingerprint) return std::nullopt;
-    const bool as_written =
-        record->accepted ? !record->results.empty() && record->results == results_fingerprint(options, log.flight)
-                         : !has_results(options, log.flight);
-    if (!as_written) return std::nullopt;
-    record->flight = log.flight;  // JSON holds no name that is not UTF-8
-    return record;
-}
-
-void remove_results(const BatchOptions& options, const std::string& flight) {
-    std::error_code ignored;
-    for (const auto* ending : {record_ending, series_ending, phases_ending}) {
-        std::filesystem::remove(result_path(options, flight, ending), ignored);
+    const OwnFiles own;
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(result_path(options, log.flight, record_ending), none)) return std::nullopt;
+    try {
+        auto record = read_intact_record(options.out, log.flight);
+        if (record.fingerprint != fingerprint || (!record.accepted && has_results(options, log.flight))) {
+            return std::nullopt;
+        }
+        return record;
+    } catch (const InputError&) {
+        return std::nullopt;  // damaged or of another version: the log is done again
     }
 }
 
@@ -109,35 +95,96 @@ FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, con
     return record;
 }
 
-BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
-    BatchFlight done;
-    std::string fingerprint;
-    try {
-        const flight::FlightFile file(log.path, options.load.most_log_bytes);
-        fingerprint = fingerprint_of(file, log, options);
-        file.require_unchanged();
-        if (auto record = remembered(options, log, fingerprint)) {
-            done.was_up_to_date = true;
-            done.record = std::move(*record);
-            done.selection = select_for_fit(done.record, options.needed_samples, options.load);
-            return done;
-        }
-        remove_results(options, log.flight);
-        done.record = do_accepted(file, log, options);
-    } catch (const InputError& error) {
-        remove_results(options, log.flight);
-        done = {};
-        done.record.error = describe(error);
-    }
+/// Writes the record of what became of the log.
+void conclude(BatchFlight& done, const LogFile& log, const std::string& fingerprint, const BatchOptions& options) {
     done.record.flight = log.flight;
     done.record.log = log.path.string();
     done.record.fingerprint = fingerprint;
-    if (done.record.accepted) done.record.results = results_fingerprint(options, log.flight);
     const auto text = to_json_text(done.record);
     write_result(options, log.flight, record_ending, text);
     done.record = record_from_json(text).value();  // what later runs remember: both must report the same
     done.record.flight = log.flight;
+}
+
+/// A log that is there; `fingerprint` is set as soon as it is known. Throws whatever is wrong with the log.
+BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::string& fingerprint) {
+    BatchFlight done;
+    const flight::FlightFile file(log.path, options.load.most_log_bytes);
+    fingerprint = fingerprint_of(file, log, options);
+    file.require_unchanged();
+    if (auto record = remembered(options, log, fingerprint)) {
+        done.was_up_to_date = true;
+        done.record = std::move(*record);
+    } else {
+        remove_results(options.out, log.flight);
+        done.record = do_accepted(file, log, options);
+        {
+            const OwnFiles own;
+            done.record.results = results_fingerprint(options.out, log.flight);
+        }
+        conclude(done, log, fingerprint, options);
+    }
     done.selection = select_for_fit(done.record, options.needed_samples, options.load);
+    return done;
+}
+
+/// What an earlier run left of a log that is gone. Throws InputError where that is not as it was written.
+BatchFlight do_gone(const LogFile& log, const BatchOptions& options) {
+    const OwnFiles own;
+    BatchFlight kept;
+    kept.was_up_to_date = kept.is_kept = true;
+    kept.record = read_intact_record(options.out, log.flight);
+    kept.selection = select_for_fit(kept.record, options.needed_samples, options.load);
+    return kept;
+}
+
+/// Why a log is rejected, after whatever it threw. Throws on what is no fault of the log.
+std::string why_rejected(const LogFile& log, std::string& fingerprint) {
+    try {
+        throw;
+    } catch (const OutputError&) {
+        throw;
+    } catch (const UsageError&) {
+        throw;
+    } catch (const InputError& error) {
+        return describe(error);
+    } catch (const std::bad_alloc&) {
+        fingerprint.clear();  // with more memory another run may do it
+        return log.path.string() + ": needs more memory than there is";
+    } catch (const std::filesystem::filesystem_error& error) {
+        fingerprint.clear();
+        return fmt::format("{}: cannot be read: {}", log.path.string(), error.code().message());
+    } catch (const std::exception& error) {
+        fingerprint.clear();
+        return fmt::format("{}: internal error: {}", log.path.string(), error.what());
+    }
+}
+
+BatchFlight reject(const LogFile& log, const std::string& why, const std::string& fingerprint,
+                   const BatchOptions& options) {
+    BatchFlight rejected;
+    rejected.record.error = why;
+    rejected.record.flight = log.flight;
+    rejected.record.log = log.path.string();
+    if (!log.problem.empty() || log.is_gone) return rejected;  // there is nothing of it to write, or all to keep
+    remove_results(options.out, log.flight);
+    conclude(rejected, log, fingerprint, options);
+    return rejected;
+}
+
+BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
+    BatchFlight done;
+    std::string fingerprint;
+    std::string why;
+    try {
+        if (!log.problem.empty()) throw InputError({log.path.string()}, log.problem);
+        done = log.is_gone ? do_gone(log, options) : do_existing(log, options, fingerprint);
+    } catch (...) {
+        why = why_rejected(log, fingerprint);
+        if (log.is_gone) why += ", and its log is gone: bring it back, or drop the flight with --prune";
+    }
+    if (!why.empty()) done = reject(log, why, fingerprint, options);
+    done.is_of_this_run = log.is_of_this_run;
     return done;
 }
 
@@ -145,8 +192,8 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
 
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
                                    const BatchProgress& progress) {
-    make_directories(flights_folder(options));
-    remove_left_overs(logs, options.out);
+    make_directories(options.out / "flights");
+    make_directories(options.out / unfinished_folder);
     std::vector<BatchFlight> flights(logs.size());
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;  // guards what follows
@@ -169,11 +216,53 @@ std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const Batch
     const auto jobs = std::min<std::size_t>(options.jobs > 0 ? options.jobs : cores, logs.size());
     {
         std::vector<std::jthread> workers;
-        for (std::size_t i = 1; i < jobs; ++i) workers.emplace_back(work);
+        try {
+            for (std::size_t i = 1; i < jobs; ++i) workers.emplace_back(work);
+        } catch (const std::system_error&) {
+            // No more threads than these: they will do.
+        }
         work();
     }
     if (failure) std::rethrow_exception(failure);
     return flights;
+}
+
+std::string reason_of_copy(const std::string& other) {
+    return fmt::format("it is the same flight as {}, which is used", other);
+}
+
+std::map<std::string, std::string> exclude_copies(std::vector<BatchFlight>& flights) {
+    std::vector<BatchFlight*> candidates;
+    for (auto& flight : flights)
+        if (!flight.selection.flights.empty()) candidates.push_back(&flight);
+    std::ranges::stable_partition(candidates, [](const auto* flight) { return !flight->is_kept; });
+    std::vector<const BatchFlight*> used;
+    std::map<std::string, std::string> copies;
+    for (auto* flight : candidates) {
+        const auto same = std::ranges::find_if(used, [&](const BatchFlight* other) {
+            return is_same_flight(flight->record.content, other->record.content);
+        });
+        if (same == used.end()) {
+            used.push_back(flight);
+            continue;
+        }
+        const auto& other = (*same)->record.flight;
+        copies[flight->record.flight] = other;
+        flight->selection.flights.clear();
+        flight->selection.sorties.clear();
+        flight->selection.exclusions.push_back({flight->record.flight, std::nullopt, reason_of_copy(other)});
+    }
+    return copies;
+}
+
+std::string mix_of(const std::vector<BatchFlight>& flights) {
+    std::vector<flight::FlownBy> flown;
+    for (const auto& flight : flights) {
+        const auto& record = flight.record;
+        if (!flight.selection.flights.empty())
+            flown.push_back({record.flight, record.aircraft_id, record.aircraft_name});
+    }
+    return describe_mix(flown);
 }
 
 }  // namespace flightwatt::batch

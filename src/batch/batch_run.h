@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct BatchOptions {
 struct BatchFlight {
     FlightRecord record;
     bool was_up_to_date = false;
+    bool is_of_this_run = true;             ///< see LogFile
+    bool is_kept = false;                   ///< its log is gone: it is as an earlier run left it
     mechanical::MeasuredFlights selection;  ///< what a fit takes from it; empty if it was rejected
 };
 
@@ -34,11 +37,22 @@ using BatchProgress = std::function<void(std::size_t done, std::size_t all, cons
 
 /// Parses and segments every log, several at a time, into OUT/flights/NAME.series.csv, NAME.phases.csv and
 /// NAME.record.json, the last one written last. A log whose record has the fingerprint of its content, its
-/// .log and the options, and whose files are as they were written, is not done again. Logs that cannot be
-/// used are recorded as rejected; the rest goes on. Results of logs that are no longer among `logs` are
-/// removed. Returned in the order of `logs`. Throws OutputError where OUT cannot be written.
+/// .log and the options, and whose files are as they were written, is not done again; one that is gone keeps its
+/// results. Logs that cannot be used, whatever is wrong with them, are recorded as rejected; the rest goes on. Returned
+/// in the order of `logs`. Throws OutputError where OUT cannot be written. The folder is to be prepared before
+/// (manifest.h).
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
                                    const BatchProgress& progress);
+
+/// Takes flights out of what is fitted that are there under another name too, and says so: each is used once, the one
+/// whose log is still there, then the first. Returns which is a copy of which, by name.
+std::map<std::string, std::string> exclude_copies(std::vector<BatchFlight>& flights);
+
+/// Why a flight is not fitted that is a copy of another.
+std::string reason_of_copy(const std::string& other);
+
+/// Why the flights that are fitted are not of one aircraft (describe_mix); empty if they may be.
+std::string mix_of(const std::vector<BatchFlight>& flights);
 
 /// A row a sortie (or rejected log) for people.
 TextTable flights_table(const std::vector<BatchFlight>& flights);

@@ -1,10 +1,12 @@
 #include "batch/flight_record.h"
 
+#include "base/fingerprint.h"
 #include "flight/chosen_track.h"
 #include "flight/edge_witness.h"
 #include "flight/power_check.h"
 
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -55,6 +57,9 @@ void visit_record(Record& record, const Visit& visit) {
     visit("accepted", record.accepted);
     visit("error", record.error);
     visit("aircraft_id", record.aircraft_id);
+    visit("aircraft_name", record.aircraft_name);
+    visit("content_stretches", record.content.stretches);
+    visit("content_sketch", record.content.sketch);
     visit("power_source", record.power_source);
     visit("current_origin", record.current_origin);
     visit("phases", record.phases);
@@ -176,6 +181,15 @@ struct RecordReader {
     }
 };
 
+constexpr std::string_view seal_key = ",\n \"seal\": \"";
+
+/// What a record ends with: the fingerprint of all before. One that was changed or cut is not believed.
+std::string seal_of(std::string_view text) {
+    Fingerprint fingerprint;
+    fingerprint.add(text);
+    return fmt::format("{}{}\"\n}}\n", seal_key, fingerprint.hex());
+}
+
 /// What the best witness of an edge says.
 std::string verdict_text(const flight::ExplainedEdge& explained) {
     if (explained.witnesses.empty()) return explained.verdict;
@@ -193,6 +207,8 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     record.flight = series.flight;
     record.accepted = true;
     record.aircraft_id = series.aircraft_id;
+    record.aircraft_name = series.aircraft_name;
+    record.content = content_of(series);
     record.power_source = power_track(series).source;
     record.current_origin = to_string(series.current_origin);
     record.warnings = loaded.warnings;
@@ -216,16 +232,20 @@ std::string to_json_text(const FlightRecord& record) {
     Json json;
     visit_record(record, RecordWriter{json});
     // File names need not be UTF-8, and a record must never fail for that.
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    auto text = json.dump(1, ' ', false, Json::error_handler_t::replace);
+    text.resize(text.size() - std::string_view("\n}").size());
+    return text + seal_of(text);
 }
 
 std::optional<FlightRecord> record_from_json(const std::string& text) {
+    const auto end = text.rfind(seal_key);
+    if (end == std::string::npos || text.substr(end) != seal_of(text.substr(0, end))) return std::nullopt;
     try {
         FlightRecord record;
         visit_record(record, RecordReader{Json::parse(text)});
         return record;
     } catch (const std::exception&) {
-        return std::nullopt;  // damaged or of another version: the log is done again
+        return std::nullopt;  // of another version: the log is done again
     }
 }
 

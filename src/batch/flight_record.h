@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/flight_identity.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "mechanical/measured_flight.h"
@@ -39,6 +40,8 @@ struct FlightRecord {
     bool accepted = false;
     std::string error;  ///< why it was rejected
     std::string aircraft_id;
+    std::string aircraft_name;
+    flight::FlightContent content;  ///< to find the same flight under another name
     std::string power_source;
     std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;
@@ -53,7 +56,8 @@ struct FlightRecord {
 /// The record of a flight that was read and segmented.
 FlightRecord record_of(const flight::LoadedFlight& loaded);
 
-/// The record as JSON, and back. Reading gives std::nullopt for what is no record of this version.
+/// The record as JSON with a seal, the fingerprint of its text, and back. Reading gives std::nullopt for what is no
+/// record of this version, or was changed since.
 std::string to_json_text(const FlightRecord& record);
 std::optional<FlightRecord> record_from_json(const std::string& text);
 

@@ -46,7 +46,9 @@ std::vector<SortieRow> sortie_rows(const FlightRecord& record) {
 
 std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& row, std::size_t sortie) {
     const bool has_power = flight.record.lacks_power.empty();
-    std::vector<std::string> cells{flight.record.flight, fmt::format("{}", sortie)};
+    std::vector<std::string> cells{flight.record.flight,
+                                   flight::describe_aircraft(flight.record.aircraft_id, flight.record.aircraft_name),
+                                   fmt::format("{}", sortie)};
     for (const auto phase : flight::all_phases) {
         const auto* recorded = row.phases[phase];
         // An asterisk marks a phase that the log cuts.
@@ -75,9 +77,9 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
 
 TextTable flights_table(const std::vector<BatchFlight>& flights) {
     TextTable table;
-    table.header = {"flight",     "sortie",   "take-off s", "cruise s",  "landing s",
-                    "take-off W", "cruise W", "landing W",  "energy Wh", "counter Wh",
-                    "samples",    "gaps",     "longest s",  "warnings",  "phases fitted"};
+    table.header = {"flight",     "aircraft",  "sortie",    "take-off s",   "cruise s",   "landing s",
+                    "take-off W", "cruise W",  "landing W", "energy Wh",    "counter Wh", "samples",
+                    "gaps",       "longest s", "warnings",  "phases fitted"};
     for (const auto& flight : flights) {
         if (!flight.record.accepted) {
             std::vector<std::string> row{flight.record.flight, "-"};
@@ -93,15 +95,16 @@ TextTable flights_table(const std::vector<BatchFlight>& flights) {
 }
 
 std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
-    CsvWriter csv({"flight", "sortie", "phase", "start_s", "end_s", "duration_s", "samples", "mean_power_w",
-                   "energy_wh", "counter_energy_wh", "used", "gaps", "longest_gap_s", "complete", "aircraft_id",
-                   "power_source", "power_faults", "error"});
+    CsvWriter csv({"flight",        "sortie",    "phase",         "start_s",      "end_s",
+                   "duration_s",    "samples",   "mean_power_w",  "energy_wh",    "counter_energy_wh",
+                   "used",          "gaps",      "longest_gap_s", "complete",     "aircraft_id",
+                   "aircraft_name", "synthetic", "power_source",  "power_faults", "error"});
     const std::string none;
     for (const auto& flight : flights) {
         const auto& record = flight.record;
         if (!record.accepted) {
             csv.add(record.flight, none, none, none, none, none, none, none, none, none, false, none, none, none, none,
-                    none, none, record.error);
+                    none, none, none, none, record.error);
             continue;
         }
         const bool has_power = record.lacks_power.empty();
@@ -113,7 +116,8 @@ std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
                     phase.end_s - phase.start_s, known(statistics.samples), known(statistics.mean_power_w),
                     known(statistics.energy_wh), statistics.counter_energy_wh, is_used(flight, phase),
                     known(statistics.gaps), known(statistics.longest_gap_s), phase.complete, record.aircraft_id,
-                    record.power_source, faults, none);
+                    record.aircraft_name, flight::is_synthetic(record.aircraft_name), record.power_source, faults,
+                    none);
         }
     }
     return csv.text();

@@ -2,6 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/fingerprint.h"
+#include "batch/manifest.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -28,7 +30,8 @@ std::string why_not_fitted(const std::filesystem::path& log, const std::filesyst
     auto inner = log.parent_path().lexically_relative(given);  // "." for the folder itself
     for (; !inner.empty() && inner != "."; inner = inner.parent_path()) {
         const auto file = given / inner / "not-fitted.txt";
-        if (!std::filesystem::exists(file)) continue;
+        std::error_code none;
+        if (!std::filesystem::exists(file, none)) continue;
         const auto text = read_file(file);
         auto reason = text.substr(0, text.find_first_of("\r\n"));
         if (reason.empty()) {
@@ -39,26 +42,24 @@ std::string why_not_fitted(const std::filesystem::path& log, const std::filesyst
     return {};
 }
 
-void add_folder(const std::filesystem::path& folder, std::vector<LogFile>& logs) {
+std::string cause_of(const std::error_code& error) { return fmt::format("cannot be listed: {}", error.message()); }
+
+void add_folder(const std::filesystem::path& folder, const std::filesystem::path& given, std::vector<LogFile>& logs) {
     std::error_code error;
-    std::filesystem::recursive_directory_iterator entry(folder, error);
-    while (!error && entry != std::filesystem::recursive_directory_iterator()) {
+    std::vector<std::filesystem::path> below;
+    std::filesystem::directory_iterator entry(folder, error);
+    while (!error && entry != std::filesystem::directory_iterator()) {
         std::error_code ignored;
         // What has a log's name and is no file (a link to nowhere) is rejected later, not passed over.
-        if (is_log_name(entry->path()) && !entry->is_directory(ignored)) {
-            logs.push_back({entry->path(), {}, why_not_fitted(entry->path(), folder)});
+        if (entry->is_directory(ignored)) {
+            if (!entry->is_symlink(ignored)) below.push_back(entry->path());
+        } else if (is_log_name(entry->path())) {
+            logs.push_back({entry->path(), {}, why_not_fitted(entry->path(), given)});
         }
         entry.increment(error);
     }
-    if (error) throw InputError({folder.string()}, fmt::format("cannot be listed: {}", error.message()));
-}
-
-/// The same for every way to write a file's path. Links to a file stay apart: each has its own .log.
-std::filesystem::path identity(const std::filesystem::path& path) {
-    std::error_code error;
-    const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-    const auto canonical = std::filesystem::canonical(folder, error);
-    return error ? path : canonical / path.filename();
+    if (error) logs.push_back({folder, {}, {}, cause_of(error)});
+    for (const auto& inner : below) add_folder(inner, given, logs);
 }
 
 std::vector<LogFile> each_once(std::vector<LogFile> logs) {
@@ -67,20 +68,31 @@ std::vector<LogFile> each_once(std::vector<LogFile> logs) {
         return std::tie(a.path, a.why_not_fitted) < std::tie(b.path, b.why_not_fitted);
     });
     std::set<std::filesystem::path> seen;
-    std::erase_if(logs, [&](const auto& log) { return !seen.insert(identity(log.path)).second; });
+    std::erase_if(logs, [&](const auto& log) { return !seen.insert(place_of(log.path)).second; });
     return logs;
 }
 
-/// The log's own name, or, where another log has that, the next free one of NAME_2, NAME_3, ...
-std::string free_name(const std::filesystem::path& path, const std::set<std::string>& taken) {
-    auto name = telemetry::flight_name(path);
+/// As it is, or, where the names of its files would be longer than names can be, its beginning and a fingerprint.
+std::string file_name_of(std::string name) {
+    constexpr std::size_t longest = 255 - std::string_view("_999.record.json").size();
+    constexpr std::size_t kept = 200;
+    if (name.size() <= longest) return name;
+    Fingerprint fingerprint;
+    fingerprint.add(name);
+    auto size = kept;
+    while ((static_cast<unsigned char>(name[size]) & 0xC0U) == 0x80U) --size;  // whole characters
+    return name.substr(0, size) + "~" + fingerprint.hex();
+}
+
+}  // namespace
+
+std::string free_flight_name(const std::filesystem::path& log, const std::set<std::string>& taken) {
+    auto name = file_name_of(telemetry::flight_name(log));
     if (name.empty()) name = "unnamed";
     auto free = name;
     for (int use = 2; taken.contains(free); ++use) free = fmt::format("{}_{}", name, use);
     return free;
 }
-
-}  // namespace
 
 std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
     std::vector<LogFile> logs;
@@ -88,7 +100,7 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
         std::error_code error;
         const auto status = std::filesystem::status(input, error);
         if (std::filesystem::is_directory(status)) {
-            add_folder(input, logs);
+            add_folder(input, input, logs);
             continue;
         }
         if (!std::filesystem::exists(status)) {
@@ -106,7 +118,7 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
     }
     std::set<std::string> taken;
     for (auto& log : logs) {
-        log.flight = free_name(log.path, taken);
+        log.flight = free_flight_name(log.path, taken);
         taken.insert(log.flight);
     }
     return logs;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,13 +12,21 @@ struct LogFile {
     std::filesystem::path path;
     std::string flight;
     std::string why_not_fitted = {};  ///< empty: it is fitted
+    std::string problem = {};         ///< why it cannot be read at all: a folder that cannot be listed
+    bool is_of_this_run = true;       ///< false: a log of an earlier run into the same folder
+    bool is_gone = false;             ///< of an earlier run, and no longer there
 };
 
 /// The logs among files and folders (searched to the bottom for .data files, compressed or not), in the order
 /// of their paths, each once however it is written. Flights of the same name get the names NAME, NAME_2, ...
 /// Logs in a folder below the one that was given, or deeper, are not fitted if that folder holds a file
-/// not-fitted.txt, whose first line says why. Throws InputError for an input that does not exist, where there
-/// is no log at all, or for a not-fitted.txt that does not say why.
+/// not-fitted.txt, whose first line says why. A folder that cannot be listed stands among them with its problem.
+/// Throws InputError for an input that does not exist, where there is no log at all, or for a not-fitted.txt that
+/// does not say why.
 std::vector<LogFile> find_logs(const std::vector<std::string>& inputs);
+
+/// The log's own name, shortened where no file could be called so, or, where that is taken, the next free one of
+/// NAME_2, NAME_3, ...
+std::string free_flight_name(const std::filesystem::path& log, const std::set<std::string>& taken);
 
 }  // namespace flightwatt::batch

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/file_use.h"
 #include "flight/chosen_track.h"
+#include "flight/flight_identity.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"
 
@@ -35,6 +36,13 @@ telemetry::TelemetryLog read_log(const FlightFile& file) {
     std::optional<telemetry::LogConfiguration> configuration;
     if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
     return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
+}
+
+/// A synthetic log says in its first line what its .log says by the aircraft's name.
+void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidates) {
+    if (file.text().substr(0, file.text().find('\n')).find("INFO_MSG \"SYNTHETIC:") == std::string_view::npos) return;
+    for (auto& series : candidates)
+        if (series.aircraft_name.empty()) series.aircraft_name = unnamed_synthetic;
 }
 
 /// The one that flew, with the power that `file` tells of it. Without power it is refused where that is required, or
@@ -131,9 +139,15 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
     } else {
         auto log = read_log(file);
         for (const auto& sender : log.senders) ids.push_back(sender.id);
-        if (!aircraft_id) return all_candidates(std::move(log));
+        if (!aircraft_id) {
+            candidates = all_candidates(std::move(log));
+            name_synthetic(file, candidates);
+            return candidates;
+        }
         if (std::find(ids.begin(), ids.end(), *aircraft_id) != ids.end()) {
-            return {flight_series(log, *aircraft_id)};
+            candidates.push_back(flight_series(log, *aircraft_id));
+            name_synthetic(file, candidates);
+            return candidates;
         }
     }
     throw InputError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),

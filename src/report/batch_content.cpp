@@ -1,6 +1,7 @@
 #include "report/batch_content.h"
 
 #include "batch/batch_files.h"
+#include "batch/batch_run.h"
 
 #include <algorithm>
 #include <iterator>
@@ -20,15 +21,22 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
     flight::LoadOptions load;
     load.excluded = fit.excluded;
     load.keep = fit.keep;
-    for (auto& [record, series, phases] : batch::read_stored_flights(out)) {
-        ReportFlight flight{record.flight,   record.log, record.accepted ? "" : record.error, {}, {},
-                            record.warnings, {}};
+    for (auto& [record, series, phases, damage] : batch::read_stored_flights(out)) {
+        const auto& rejected = damage.empty() ? record.error : damage;
+        ReportFlight flight{record.flight, record.log, record.accepted ? "" : rejected, {}, {}, record.warnings, {}};
+        if (!damage.empty()) content.damaged.push_back(record.flight + ": " + damage);
         if (record.accepted) {
             auto selection = batch::select_for_fit(record, needed, load);
+            const auto copy = fit.copies.find(record.flight);
+            if (copy != fit.copies.end()) {
+                selection.flights.clear();
+                selection.exclusions.push_back({record.flight, std::nullopt, batch::reason_of_copy(copy->second)});
+            }
             for (const auto& exclusion : selection.exclusions) flight.exclusions.push_back(to_string(exclusion));
             std::move(selection.flights.begin(), selection.flights.end(), std::back_inserter(content.measured));
             flight.verdicts = record.verdicts;
             flight.unusable_power = batch::exclusion_of(record, load);
+            if (copy != fit.copies.end()) flight.unusable_power = batch::reason_of_copy(copy->second);
             flight.series = std::move(series);
             flight.phases = std::move(phases);
         }

@@ -34,6 +34,7 @@ struct BatchContent {
     std::vector<ReportFlight> flights;
     std::vector<mechanical::MeasuredFlight> measured;  ///< what the batch's fit took of them
     std::optional<batch::BatchFit> fit;                ///< absent where the batch could not fit them
+    std::vector<std::string> damaged;                  ///< flights whose files are not as the batch wrote them, and why
 };
 
 /// The folder's flights, those with a usable power record first. Throws InputError as read_stored_flights and

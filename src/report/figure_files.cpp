@@ -71,7 +71,11 @@ FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& 
             ++files.figures;
         }
     }
-    files.has_svg = ran({"node", (web.folder / "render.mjs").string(), folder.string()});
+    // These alone: the folder may hold others' figures.
+    std::vector<std::string> render{"node", (web.folder / "render.mjs").string(), folder.string()};
+    for (const auto& section : sections)
+        for (const auto& figure : section.figures) render.push_back(figure.id);
+    files.has_svg = ran(render);
     if (!files.has_svg) return files;
     for (const auto& section : sections) {
         for (const auto& figure : section.figures) {

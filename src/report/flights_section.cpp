@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 #include "flight/chosen_track.h"
+#include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 #include "report/figures/flight_figures.h"
 
@@ -52,7 +53,9 @@ std::string closure_percent(const SortieSums& sums) {
 
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
     const auto sums = sums_of(flight.series, flight.phases.sorties[sortie]);
-    std::vector<std::string> cells{flight.name, fmt::format("{}", sortie + 1)};
+    std::vector<std::string> cells{flight.name,
+                                   flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
+                                   fmt::format("{}", sortie + 1)};
     for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.duration_s[phase], 0));
     for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.mean_w[phase], 1));
     cells.insert(cells.end(), {fixed(sums.energy_wh, 3), fixed(sums.counter_wh, 3), closure_percent(sums),
@@ -65,9 +68,10 @@ std::string flight_id(std::size_t index) { return fmt::format("flight-{}", index
 
 /// One row a sortie of the flights that were not rejected.
 std::string flights_table_html(std::span<const ReportFlight> flights) {
-    TextTable table{{"flight", "sortie", "take-off [s]", "cruise [s]", "landing [s]", "take-off [W]", "cruise [W]",
-                     "landing [W]", "energy [Wh]", "counter [Wh]", "closure [%]", "gaps", "warnings", "fitted"},
-                    {}};
+    TextTable table{
+        {"flight", "aircraft", "sortie", "take-off [s]", "cruise [s]", "landing [s]", "take-off [W]", "cruise [W]",
+         "landing [W]", "energy [Wh]", "counter [Wh]", "closure [%]", "gaps", "warnings", "fitted"},
+        {}};
     HtmlTableOptions options{"Flights: durations, mean power, energy, closure, gaps and warnings", true, {}};
     for (std::size_t f = 0; f < flights.size(); ++f) {
         if (!flights[f].rejected.empty()) continue;

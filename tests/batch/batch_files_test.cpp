@@ -16,62 +16,7 @@
 namespace flightwatt::batch {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
-
-void write_record(const std::filesystem::path& out, const std::string& flight, const std::filesystem::path& log) {
-    FlightRecord record;
-    record.flight = flight;
-    record.log = log.string();
-    make_directories(out / "flights");
-    write_file_atomically(out / "flights" / (flight + record_ending), to_json_text(record));
-}
-
-std::vector<std::string> words(const std::vector<DroppedFlight>& dropped) {
-    std::vector<std::string> lines;
-    lines.reserve(dropped.size());
-    for (const auto& flight : dropped) lines.push_back(flight.flight + ", " + flight.reason);
-    return lines;
-}
-
-TEST(LeftOvers, SayWhyAFlightIsDropped) {
-    const auto folder = test::scratch_dir();
-    const auto out = folder / "out";
-    EXPECT_THAT(find_dropped({{"here.data", "here"}}, out), IsEmpty());  // no folder yet
-    const auto kept = folder / "kept.data";
-    write_file_atomically(kept, "1 7 ENERGY\n");
-    write_record(out, "here", "here.data");
-    write_record(out, "gone", folder / "gone.data");
-    write_record(out, "kept", kept);
-    write_record(out, "moved_2", "moved.data");
-    write_file_atomically(out / "flights" / (std::string("damaged") + record_ending), "{");
-    const std::vector<LogFile> logs{{"here.data", "here"}, {"moved.data", "moved"}};
-    EXPECT_THAT(words(find_dropped(logs, out)), ElementsAre("damaged, its log is gone", "gone, its log is gone",
-                                                            "kept, its log " + kept.string() + " is not in this batch",
-                                                            "moved_2, it is called moved now"));
-    remove_left_overs(logs, out);
-    EXPECT_THAT(find_dropped(logs, out), IsEmpty());
-    EXPECT_TRUE(std::filesystem::exists(out / "flights" / "here.record.json"));
-}
-
-TEST(LeftOvers, AreRemovedFromTheOutputFolderToo) {
-    const auto out = test::scratch_dir() / "out";
-    make_directories(out / "flights");
-    for (const auto* file :
-         {"flights.csv.Ab3dEf", "model.toml.000000", "table1.md.ABCDEF", "flights/a.phases.csv.x1x1x1"}) {
-        write_file_atomically(out / file, "half");
-    }
-    for (const auto* file :
-         {"flights.csv", "flights.csv.backup", "model.toml", "notes.txt.Ab3dEf", "model.toml.Ab3-Ef"}) {
-        write_file_atomically(out / file, "whole");
-    }
-    remove_left_overs({{"a.data", "a"}}, out);
-    std::vector<std::string> left;
-    for (const auto& [name, content] : test::contents(out)) left.push_back(name);
-    EXPECT_THAT(
-        left, ElementsAre("flights.csv", "flights.csv.backup", "model.toml", "model.toml.Ab3-Ef", "notes.txt.Ab3dEf"));
-}
 
 TEST(StoredFlights, AreWhatTheBatchLeft) {
     const auto scratch = test::scratch_dir();
@@ -99,7 +44,30 @@ TEST(StoredFlights, RefuseWhatIsNoBatchFolder) {
     make_directories(scratch / "flights");
     EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no record of a flight"));
     test::write_text(scratch / "flights" / "a.record.json", "{}");
-    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("run flightwatt batch again"));
+    EXPECT_THAT(test::rejected([&] { read_stored_flights(scratch); }), HasSubstr("no record of a flight"));
+}
+
+TEST(StoredFlights, AreNotBelievedOnceTheyWereChanged) {
+    const auto scratch = test::scratch_dir();
+    const auto log = test::copy_sample(1, scratch / "in");
+    const auto out = scratch / "out";
+    test::batch(scratch / "in", out);
+    for (const auto* ending : result_endings) {
+        const auto file = out / "flights" / (std::string("opterra_synthetic_01") + ending);
+        auto text = read_file(file);
+        const auto whole = text;
+        text[text.size() / 2] = text[text.size() / 2] == '1' ? '2' : '1';
+        write_file_atomically(file, text);
+        std::filesystem::rename(log, scratch / "away");
+        const auto stored = read_stored_flights(out);
+        ASSERT_EQ(stored.size(), 1U) << ending;
+        EXPECT_FALSE(stored[0].record.accepted);
+        EXPECT_THAT(stored[0].damage, HasSubstr("its log is gone"));
+        std::filesystem::rename(scratch / "away", log);
+        EXPECT_THAT(test::rejected([&] { read_stored_flights(out); }), HasSubstr("run flightwatt batch again"));
+        write_file_atomically(file, whole);
+        EXPECT_EQ(read_stored_flights(out)[0].damage, "");
+    }
 }
 
 }  // namespace

@@ -45,6 +45,14 @@ class BatchOfTwo : public testing::Test {
         whole = contents(out);
     }
 
+    /// The same beside files of the user's.
+    void expect_redone_beside(const std::vector<std::string>& others, const std::vector<std::string>& names) {
+        EXPECT_EQ(done_anew(batch(in, out)), names);
+        auto left = contents(out);
+        for (const auto& other : others) left.erase(other);
+        EXPECT_EQ(left, whole);
+    }
+
     /// Runs again and expects what the first run wrote, byte for byte.
     void expect_redone(const std::vector<std::string>& names) {
         EXPECT_EQ(done_anew(batch(in, out)), names);
@@ -60,11 +68,11 @@ TEST_F(BatchOfTwo, WritesThreeFilesAFlight) {
         names.push_back(name);
         EXPECT_FALSE(content.empty()) << name;
     }
-    EXPECT_THAT(
-        names, UnorderedElementsAre(
-                   "flights.csv", "flights/opterra_synthetic_01.phases.csv", "flights/opterra_synthetic_01.record.json",
-                   "flights/opterra_synthetic_01.series.csv", "flights/opterra_synthetic_02.phases.csv",
-                   "flights/opterra_synthetic_02.record.json", "flights/opterra_synthetic_02.series.csv"));
+    EXPECT_THAT(names, UnorderedElementsAre(
+                           "batch.json", "flights.csv", "flights/opterra_synthetic_01.phases.csv",
+                           "flights/opterra_synthetic_01.record.json", "flights/opterra_synthetic_01.series.csv",
+                           "flights/opterra_synthetic_02.phases.csv", "flights/opterra_synthetic_02.record.json",
+                           "flights/opterra_synthetic_02.series.csv"));
 }
 
 TEST_F(BatchOfTwo, DoesNothingTwice) { expect_redone({}); }
@@ -114,18 +122,99 @@ TEST_F(BatchOfTwo, DoesDamagedResultsAgain) {
 }
 
 TEST_F(BatchOfTwo, RemovesWhatAKilledOneLeft) {
-    write_text(flights / "opterra_synthetic_01.series.csv.Ab3dEf", "time_s,po");
-    write_text(flights / "gone.series.csv", "time_s,power_w\n");  // killed before its record was written
-    write_text(flights / "gone.phases.csv.qwerty", "");
+    write_text(out / unfinished_folder / ".flightwatt-0123456789abcdef", "time_s,po");
     expect_redone({});
 }
 
 TEST_F(BatchOfTwo, LeavesOtherFilesAlone) {
-    write_text(flights / "notes.txt", "mine");
-    write_text(flights / "series.csv.backup1", "mine");
-    batch(in, out);
-    EXPECT_EQ(read_file(flights / "notes.txt"), "mine");
-    EXPECT_EQ(read_file(flights / "series.csv.backup1"), "mine");
+    const std::vector<std::string> names{
+        "flights/notes.txt",  "flights/series.csv.backup1", "flights/mine.series.csv",       "flights/mine.record.json",
+        "flights.csv.Backup", "model.toml.202611",          "flights/mine.phases.csv.Ab3dEf"};
+    for (const auto& name : names) write_text(out / name, "mine");
+    expect_redone_beside(names, {});
+    std::filesystem::remove(in / "opterra_synthetic_01.data");
+    batch(in, out, 2, true);
+    for (const auto& name : names) EXPECT_EQ(read_file(out / name), "mine") << name;
+}
+
+TEST_F(BatchOfTwo, BelievesNoRecordThatWasChanged) {
+    const auto file = flights / "opterra_synthetic_01.record.json";
+    const auto text = read_file(file);
+    const auto changed = [&](const char* what, const char* into) {
+        return std::regex_replace(text, std::regex(what), into, std::regex_constants::format_first_only);
+    };
+    const std::vector<std::string> all{changed("\"sortie\": 1", "\"sortie\": 0"),
+                                       changed("\"sortie\": 1", "\"sortie\": -1"),
+                                       changed("\"sortie\": 1", "\"sortie\": 1e9"),
+                                       changed("\"sortie\": 1", "\"sortie\": 1e300"),
+                                       changed("\"energy_wh\": 0", "\"energy_wh\": 9"),
+                                       text.substr(0, text.size() - 2),
+                                       text + text};
+    for (const auto& damaged : all) {
+        ASSERT_NE(damaged, text);
+        write_text(file, damaged);
+        expect_redone({one});
+    }
+}
+
+TEST_F(BatchOfTwo, AddsToEarlierRuns) {
+    copy_sample(3, folder / "more");
+    const auto first = contents(out);
+    const auto added = batch(folder / "more", out);
+    ASSERT_EQ(added.size(), 3U);
+    EXPECT_THAT(done_anew(added), ElementsAre("opterra_synthetic_03"));
+    EXPECT_FALSE(added[0].is_of_this_run);
+    EXPECT_TRUE(added[2].is_of_this_run);
+    // As if all had been given at once.
+    copy_sample(3, in);
+    std::filesystem::remove_all(folder / "more");
+    batch(in, folder / "at once");
+    for (const auto& [name, content] : contents(folder / "at once")) {
+        if (name != "batch.json" && name.find("_03") == std::string::npos) {
+            EXPECT_EQ(read_file(out / name), content) << name;
+        }
+    }
+}
+
+TEST_F(BatchOfTwo, KeepsTheResultsOfALogThatIsGone) {
+    const auto before = batch(in, out)[0];
+    std::filesystem::remove(in / "opterra_synthetic_01.data");
+    const auto kept = batch(in, out);
+    ASSERT_EQ(kept.size(), 2U);
+    EXPECT_TRUE(kept[0].is_kept);
+    EXPECT_EQ(kept[0].selection.flights.at(0).samples.phases[flight::Phase::cruise]->power_w,
+              before.selection.flights.at(0).samples.phases[flight::Phase::cruise]->power_w);
+    EXPECT_EQ(contents(out), whole);
+    // What was changed since is not believed, and not thrown away either.
+    auto changed = whole.at("flights/opterra_synthetic_01.record.json");
+    changed.replace(changed.find("0."), 2, "9.");
+    write_text(flights / "opterra_synthetic_01.record.json", changed);
+    const auto excluded = batch(in, out);
+    EXPECT_FALSE(excluded[0].record.accepted);
+    EXPECT_THAT(excluded[0].record.error, HasSubstr("its log is gone"));
+    EXPECT_EQ(read_file(flights / "opterra_synthetic_01.record.json"), changed);
+    EXPECT_EQ(read_file(flights / "opterra_synthetic_01.series.csv"),
+              whole.at("flights/opterra_synthetic_01.series.csv"));
+}
+
+TEST_F(BatchOfTwo, GoesOnAfterALogWithATooLongName) {
+    const auto name = std::string(245, 'n');
+    copy_sample(1, in, name);
+    const auto flights_now = batch(in, out);
+    ASSERT_EQ(flights_now.size(), 3U);
+    EXPECT_TRUE(flights_now[0].record.accepted) << flights_now[0].record.error;
+    EXPECT_TRUE(flights_now[0].record.flight.starts_with(std::string(200, 'n') + "~"));
+    EXPECT_THAT(done_anew(batch(in, out)), IsEmpty());
+}
+
+TEST_F(BatchOfTwo, GoesOnAfterAFolderThatCannotBeListed) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may list every folder";
+    std::filesystem::create_directories(in / "closed");
+    std::filesystem::permissions(in / "closed", std::filesystem::perms::none);
+    const auto flights_now = batch(in, out);
+    std::filesystem::permissions(in / "closed", std::filesystem::perms::owner_all);
+    ASSERT_EQ(flights_now.size(), 3U);
+    EXPECT_THAT(flights_now[0].record.error, HasSubstr("in/closed: cannot be listed: Permission denied"));
 }
 
 TEST_F(BatchOfTwo, DoesAChangedLogAgain) {
@@ -147,9 +236,9 @@ TEST_F(BatchOfTwo, DoesALogAgainWhoseDefinitionsChanged) {
     expect_redone({two});
 }
 
-TEST_F(BatchOfTwo, DropsALogThatVanished) {
+TEST_F(BatchOfTwo, DropsALogThatVanishedIfAsked) {
     std::filesystem::remove(in / "opterra_synthetic_01.data");
-    const auto flights_now = batch(in, out);
+    const auto flights_now = batch(in, out, 2, true);
     ASSERT_EQ(flights_now.size(), 1U);
     EXPECT_TRUE(flights_now[0].was_up_to_date);
     for (const auto& [name, content] : contents(out)) {
@@ -220,13 +309,43 @@ TEST(Batch, KeepsFlightsOfOneNameApart) {
     const auto written = folder / "out" / "flights";
     EXPECT_NE(read_file(written / "flight.series.csv"), read_file(written / "flight_2.series.csv"));
     EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), IsEmpty());
-    // The name belongs to the place in the list: what moves up is done again, not mistaken for the other.
+    // A log keeps its name, whatever becomes of the others.
     const auto tuesday = read_file(written / "flight_2.series.csv");
     std::filesystem::remove_all(folder / "in" / "monday");
-    EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), ElementsAre("flight"));
-    EXPECT_EQ(std::regex_replace(tuesday, std::regex("\"flight_2\""), "\"flight\""),
-              read_file(written / "flight.series.csv"));
-    EXPECT_FALSE(std::filesystem::exists(written / "flight_2.series.csv"));
+    copy_sample(3, folder / "in" / "before monday", "flight");
+    EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), ElementsAre("flight_3"));
+    EXPECT_EQ(read_file(written / "flight_2.series.csv"), tuesday);
+    batch(folder / "in", folder / "out", 2, true);
+    EXPECT_FALSE(std::filesystem::exists(written / "flight.series.csv"));
+    EXPECT_EQ(read_file(written / "flight_2.series.csv"), tuesday);
+}
+
+TEST(Batch, UsesAFlightOnceUnderWhateverName) {
+    const auto folder = test::scratch_dir();
+    copy_sample(1, folder / "in", "a");
+    copy_sample(1, folder / "in", "b");
+    copy_sample(2, folder / "in", "c");
+    auto flights = batch(folder / "in", folder / "out");
+    EXPECT_THAT(exclude_copies(flights), testing::UnorderedElementsAre(testing::Pair("b", "a")));
+    EXPECT_THAT(flights[1].selection.flights, IsEmpty());
+    EXPECT_EQ(to_string(flights[1].selection.exclusions.back()),
+              "b: it is excluded from the fit: it is the same flight as a, which is used");
+    EXPECT_EQ(flights[2].selection.flights.size(), 1U);
+    // Rather that of which the log is there.
+    std::filesystem::remove(folder / "in" / "a.data");
+    flights = batch(folder / "in", folder / "out");
+    EXPECT_THAT(exclude_copies(flights), testing::UnorderedElementsAre(testing::Pair("a", "b")));
+}
+
+TEST(Batch, KnowsThatFlightsAreOfSeveralAircraft) {
+    const auto folder = test::scratch_dir();
+    for (int number = 1; number <= 2; ++number) copy_sample(number, folder / "in");
+    auto flights = batch(folder / "in", folder / "out");
+    EXPECT_EQ(mix_of(flights), "");
+    flights[0].record.aircraft_id = "8";
+    EXPECT_THAT(mix_of(flights), HasSubstr("8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01; 7"));
+    flights[0].selection.flights.clear();
+    EXPECT_EQ(mix_of(flights), "") << "what is not fitted does not count";
 }
 
 TEST(Batch, ReadsTheNamedAircraft) {

@@ -24,6 +24,7 @@ BatchFlight two_sorties() {
     flight.record.flight = "twice, \"up\"";
     flight.record.accepted = true;
     flight.record.aircraft_id = "7";
+    flight.record.aircraft_name = "synthetic_x";
     flight.record.power_source = "ENERGY.power";
     flight.record.phases = {phase(1, flight::Phase::takeoff, 10, 30), phase(2, flight::Phase::cruise, 100, 400),
                             phase(2, flight::Phase::landing, 400, 450)};
@@ -66,6 +67,8 @@ TEST(Catalogue, HasARowAPhaseAndARejectedLog) {
     EXPECT_EQ(cell(2, "used"), "false");
     EXPECT_EQ(cell(2, "complete"), "false");
     EXPECT_EQ(cell(2, "counter_energy_wh"), "");
+    EXPECT_EQ(cell(0, "synthetic"), "true");
+    EXPECT_EQ(cell(3, "synthetic"), "");
     EXPECT_EQ(cell(3, "flight"), "bad");
     EXPECT_EQ(cell(3, "phase"), "");
     EXPECT_EQ(cell(3, "used"), "false");
@@ -76,11 +79,13 @@ TEST(FlightsTable, HasARowASortie) {
     const auto table = flights_table({two_sorties(), rejected_flight()});
     ASSERT_EQ(table.rows.size(), 3U);
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
-    EXPECT_THAT(table.rows[0], testing::ElementsAre("twice, \"up\"", "1", "20", "-", "-", "25.0", "-", "-", "0.500",
-                                                    "0.250", "10", "0", "0.0", "0", "1 of 3"));
+    EXPECT_THAT(table.rows[0],
+                testing::ElementsAre("twice, \"up\"", "7 synthetic_x (SYNTHETIC)", "1", "20", "-", "-", "25.0", "-",
+                                     "-", "0.500", "0.250", "10", "0", "0.0", "0", "1 of 3"));
     // An asterisk: the log ends in the landing. Its counter is not known, so neither is the sortie's.
-    EXPECT_THAT(table.rows[1], testing::ElementsAre("twice, \"up\"", "2", "-", "300", "50*", "-", "25.0", "25.0",
-                                                    "1.000", "-", "20", "0", "0.0", "0", "1 of 3"));
+    EXPECT_THAT(table.rows[1],
+                testing::ElementsAre("twice, \"up\"", "7 synthetic_x (SYNTHETIC)", "2", "-", "300", "50*", "-", "25.0",
+                                     "25.0", "1.000", "-", "20", "0", "0.0", "0", "1 of 3"));
     EXPECT_EQ(table.rows[2][0], "bad");
     EXPECT_EQ(table.rows[2][2], "-");
 }

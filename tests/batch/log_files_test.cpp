@@ -65,6 +65,24 @@ TEST(FindLogs, GivesEachLogANameOfItsOwn) {
     EXPECT_THAT(names(find_logs({folder.string()})), ElementsAre("x", "x_2", "x_3", "x_2_2", "unnamed", "unnamed_2"));
 }
 
+TEST(FindLogs, ShortensNamesThatFilesCannotHave) {
+    const auto names_of_long = [](const std::string& name) {
+        std::set<std::string> taken;
+        taken.insert(free_flight_name(name + ".data", taken));
+        taken.insert(free_flight_name(name + ".data", taken));
+        return std::vector<std::string>(taken.begin(), taken.end());
+    };
+    const auto shortened = names_of_long(std::string(245, 'x'));
+    ASSERT_EQ(shortened.size(), 2U);
+    EXPECT_EQ(shortened[0].size(), 200U + 1U + 16U);
+    EXPECT_EQ(shortened[1], shortened[0] + "_2");
+    EXPECT_NE(names_of_long(std::string(244, 'x') + "y")[0], shortened[0]);
+    EXPECT_EQ(names_of_long(std::string(239, 'x'))[0], std::string(239, 'x'));
+    std::string umlauts = "x";
+    for (int i = 0; i < 122; ++i) umlauts += "\xC3\xBC";
+    EXPECT_EQ(names_of_long(umlauts)[0].substr(0, 200), umlauts.substr(0, 199) + "~");
+}
+
 TEST(FindLogs, KeepsLinksToNowhereToBeReported) {
     const auto folder = test::scratch_dir();
     touch(folder / "good.data");

@@ -106,6 +106,20 @@ TEST_F(Profiler, GoesOnPastThoseThatFail) {
     EXPECT_EQ(test::processes_with(marker), 0);
 }
 
+TEST_F(Profiler, ReplacesResultsOfAProfileAlone) {
+    write("p.toml", std::string(meter) + "[components.good]\ncommand = ['sleep', '1']\n");
+    for (const auto* name : {"out/good.csv", "out/idle.csv", "out/runs.csv"}) {
+        std::filesystem::create_directories(folder / "out");
+        write(name, "mine\n");
+        EXPECT_EQ(profile("p.toml"), 2) << name;
+        EXPECT_THAT(text("stderr"), HasSubstr(std::string(name) + " would be replaced"));
+        EXPECT_EQ(text(name), "mine\n");
+        std::filesystem::remove(folder / name);
+    }
+    EXPECT_EQ(profile("p.toml"), 0);
+    EXPECT_EQ(profile("p.toml"), 0);
+}
+
 TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
     const auto marker = test::new_marker();
     // Each start leaves a line in `starts`; the third configuration hangs until it is interrupted.

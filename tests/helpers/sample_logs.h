@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "batch/batch_run.h"
+#include "batch/manifest.h"
 #include "helpers/test_paths.h"
 
 #include <filesystem>
@@ -38,12 +39,14 @@ inline std::map<std::string, std::string> contents(const std::filesystem::path& 
 
 /// A batch over `input` into `out`, with the catalogue that flightwatt batch writes.
 inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input, const std::filesystem::path& out,
-                                             unsigned jobs = 2) {
+                                             unsigned jobs = 2, bool prune = false) {
     batch::BatchOptions options;
     options.out = out;
     options.jobs = jobs;
-    auto flights = run_batch(batch::find_logs({input.string()}), options,
-                             [](std::size_t, std::size_t, const batch::BatchFlight&) {});
+    const auto plan = batch::plan_batch(batch::find_logs({input.string()}), out, prune);
+    refuse_files_of_others(plan, out);
+    prepare_folder(plan, out);
+    auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const batch::BatchFlight&) {});
     write_file_atomically(out / "flights.csv", batch::catalogue_csv(flights));
     return flights;
 }

@@ -4,6 +4,7 @@
 #include "base/toml_reader.h"
 #include "base/units.h"
 #include "cli/numeric_options.h"
+#include "flight/flight_identity.h"
 
 #include <algorithm>
 #include <set>
@@ -97,20 +98,44 @@ flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
     return loaded;
 }
 
+void add_mix_option(po::options_description& options) {
+    options.add_options()("mix-aircraft",
+                          "use flights of several aircraft as if they were of one, also synthetic ones");
+}
+
 void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
                      const std::function<void(const std::string&, flight::LoadedFlight&)>& use) {
     std::vector<std::string> flights;
+    std::vector<flight::FlownBy> used;
+    std::vector<flight::FlightContent> contents;
     for (const auto& file : call.inputs) {
         auto loaded = flight::load_flight(std::filesystem::path(file), options);
-        const auto& name = loaded.series.flight;
+        const auto name = loaded.series.flight;
         if (std::ranges::find(flights, name) != flights.end()) {
             throw UsageError(fmt::format("flight '{}' is given twice", name));
         }
         flights.push_back(name);
         warn_of(call, file, loaded);
+        auto content = content_of(loaded.series);
+        const auto same = std::ranges::find_if(
+            contents, [&](const flight::FlightContent& other) { return is_same_flight(content, other); });
+        if (same != contents.end()) {
+            const auto& other = used[static_cast<std::size_t>(same - contents.begin())].flight;
+            warn(call, fmt::format("{} is excluded: it is the same flight as {}, which is used", name, other));
+            continue;
+        }
+        if (loaded.exclusion.empty()) {
+            contents.push_back(std::move(content));
+            used.push_back({name, loaded.series.aircraft_id, loaded.series.aircraft_name});
+        }
         use(file, loaded);
     }
     refuse_unknown_flights(options, flights);
+    if (call.has("mix-aircraft")) return;
+    if (const auto mix = describe_mix(used); !mix.empty()) {
+        throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),
+                         "use one aircraft's alone, or all as if they were of one with --mix-aircraft");
+    }
 }
 
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights) {

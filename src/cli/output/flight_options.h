@@ -21,8 +21,13 @@ void warn_of(const StageCall& call, const std::string& file, const flight::Loade
 /// load_flight, with its warnings.
 flight::LoadedFlight load_flight(const StageCall& call, const std::string& file, const flight::LoadOptions& options);
 
-/// Loads the flights of all inputs, one at a time. Throws UsageError for a flight that is given twice (it
-/// would be counted twice, and predict itself), and for --exclude and --keep of a flight that is not there.
+/// --mix-aircraft, of every stage that makes one result of several flights.
+void add_mix_option(boost::program_options::options_description& options);
+
+/// Loads the flights of all inputs, one at a time, to make one result of them. A flight that is there under two names is
+/// used once, by the first one, with a warning: it would be counted twice, and predict itself. Throws UsageError for two
+/// of one name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those
+/// of several aircraft, or synthetic ones beside real ones, unless --mix-aircraft is given.
 void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
                      const std::function<void(const std::string& file, flight::LoadedFlight& flight)>& use);
 

@@ -2,6 +2,7 @@
 
 #include "cli/output/json_text.h"
 #include "flight/chosen_track.h"
+#include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 
 #include <algorithm>
@@ -175,6 +176,8 @@ Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& pha
     }
     return {{"flight", series.flight},
             {"aircraft_id", series.aircraft_id},
+            {"aircraft_name", series.aircraft_name},
+            {"synthetic", flight::is_synthetic(series.aircraft_name)},
             {"power_source", power_track(series).source},
             {"motor_evidence", phases.motor_evidence},
             {"sorties", sorties},

@@ -131,26 +131,22 @@ std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
 
 void claim_results(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs,
                    const std::filesystem::path& folder) {
-    std::error_code none;
-    const bool has_runs = std::filesystem::is_regular_file(folder / runs_name, none);
     const OwnFiles own;
-    if (has_runs && !read_file(folder / runs_name).starts_with("component,configuration,repeat,")) {
-        throw UsageError(
-            fmt::format("{} is no list of runs of flightwatt profile and would be replaced; choose another "
-                        "folder with -o",
-                        (folder / runs_name).string()));
-    }
-    std::vector<std::string> names{"idle"};
-    for (const auto& component : specification.components) names.push_back(component.name);
-    declare_output(folder / runs_name);
-    for (const auto& name : names) {
-        const auto file = folder / (name + ".csv");
+    const auto claim = [&](const std::string& name, std::string_view beginning) {
+        const auto file = folder / name;
         declare_output(file);
-        if (has_runs || !std::filesystem::is_regular_file(file, none)) continue;
+        std::error_code none;
+        if (!std::filesystem::exists(file, none) || read_file(file).starts_with(beginning)) return;
         throw UsageError(
-            fmt::format("{} is no result of flightwatt profile, as there is no {} beside it, and would be "
-                        "replaced; choose another folder with -o",
-                        file.string(), runs_name));
+            fmt::format("{} would be replaced, and no profile wrote it; move it away, or choose another "
+                        "folder with -o",
+                        file.string()));
+    };
+    claim(runs_name, "component,configuration,repeat,");
+    // As write_profiles begins its files.
+    claim("idle.csv", "# Power of the idle computer");
+    for (const auto& component : specification.components) {
+        claim(component.name + ".csv", fmt::format("# Power of {}, profiled by flightwatt", component.name));
     }
     for (const auto& run : runs) declare_output(folder / run.layer1);
 }

@@ -39,7 +39,7 @@ std::vector<ProfileRun> planned_runs(const ProfileSpecification& specification,
                                      const std::vector<std::vector<std::size_t>>& chosen);
 
 /// Makes sure that the results replace nothing but those of an earlier profile. Throws UsageError where the folder has
-/// files of their names and no runs.csv of a profile, or where one of them is an input.
+/// files of their names that no profile wrote, or where one of them is an input.
 void claim_results(const ProfileSpecification& specification, const std::vector<ProfileRun>& runs,
                    const std::filesystem::path& folder);
 

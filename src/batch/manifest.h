@@ -1,0 +1,66 @@
+#pragma once
+
+#include "batch/log_files.h"
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+/// What a batch wrote into its folder: it replaces and removes that alone.
+namespace flightwatt::batch {
+
+inline constexpr auto manifest_name = "batch.json";
+/// The folder in OUT where files stand until they are whole.
+inline constexpr auto unfinished_folder = ".flightwatt-unfinished";
+
+/// A flight whose files are the batch's: flights/NAME.series.csv, .phases.csv and .record.json.
+struct ManifestFlight {
+    std::string flight;
+    std::filesystem::path log;    ///< as it was given
+    std::filesystem::path place;  ///< the same from the root
+    std::string why_not_fitted;   ///< see LogFile
+};
+
+struct Manifest {
+    std::set<std::string> files;          ///< in OUT itself
+    std::vector<ManifestFlight> flights;  ///< by name
+    bool is_of_earlier_version = false;   ///< there is none: it was made up from the records
+};
+
+/// The path of a log from the root, its folder without links: one log, one place, however it is written.
+std::filesystem::path place_of(const std::filesystem::path& log);
+
+/// OUT/batch.json; where there is none, what records of an earlier version stand for (nothing in an empty or new
+/// folder). Throws InputError where batch.json is damaged, another program's, or of a newer format.
+Manifest read_manifest(const std::filesystem::path& out);
+
+void write_manifest(const Manifest& manifest, const std::filesystem::path& out);
+
+/// A flight of an earlier run that is dropped from the folder.
+struct DroppedFlight {
+    std::string flight;
+    std::string reason;  ///< "its log LOG is gone", "its log LOG is not in this batch"
+};
+
+/// What a run is to do.
+struct BatchPlan {
+    std::vector<LogFile> logs;  ///< this run's and those of earlier runs, by path
+    std::vector<DroppedFlight> dropped;
+    Manifest manifest;  ///< once it is done
+    Manifest earlier;
+};
+
+/// Adds this run's logs to those of earlier runs. A log keeps the name that it had; other logs of one name are called
+/// NAME, NAME_2, ... Earlier flights whose log is gone are kept as they are, except those that were never usable. With
+/// `prune` all earlier flights that are not among `logs` are dropped.
+BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out, bool prune);
+
+/// Throws UsageError, naming it, where a file that no batch wrote stands where this one is going to write.
+void refuse_files_of_others(const BatchPlan& plan, const std::filesystem::path& out);
+
+/// Makes the folders, lists in batch.json what is going to be written, and removes what is dropped and what killed runs
+/// left unfinished. Killed at any moment, every file is listed.
+void prepare_folder(const BatchPlan& plan, const std::filesystem::path& out);
+
+}  // namespace flightwatt::batch

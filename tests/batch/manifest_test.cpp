@@ -1,0 +1,136 @@
+#include "batch/manifest.h"
+
+#include "base/error.h"
+#include "batch/batch_files.h"
+#include "helpers/rejected.h"
+#include "helpers/sample_logs.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::batch {
+namespace {
+
+using test::write_text;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::string refusal(const BatchPlan& plan, const std::filesystem::path& out) {
+    try {
+        refuse_files_of_others(plan, out);
+    } catch (const UsageError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::vector<std::string> words(const std::vector<DroppedFlight>& dropped) {
+    std::vector<std::string> lines;
+    for (const auto& flight : dropped) lines.push_back(flight.flight + ", " + flight.reason);
+    return lines;
+}
+
+TEST(Manifest, HoldsAnyName) {
+    const auto out = test::scratch_dir();
+    Manifest manifest;
+    manifest.files = {"flights.csv"};
+    manifest.flights = {{"caf\xE9", "in/caf\xE9.data", "/in/caf\xE9.data", ""}, {"\"a\"", "a", "/a", "why"}};
+    write_manifest(manifest, out);
+    const auto read = read_manifest(out);
+    EXPECT_EQ(read.files, manifest.files);
+    ASSERT_EQ(read.flights.size(), 2U);
+    EXPECT_EQ(read.flights[0].flight, "caf\xE9");
+    EXPECT_EQ(read.flights[0].place, "/in/caf\xE9.data");
+    EXPECT_EQ(read.flights[1].why_not_fitted, "why");
+    EXPECT_FALSE(read.is_of_earlier_version);
+}
+
+TEST(Manifest, IsRefusedWhereItIsNone) {
+    const auto out = test::scratch_dir();
+    EXPECT_THAT(read_manifest(out).flights, IsEmpty());
+    for (const auto* text : {"", "{", "[]", "{\"format\": 1}", R"({"format": 1, "files": [], "flights": [{}]})",
+                             R"({"format": 1, "files": [], "flights":
+                                [{"flight": "../x", "log": "", "place": "", "why_not_fitted": ""}]})"}) {
+        write_text(out / manifest_name, text);
+        EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("batch.json: this is no list")) << text;
+    }
+    write_text(out / manifest_name, R"({"format": 99})");
+    EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("newer"));
+}
+
+TEST(Manifest, IsMadeOfTheRecordsOfAnEarlierVersion) {
+    const auto out = test::scratch_dir();
+    make_directories(out / "flights");
+    write_text(out / "flights" / "a.record.json",
+               R"({"flight": "a", "log": "in/a.data", "fingerprint": "", "accepted": true, "measured": {}})");
+    write_text(out / "flights" / "mine.record.json", R"({"flight": "mine"})");
+    write_text(out / "flights" / "rubbish.record.json", "rubbish");
+    write_text(out / "flights.csv", "flight,sortie,phase,start_s\n");
+    auto manifest = read_manifest(out);
+    EXPECT_TRUE(manifest.is_of_earlier_version);
+    ASSERT_EQ(manifest.flights.size(), 1U);
+    EXPECT_EQ(manifest.flights[0].flight, "a");
+    EXPECT_EQ(manifest.flights[0].place, place_of("in/a.data"));
+    EXPECT_TRUE(manifest.files.contains("model.toml"));
+    write_text(out / "flights.csv", "my own list\n");
+    EXPECT_THAT(read_manifest(out).files, IsEmpty());
+}
+
+TEST(BatchPlan, RefusesFilesOfOthersWhereABatchWrites) {
+    const auto folder = test::scratch_dir();
+    test::copy_sample(1, folder / "in");
+    const auto out = folder / "out";
+    make_directories(out / "flights");
+    const auto plan = plan_batch(find_logs({(folder / "in").string()}), out, false);
+    EXPECT_EQ(refusal(plan, out), "");
+    for (const auto* name : {"flights.csv", "model.toml", "model_errors.toml", "fit.json", "table1.md",
+                             "flights/opterra_synthetic_01.series.csv", "flights/opterra_synthetic_01.record.json"}) {
+        write_text(out / name, "mine");
+        EXPECT_THAT(refusal(plan, out), HasSubstr((out / name).string() + " would be replaced")) << name;
+        std::filesystem::remove(out / name);
+    }
+    // Not through a link either, whoever made the folder.
+    test::batch(folder / "in", out);
+    write_text(folder / "precious", "mine");
+    std::filesystem::remove(out / "flights.csv");
+    std::filesystem::create_symlink(folder / "precious", out / "flights.csv");
+    EXPECT_THAT(refusal(plan_batch(find_logs({(folder / "in").string()}), out, false), out), HasSubstr("flights.csv"));
+}
+
+TEST(BatchPlan, SaysWhatIsDropped) {
+    const auto folder = test::scratch_dir();
+    const auto out = folder / "out";
+    for (int number = 1; number <= 3; ++number) test::copy_sample(number, folder / "in");
+    write_text(folder / "in" / "bad.data", "rubbish");
+    test::batch(folder / "in", out);
+    const auto in = (folder / "in").string();
+    std::filesystem::remove(folder / "in" / "opterra_synthetic_01.data");
+    std::filesystem::remove(folder / "in" / "bad.data");
+    const auto logs = find_logs({in + "/opterra_synthetic_03.data"});
+    EXPECT_THAT(words(plan_batch(logs, out, false).dropped),
+                ElementsAre("bad, its log " + in + "/bad.data is gone, and nothing came of it"));
+    EXPECT_THAT(words(plan_batch(logs, out, true).dropped),
+                ElementsAre("bad, its log " + in + "/bad.data is gone",
+                            "opterra_synthetic_01, its log " + in + "/opterra_synthetic_01.data is gone",
+                            "opterra_synthetic_02, its log " + in + "/opterra_synthetic_02.data is not in this batch"));
+}
+
+TEST(BatchPlan, KnowsLogsAgainInAFolderThatMoved) {
+    const auto folder = test::scratch_dir();
+    for (const auto* name : {"here", "there"}) std::filesystem::create_directories(folder / name);
+    Manifest manifest;
+    manifest.flights = {{"x_2", "in/x.data", folder / "here" / "in" / "x.data", ""}};
+    write_manifest(manifest, folder);
+    const auto plan = plan_batch({{"in/x.data", "x"}}, folder, false);
+    ASSERT_EQ(plan.logs.size(), 1U);
+    EXPECT_EQ(plan.logs[0].flight, "x_2");
+    EXPECT_TRUE(plan.logs[0].is_of_this_run);
+}
+
+}  // namespace
+}  // namespace flightwatt::batch

@@ -1,0 +1,280 @@
+// No program changes a file that it reads, with any of its outputs, by whatever name: every program, every file that it
+// can name, every option that writes.
+
+#include "base/atomic_file.h"
+#include "helpers/running_program.h"
+#include "helpers/test_paths.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// A command, with the files that it reads and the names that its outputs go to. OUT stands for the output.
+struct Command {
+    std::string stage;
+    std::string arguments;  ///< with all files that the stage can name
+    Words inputs;
+    std::string option;  ///< "--output" ...
+    Words names = {};    ///< in a folder OUT; empty: OUT is the file itself
+};
+
+const Words mission_files{"missions/paper/phased.toml", "fits/mechanical/opterra-table1.toml",
+                          "fits/battery/paper.toml", "fits/compute/tx2-detection.csv",
+                          "fits/compute/tx2-encryption.csv"};
+
+Words operator+(Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+const Words flight_files{"a.data", "a.log", "s.series.csv"};
+const Words flight_names{"flights.csv",
+                         "model.toml",
+                         "model_errors.toml",
+                         "fit.json",
+                         "table1.txt",
+                         "table1.csv",
+                         "table1.md",
+                         "batch.json",
+                         "flights/a.series.csv",
+                         "flights/a.phases.csv",
+                         "flights/a.record.json"};
+
+std::vector<Command> commands() {
+    const std::string mission = "missions/paper/phased.toml";
+    const std::string model = "fits/mechanical/opterra-table1.toml";
+    const Words disturbed = mission_files + Words{"missions/disturbances/headwind.toml"};
+    const std::string simulate = mission + " --disturb missions/disturbances/headwind.toml";
+    std::vector<Command> all{
+        {"parse", "a.data", {"a.data", "a.log"}, "--output"},
+        {"parse", "s.series.csv", {"s.series.csv"}, "--output"},
+        {"segment", "a.data", {"a.data", "a.log"}, "--output"},
+        {"validate", "a.data s.series.csv", flight_files, "--output"},
+        {"battery", "a.data s.series.csv", flight_files, "--output"},
+        {"predict",
+         "a.data --model spread.toml --until 300 --remaining 100",
+         {"a.data", "a.log", "spread.toml"},
+         "--output"},
+        {"batch", "a.data s.series.csv --published " + model, flight_files + Words{model}, "--output", flight_names},
+        {"batch",
+         "folder --published " + model,
+         {"folder/b.data", "folder/b.log", "folder/odd/not-fitted.txt", model},
+         "--output",
+         {"flights.csv", "model.toml", "fit.json"}},
+        {"profile",
+         "spec.toml",
+         {"spec.toml", "rec/part-5.csv", "rec/part-10.csv", "rec/idle.csv"},
+         "--output",
+         {"runs.csv", "idle.csv", "part.csv", "layer1/part/fps=5_repeat_1.csv"}},
+        {"profile",
+         "--check-interpolation fits/compute/tx2-detection.csv",
+         {"fits/compute/tx2-detection.csv"},
+         "--output"},
+        {"plan",
+         "missions/paper/plan.toml",
+         {"missions/paper/plan.toml", "fits/mechanical/opterra-table1.toml", "fits/battery/paper.toml",
+          "fits/compute/tx2-detection.csv"},
+         "--output"},
+        {"compare", simulate, disturbed, "--output"},
+        {"synthesize",
+         model + " --truth --flights 1 --cruise 60 --name x",
+         {model},
+         "--output",
+         {"x_01.log", "x_01.data", "x_01.truth.csv"}},
+        {"report", "batch " + mission + " --published " + model,
+         mission_files + Words{"batch/flights/a.series.csv", "batch/flights/a.record.json", "batch/model.toml",
+                               "batch/flights.csv", "batch/table1.md", "batch/batch.json"},
+         "--output"},
+        {"report", mission + " --json", mission_files, "--figures", {"schedules-soc.vl.json", "schedules-soc.svg"}},
+    };
+    for (const auto* option : {"--output", "--table", "--curves"}) {
+        all.push_back({"fit", "a.data s.series.csv --published " + model, flight_files + Words{model}, option});
+    }
+    for (const auto* option : {"--output", "--schedule-out", "--samples-csv"}) {
+        all.push_back({"simulate", simulate + " --samples 10", disturbed, option});
+    }
+    return all;
+}
+
+void put(const std::filesystem::path& from, const std::filesystem::path& to) {
+    std::filesystem::create_directories(to.parent_path());
+    std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing);
+}
+
+/// Everything that the commands name.
+void make_inputs(const std::filesystem::path& folder) {
+    const auto source = test::source_dir();
+    for (const auto* name : {"fits", "missions"}) {
+        std::filesystem::copy(source / name, folder / name, std::filesystem::copy_options::recursive);
+    }
+    for (const auto* ending : {".data", ".log"}) {
+        put(source / "logs" / (std::string("opterra_synthetic_01") + ending), folder / (std::string("a") + ending));
+        put(source / "logs" / (std::string("opterra_synthetic_02") + ending), folder / (std::string("s") + ending));
+        put(source / "logs" / (std::string("opterra_synthetic_03") + ending),
+            folder / "folder" / (std::string("b") + ending));
+        put(source / "logs" / (std::string("opterra_synthetic_04") + ending),
+            folder / "folder" / "odd" / (std::string("c") + ending));
+    }
+    write_file_atomically(folder / "folder" / "odd" / "not-fitted.txt", "odd\n");
+    std::filesystem::create_directories(folder / "rec");
+    for (const auto* name : {"part-5", "part-10", "idle"}) {
+        write_file_atomically(folder / "rec" / (std::string(name) + ".csv"), "time_s,power_w\n0,2\n1,2\n2,2\n");
+    }
+    write_file_atomically(
+        folder / "spec.toml",
+        "[sampler]\nkind = \"recorded\"\nfile = \"rec/part-{fps}.csv\"\nidle_file = \"rec/idle.csv\"\n"
+        "[components.part]\nqos = { fps = [5, 10] }\n");
+    const auto made = test::run_shell(
+        "flightwatt parse s.data -o s.series.csv && flightwatt fit a.data s.data -o spread.toml && "
+        "flightwatt batch a.data -o batch",
+        folder);
+    ASSERT_EQ(made.code, 0) << made.err;
+}
+
+/// How an output can come to be an input.
+enum class Alias { plain, relative, symlink, hardlink };
+
+/// Puts a link to the input where the output goes.
+void make_alias(Alias alias, const std::filesystem::path& input, const std::filesystem::path& output) {
+    std::filesystem::create_directories(output.parent_path());
+    if (alias == Alias::hardlink) {
+        std::filesystem::create_hard_link(input, output);
+    } else {
+        std::filesystem::create_symlink(input, output);
+    }
+}
+
+/// The metavariables of the help that name no file.
+const std::set<std::string> no_files{"N",
+                                     "S",
+                                     "X",
+                                     "P",
+                                     "M",
+                                     "W",
+                                     "A",
+                                     "AH",
+                                     "HOW",
+                                     "NAME",
+                                     "TITLE",
+                                     "ID",
+                                     "FLIGHT",
+                                     "A,B",
+                                     "KIND",
+                                     "A,B,power_w",
+                                     "FLIGHT[:PHASE]=W",
+                                     "NAME[,NAME]"};
+
+/// Options that name files to read; those that write have a command above.
+const std::set<std::string> reading{"--published", "--model", "--disturb", "--sysfs", "--reference-figures"};
+
+class InputsKept : public testing::Test {
+  protected:
+    std::filesystem::path folder = test::scratch_dir() / "all";
+
+    void SetUp() override {
+        std::filesystem::create_directories(folder);
+        make_inputs(folder);
+    }
+
+    std::string run(const Command& command, const std::string& output) {
+        const auto words = "flightwatt " + command.stage + " " + command.arguments + " " + command.option + " " +
+                           test::shell_quoted(output);
+        const auto result = test::run_shell(words, folder);
+        return fmt::format("{} of {}: {}", result.code, words, result.err);
+    }
+
+    void expect_kept(const Command& command, const std::string& input, const std::string& output) {
+        const auto before = read_file(folder / input);
+        const auto outcome = run(command, output);
+        const bool cannot_draw = outcome.find("node_modules") != std::string::npos;  // and writes nothing either
+        EXPECT_TRUE(outcome.starts_with("2 of") || cannot_draw) << outcome;
+        EXPECT_EQ(read_file(folder / input), before) << outcome;
+        if (read_file(folder / input) != before) write_file_atomically(folder / input, before);
+    }
+};
+
+TEST_F(InputsKept, ByEveryProgramEveryOutputAndEveryName) {
+    for (const auto& command : commands()) {
+        for (const auto& input : command.inputs) {
+            if (command.names.empty()) {
+                const std::string ending = command.option == "--table" ? ".csv" : "";
+                for (const auto alias : {Alias::plain, Alias::relative, Alias::symlink, Alias::hardlink}) {
+                    if (command.option == "--table" && !input.ends_with(".csv") && alias < Alias::symlink) continue;
+                    std::string output = input;
+                    if (alias == Alias::relative) output = "missions/../" + input;
+                    if (alias >= Alias::symlink) {
+                        output = "link" + ending;
+                        make_alias(alias, folder / input, folder / output);
+                    }
+                    expect_kept(command, input, output);
+                    if (alias >= Alias::symlink) std::filesystem::remove(folder / output);
+                }
+                continue;
+            }
+            for (const auto& name : command.names) {
+                for (const auto alias : {Alias::symlink, Alias::hardlink}) {
+                    make_alias(alias, folder / input, folder / "made" / name);
+                    if (name == "batch.json") {
+                        const auto before = read_file(folder / input);
+                        EXPECT_FALSE(run(command, "made").starts_with("0 "));
+                        EXPECT_EQ(read_file(folder / input), before);
+                    } else {
+                        expect_kept(command, input, "made");
+                    }
+                    std::filesystem::remove_all(folder / "made");
+                }
+            }
+        }
+    }
+}
+
+TEST_F(InputsKept, WhereTwoResultsAreToGoToOneFile) {
+    for (const auto* words : {"fit a.data -o x.csv --table x.csv", "fit a.data --curves ./x.csv --table x.csv",
+                              "simulate missions/paper/phased.toml -o x.csv --schedule-out x.csv",
+                              "report missions/paper/phased.toml -o x --figures x"}) {
+        const auto result = test::run_shell(std::string("flightwatt ") + words, folder);
+        EXPECT_EQ(result.code, 2) << words << result.err;
+        EXPECT_NE(result.err.find("one file"), std::string::npos) << result.err;
+        EXPECT_FALSE(std::filesystem::exists(folder / "x.csv")) << words;
+    }
+}
+
+TEST(InputsKeptCoverage, KnowsEveryOptionThatNamesAFile) {
+    std::map<std::string, std::set<std::string>> writing;
+    for (const auto& command : commands()) writing[command.stage].insert(command.option);
+    const std::regex line("\n +(?:-[a-z] \\[ )?(--[a-z][a-z-]*)(?: \\])?(?: ([^ \n]+))?");
+    std::size_t options = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(test::binary_dir() / "bin")) {
+        const auto program = entry.path().filename().string();
+        if (!program.starts_with("flightwatt-")) continue;
+        const auto stage = program.substr(std::string("flightwatt-").size());
+        const auto help = test::run_shell(program + " --help", test::binary_dir()).out;
+        for (std::sregex_iterator at(help.begin(), help.end(), line), end; at != end; ++at) {
+            const std::string option = (*at)[1];
+            const std::string value = (*at)[2];
+            // What stands after an option without a value is its description, in small letters.
+            if (value.empty() || std::islower(static_cast<unsigned char>(value.front())) != 0) continue;
+            if (value == "JSON" || value == "Table" || no_files.contains(value)) continue;
+            ++options;
+            EXPECT_TRUE(reading.contains(option) || writing[stage].contains(option))
+                << program << " " << option << " " << value << ": add a command that would write over its inputs";
+        }
+        EXPECT_TRUE(writing[stage].contains("--output")) << program;
+    }
+    EXPECT_GT(options, 20U) << "the help was not read";
+}
+
+}  // namespace
+}  // namespace flightwatt::cli
