@@ -85,8 +85,13 @@ TEST(SameOnEveryWay, SegmentsEveryLog) {
     const auto folder = test::scratch_dir();
     for (const auto& log : test::all_logs()) {
         const auto parsed = test::run_shell("flightwatt parse " + test::shell_quoted(log) + " -o a.csv", folder);
-        if (parsed.code != 0) continue;  // it measured no power
+        if (parsed.code != 0) continue;  // it holds neither power nor altitude
         const BothWays ways{" " + test::shell_quoted(log), " a.csv"};
+        if (const auto found = test::run_shell("flightwatt segment a.csv", folder); found.code != 0) {
+            EXPECT_EQ(found.code, 3) << found.err;
+            EXPECT_EQ(test::run_shell("flightwatt segment" + ways.logs, folder).code, 3) << "nothing flew";
+            continue;
+        }
         expect_same("segment", ways, folder);
         expect_same("segment --json --hold 20 --cruise-fraction 0.8", ways, folder);
         expect_same("segment --explain", ways, folder);

@@ -124,24 +124,24 @@ std::string why_only_driven(const FlightSeries& series, const FlightGrid& grid, 
         moved_m, speed);
 }
 
-/// How many times as much `b` moves as `a` (as long); std::nullopt where `a` hardly moves, or they have nothing to do
-/// with each other.
+/// How many times as much `b` moves as `a` (as long), where one of them moves; std::nullopt where they hardly do, or have
+/// nothing to do with each other.
 std::optional<double> times_as_much(const std::vector<double>& a, const std::vector<double>& b) {
-    constexpr std::size_t enough = 20;
-    constexpr double moves_m = 5.0;  // root mean square
+    constexpr std::size_t enough = 5;
+    constexpr double moves_m = 5.0;
     constexpr double least_correlation = 0.8;
-    if (a.size() < enough) return std::nullopt;
+    std::size_t moves = 0;
     double aa = 0.0;
     double ab = 0.0;
     double bb = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
+        if (std::max(std::abs(a[i]), std::abs(b[i])) < moves_m) continue;
+        ++moves;
         aa += a[i] * a[i];
         ab += a[i] * b[i];
         bb += b[i] * b[i];
     }
-    if (aa < moves_m * moves_m * static_cast<double>(a.size()) || ab < least_correlation * std::sqrt(aa * bb)) {
-        return std::nullopt;
-    }
+    if (moves < enough || aa == 0.0 || ab < least_correlation * std::sqrt(aa * bb)) return std::nullopt;
     return ab / aa;
 }
 

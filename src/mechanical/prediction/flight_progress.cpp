@@ -20,7 +20,7 @@ flight::FlightSeries tracks_for_segmentation(const flight::FlightSeries& series)
     flight::FlightSeries slim = series;
     std::erase_if(slim.tracks, [](const flight::Track& track) {
         return track.name != "power_w" && track.name != "altitude_m" && track.name != "throttle_percent" &&
-               track.name != "ground_speed_m_per_s" && track.name != "ground_altitude_m";
+               track.name != "ground_speed_m_per_s" && track.name != "ground_altitude_m" && track.name != "rover_mode";
     });
     return slim;
 }
