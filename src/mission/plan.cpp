@@ -190,7 +190,7 @@ LeastPlan least_plan(const PlanningProblem& problem, const FlightSpreads& spread
     quantile = landing_quantile(plan.flown, spreads, probability);
     plan.margin_percent = quantile.margin_percent;
     plan.plan.final_soc_percent = quantile.left_percent + quantile.margin_percent;
-    plan.plan.feasible = plan.summary.feasible && quantile.left_percent >= problem.reserve_soc_percent;
+    plan.plan.feasible = plan.summary.keeps_reserve && quantile.left_percent >= problem.reserve_soc_percent;
     plan.plan.utility = plan.plan.bound = plan.summary.utility.value_or(0.0);
     return least;
 }
@@ -209,8 +209,9 @@ MissionPlan plan_with_chance(const PlanningProblem& problem, double probability)
     MarginSearch search(quantile.margin_percent);
     bool is_least = true;
     for (int round = 0; round < max_margin_rounds && !search.is_exhausted(); ++round) {
+        const double planned_percent = std::max(search.margin_percent(), 0.0);  // as stated, it keeps the reserve too
         auto stricter = problem;
-        stricter.reserve_soc_percent += search.margin_percent();
+        stricter.reserve_soc_percent += planned_percent;
         auto plan = plan_certain(stricter);
         if (!plan.plan.feasible) {
             search.learn_too_much();
@@ -223,11 +224,11 @@ MissionPlan plan_with_chance(const PlanningProblem& problem, double probability)
         if (slack_percent < 0.0) continue;
         const bool is_same = plan.flown.schedule == best.flown.schedule;
         if (is_least || *plan.summary.utility >= *best.summary.utility) {
-            plan.margin_percent = quantile.margin_percent;
+            plan.margin_percent = std::max(quantile.margin_percent, 0.0);
             plan.sources = spreads.sources;
             best = std::move(plan);
         }
-        if (slack_percent <= close_percent || (is_same && !is_least)) break;
+        if (slack_percent <= close_percent || planned_percent == 0.0 || (is_same && !is_least)) break;
         is_least = false;
     }
     best.summary = simulate(best.flown).summary;

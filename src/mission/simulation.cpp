@@ -22,7 +22,7 @@ void require_output_step(double output_s, double duration_s) {
         throw UsageError(fmt::format("an output step of {:.6g} s makes no sense, expected more than 0", output_s));
     }
     if (duration_s / output_s > most_rows) {
-        throw UsageError(fmt::format("an output step of {:.6g} s makes more than {:.0e} rows of {:.6g} s", output_s,
+        throw UsageError(fmt::format("an output step of {:.6g} s makes more than {:.0f} rows of {:.6g} s", output_s,
                                      most_rows, duration_s));
     }
 }

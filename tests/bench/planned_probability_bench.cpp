@@ -1,5 +1,5 @@
 // What `plan --probability` asked for, beside what flights drawn of the plan do, in generated missions.
-// usage: planned_probability_bench [MISSIONS [FLIGHTS]]: 20 and 20000 if not said
+// usage: planned_probability_bench [MISSIONS [FLIGHTS [SEED]]]: 20, 20000 and 1001 if not said
 
 #include "base/number.h"
 #include "base/units.h"
@@ -18,8 +18,6 @@ namespace {
 
 using namespace flightwatt;
 
-constexpr unsigned first_seed = 1001;  // the tests use those from 1 on
-
 /// How far the share of flights below the reserve is from what was asked for [standard errors].
 double deviations(const mission::Mission& flown, double probability, std::size_t flights) {
     const auto sampled = mission::sample_flights({flown, flown.schedule, std::nullopt}, {}, {flights, 1, 0});
@@ -27,7 +25,7 @@ double deviations(const mission::Mission& flown, double probability, std::size_t
            std::sqrt(probability * (1.0 - probability) / static_cast<double>(flights));
 }
 
-void run(std::size_t missions, std::size_t flights) {
+void run(std::size_t missions, std::size_t flights, unsigned first_seed) {
     fmt::print(
         "{} missions from seed {}, {} flights each: share below the reserve less what was asked for,\n"
         "in standard errors; of the plan, and of the largest payload beside the least schedule.\n\n"
@@ -55,12 +53,13 @@ void run(std::size_t missions, std::size_t flights) {
 int main(int argc, char** argv) {
     const auto missions = argc > 1 ? parse_unsigned(argv[1]) : std::optional<std::uint64_t>(20);
     const auto flights = argc > 2 ? parse_unsigned(argv[2]) : std::optional<std::uint64_t>(20000);
-    if (argc > 3 || !missions || !flights || *flights < 2) {
-        fmt::print(stderr, "usage: planned_probability_bench [MISSIONS [FLIGHTS]]\n");
+    const auto seed = argc > 3 ? parse_unsigned(argv[3]) : std::optional<std::uint64_t>(1001);  // the tests use 1 on
+    if (argc > 4 || !missions || !flights || !seed || *flights < 2) {
+        fmt::print(stderr, "usage: planned_probability_bench [MISSIONS [FLIGHTS [SEED]]]\n");
         return 2;
     }
     try {
-        run(*missions, *flights);
+        run(*missions, *flights, static_cast<unsigned>(*seed));
     } catch (const std::exception& error) {
         fmt::print(stderr, "planned_probability_bench: error: {}\n", error.what());
         return 1;

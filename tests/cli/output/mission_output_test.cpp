@@ -64,7 +64,7 @@ TEST(MissionJson, HoldsTheChancesOfSampledFlights) {
     summary.samples = mission::SampledFlights{};
     summary.samples->samples = 1000;
     summary.samples->probability_below_reserve = 0.25;
-    summary.samples->drawn = {"cruise power"};
+    summary.samples->sources.drawn = {"cruise power"};
     const auto json = to_json(summary);
     EXPECT_EQ(json["samples"], 1000);
     EXPECT_EQ(json["probability_below_reserve"], 0.25);
