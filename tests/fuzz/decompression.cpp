@@ -1,0 +1,9 @@
+// gzip, bzip2, xz and zstd.
+
+#include "fuzz/fuzz_target.h"
+#include "telemetry/data_file.h"
+
+void flightwatt::fuzz::run(std::string_view bytes) {
+    constexpr std::size_t most_bytes = 1'000'000;
+    telemetry::DataFile(as_file(bytes, "fuzz.data"), most_bytes).require_unchanged();
+}
