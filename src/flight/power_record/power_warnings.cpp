@@ -151,7 +151,8 @@ void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
                     gaps, gaps == 1 ? "" : "s", together_s, longest.duration_s, longest.start_s, percent(part)));
 }
 
-/// Of single samples that rise above both neighbours by more than half of what was ever held for three samples.
+/// Of single samples that rise above both neighbours by more than half of what was ever held for three samples, or fall
+/// below a fifth of both while these are more than a tenth of that.
 void warn_of_peaks(const FlownPower& flown, Warnings& warnings) {
     const auto& record = flown.record;
     const auto& power_w = record.power_w;
@@ -163,15 +164,18 @@ void warn_of_peaks(const FlownPower& flown, Warnings& warnings) {
     std::size_t peaks = 0;
     for_each_flown(record, [&](std::size_t i) {
         if (i == 0 || i + 1 >= power_w.size()) return;
-        const double above_w = power_w[i] - std::max(power_w[i - 1], power_w[i + 1]);
-        if (above_w <= held_w / 2.0) return;
-        carried_j += above_w * std::min(record.time_s[i + 1] - record.time_s[i - 1], longest_s) / 2.0;
+        const auto [lower_w, higher_w] = std::minmax(power_w[i - 1], power_w[i + 1]);
+        const bool rises = power_w[i] - higher_w > held_w / 2.0;
+        const bool falls = lower_w > 0.1 * held_w && power_w[i] < 0.2 * lower_w;
+        if (!rises && !falls) return;
+        const double apart_w = rises ? power_w[i] - higher_w : lower_w - power_w[i];
+        carried_j += apart_w * std::min(record.time_s[i + 1] - record.time_s[i - 1], longest_s) / 2.0;
         ++peaks;
     });
     const double part = carried_j / flown.energy_j;
     if (part <= doubtful_peak_part) return;
-    warnings.push_back(fmt::format("{} single sample{} far above the neighbours carr{} {} % of the energy", peaks,
-                                   peaks == 1 ? "" : "s", peaks == 1 ? "ies" : "y", percent(part)));
+    warnings.push_back(fmt::format("{} single sample{} far above or below the neighbours make{} {} % of the energy",
+                                   peaks, peaks == 1 ? "" : "s", peaks == 1 ? "s" : "", percent(part)));
 }
 
 void warn_of_standing(const FlownPower& flown, Warnings& warnings) {
