@@ -20,7 +20,7 @@ constexpr double doubtful_phase_part = 0.10;       // of the phase's energy,
 constexpr double doubtful_phase_of_flight = 0.02;  // and of the flight's
 constexpr double told_gap_part = 0.02;             // links drop out for seconds all the time
 constexpr double doubtful_gap_part = 0.04;
-constexpr double doubtful_peak_part = 0.03;
+constexpr double doubtful_peak_part = 0.02;
 constexpr double doubtful_negative_part = 0.02;
 constexpr std::size_t standing_samples = 30;
 constexpr double doubtful_standing_part = 0.04;
@@ -178,6 +178,10 @@ void warn_of_peaks(const FlownPower& flown, Warnings& warnings) {
                                    peaks, peaks == 1 ? "" : "s", peaks == 1 ? "s" : "", percent(part)));
 }
 
+bool runs_by_throttle(const PowerRecord& record, std::size_t i) {
+    return !record.throttle_percent.empty() && record.throttle_percent[i] > powerless_throttle_percent;
+}
+
 void warn_of_standing(const FlownPower& flown, Warnings& warnings) {
     const auto& record = flown.record;
     const auto& time_s = record.time_s;
@@ -186,8 +190,8 @@ void warn_of_standing(const FlownPower& flown, Warnings& warnings) {
         for (auto begin = first; begin < last;) {
             auto end = begin + 1;
             while (end < last && power_w[end] == power_w[begin]) ++end;
-            const double lasts_s =
-                power_w[begin] == 0.0 ? 0.0 : time_s[end - 1] - time_s[begin];  // 0: the motor is off
+            const bool is_off = power_w[begin] == 0.0 && !runs_by_throttle(record, (begin + end) / 2);
+            const double lasts_s = is_off ? 0.0 : time_s[end - 1] - time_s[begin];
             const double part = std::max(power_w[begin] * lasts_s / flown.energy_j, lasts_s / flown.duration_s);
             if (end - begin >= standing_samples && end - begin < last - first && part > doubtful_standing_part) {
                 warnings.push_back(
