@@ -23,11 +23,12 @@ struct Choice {
 
 /// Leaves out what cannot be.
 Choice sound_choice(const FlightSeries& series, const Track& candidate) {
-    const bool of_power = candidate.name == "voltage_v" || candidate.name == "current_a";
-    auto sound =
-        sound_track(candidate, of_power ? contradicted_times(series, candidate.source) : std::vector<double>{});
+    auto sound = sound_track(candidate);
     Choice choice{std::move(sound.track), {}};
     if (!sound.left_out.empty()) choice.said.push_back(std::move(sound.left_out));
+    // Where the message contradicts itself is said of its power.
+    if (candidate.name == "voltage_v" || candidate.name == "current_a")
+        choice.track = without_times(choice.track, contradicted_times(series, candidate.source));
     return choice;
 }
 

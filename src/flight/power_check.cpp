@@ -145,6 +145,24 @@ std::optional<double> closure_percent(const std::vector<double>& time_s, const s
     return (integral / difference - 1.0) * units::percent_per_whole;
 }
 
+/// A log that goes on without power: what is flown then is not seen.
+void warn_of_short_record(const FlightSeries& series, const std::vector<double>& time_s,
+                          std::vector<std::string>& warnings) {
+    constexpr double least_s = 30.0;
+    constexpr double least_part = 0.05;
+    const auto altitude = chosen_track(series, "altitude_m");
+    if (altitude.empty() || time_s.empty()) return;
+    const double limit_s = std::max(least_s, least_part * (altitude.time_s.back() - altitude.time_s.front()));
+    const auto warn = [&](const char* way, const char* when, double power_s, double altitude_s) {
+        if (std::abs(power_s - altitude_s) <= limit_s) return;
+        warnings.push_back(
+            fmt::format("power is logged {} {:.0f} s, altitude {} {:.0f} s: what was flown {} is not seen", way,
+                        power_s, way, altitude_s, when));
+    };
+    if (time_s.front() > altitude.time_s.front()) warn("from", "before", time_s.front(), altitude.time_s.front());
+    if (time_s.back() < altitude.time_s.back()) warn("to", "after", time_s.back(), altitude.time_s.back());
+}
+
 }  // namespace
 
 PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
@@ -168,6 +186,7 @@ PowerReport check_power_record(const FlightSeries& series, const FlightPhases& p
     }
     report.power_faults = power_faults_of(record, motor_known ? resting : std::vector<std::size_t>{}, report);
     report.warnings = power_warnings_of({record, phases, report, at_rest});
+    warn_of_short_record(series, time_s, report.warnings);
     return report;
 }
 

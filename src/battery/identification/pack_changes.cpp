@@ -12,9 +12,10 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double fresh_step = 0.03;    // of the voltage: more than a pack recovers late
-constexpr double counted_step = 0.01;  // where the counter begins anew too
+constexpr double fresh_step = 0.03;   // of the voltage: more than a pack recovers late
+constexpr double lesser_step = 0.01;  // later, or where the counter begins anew too
 constexpr double recovery_s = 5.0;
+constexpr double settled_s = 15.0;  // after which no pack recovers the lesser step
 constexpr std::size_t compared_samples = 5;
 constexpr double anew_part = 0.2;  // a counter below this part of what it was began anew
 constexpr double least_counted_ah = 0.005;
@@ -91,10 +92,14 @@ std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std
     for (std::size_t i = 1; i < record.time_s.size(); ++i) {
         const bool anew = begins_anew(logged_ah, i);
         const bool between_loads = mask.resting[i] && mask.since_load_s[i] > 0.0 && i < mask.last_load;
-        const double step = between_loads ? step_up(record, mask, i, anew ? 0.0 : recovery_s) : 0.0;
+        double step = 0.0;
+        if (between_loads) {
+            step = step_up(record, mask, i, anew ? 0.0 : settled_s);
+            if (const double early = step_up(record, mask, i, recovery_s); early > fresh_step) step = early;
+        }
         // The step is seen from all the samples beside it: it lies where two neighbours differ by most of it.
         const bool steps_here = record.voltage_v[i] - record.voltage_v[i - 1] > step / 2.0 * record.voltage_v[i - 1];
-        if (steps_here && step > (anew ? counted_step : fresh_step)) {
+        if (steps_here && step > lesser_step) {
             notes.push_back(
                 fmt::format("the pack was changed at {:.0f} s: the voltage rises from {:.2f} to {:.2f} V at "
                             "rest{}; its discharges are told apart",

@@ -20,7 +20,7 @@ constexpr double doubtful_phase_part = 0.10;       // of the phase's energy,
 constexpr double doubtful_phase_of_flight = 0.02;  // and of the flight's
 constexpr double told_gap_part = 0.02;             // links drop out for seconds all the time
 constexpr double doubtful_gap_part = 0.04;
-constexpr double doubtful_peak_part = 0.03;
+constexpr double doubtful_peak_part = 0.02;
 constexpr double doubtful_negative_part = 0.02;
 constexpr std::size_t standing_samples = 30;
 constexpr double doubtful_standing_part = 0.04;
@@ -151,7 +151,8 @@ void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
                     gaps, gaps == 1 ? "" : "s", together_s, longest.duration_s, longest.start_s, percent(part)));
 }
 
-/// Of single samples that rise above both neighbours by more than half of what was ever held for three samples.
+/// Of single samples that rise above both neighbours by more than half of what was ever held for three samples, or fall
+/// below a fifth of both while these are more than a tenth of that.
 void warn_of_peaks(const FlownPower& flown, Warnings& warnings) {
     const auto& record = flown.record;
     const auto& power_w = record.power_w;
@@ -163,15 +164,22 @@ void warn_of_peaks(const FlownPower& flown, Warnings& warnings) {
     std::size_t peaks = 0;
     for_each_flown(record, [&](std::size_t i) {
         if (i == 0 || i + 1 >= power_w.size()) return;
-        const double above_w = power_w[i] - std::max(power_w[i - 1], power_w[i + 1]);
-        if (above_w <= held_w / 2.0) return;
-        carried_j += above_w * std::min(record.time_s[i + 1] - record.time_s[i - 1], longest_s) / 2.0;
+        const auto [lower_w, higher_w] = std::minmax(power_w[i - 1], power_w[i + 1]);
+        const bool rises = power_w[i] - higher_w > held_w / 2.0;
+        const bool falls = lower_w > 0.1 * held_w && power_w[i] < 0.2 * lower_w;
+        if (!rises && !falls) return;
+        const double apart_w = rises ? power_w[i] - higher_w : lower_w - power_w[i];
+        carried_j += apart_w * std::min(record.time_s[i + 1] - record.time_s[i - 1], longest_s) / 2.0;
         ++peaks;
     });
     const double part = carried_j / flown.energy_j;
     if (part <= doubtful_peak_part) return;
-    warnings.push_back(fmt::format("{} single sample{} far above the neighbours carr{} {} % of the energy", peaks,
-                                   peaks == 1 ? "" : "s", peaks == 1 ? "ies" : "y", percent(part)));
+    warnings.push_back(fmt::format("{} single sample{} far above or below the neighbours make{} {} % of the energy",
+                                   peaks, peaks == 1 ? "" : "s", peaks == 1 ? "s" : "", percent(part)));
+}
+
+bool runs_by_throttle(const PowerRecord& record, std::size_t i) {
+    return !record.throttle_percent.empty() && record.throttle_percent[i] > powerless_throttle_percent;
 }
 
 void warn_of_standing(const FlownPower& flown, Warnings& warnings) {
@@ -182,8 +190,8 @@ void warn_of_standing(const FlownPower& flown, Warnings& warnings) {
         for (auto begin = first; begin < last;) {
             auto end = begin + 1;
             while (end < last && power_w[end] == power_w[begin]) ++end;
-            const double lasts_s =
-                power_w[begin] == 0.0 ? 0.0 : time_s[end - 1] - time_s[begin];  // 0: the motor is off
+            const bool is_off = power_w[begin] == 0.0 && !runs_by_throttle(record, (begin + end) / 2);
+            const double lasts_s = is_off ? 0.0 : time_s[end - 1] - time_s[begin];
             const double part = std::max(power_w[begin] * lasts_s / flown.energy_j, lasts_s / flown.duration_s);
             if (end - begin >= standing_samples && end - begin < last - first && part > doubtful_standing_part) {
                 warnings.push_back(

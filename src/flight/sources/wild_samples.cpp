@@ -90,20 +90,6 @@ std::vector<double> counter_spikes(const Track& track) {
     });
 }
 
-/// The track without its samples at `times_s`, which rise.
-Track without_times(const Track& track, const std::vector<double>& times_s) {
-    if (times_s.empty()) return track;
-    Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
-    auto next = times_s.begin();
-    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
-        while (next != times_s.end() && *next < track.time_s[i]) ++next;
-        if (next != times_s.end() && *next == track.time_s[i]) continue;
-        kept.time_s.push_back(track.time_s[i]);
-        kept.value.push_back(track.value[i]);
-    }
-    return kept;
-}
-
 }  // namespace
 
 std::vector<double> contradicted_times(const Track& power, const Track& product) {
@@ -134,6 +120,19 @@ std::vector<double> spike_times(const Track& track) {
             if (std::abs(value[i]) <= limit || std::abs(value[i]) <= beside) return false;
         return true;
     });
+}
+
+Track without_times(const Track& track, const std::vector<double>& times_s) {
+    if (times_s.empty()) return track;
+    Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
+    auto next = times_s.begin();
+    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+        while (next != times_s.end() && *next < track.time_s[i]) ++next;
+        if (next != times_s.end() && *next == track.time_s[i]) continue;
+        kept.time_s.push_back(track.time_s[i]);
+        kept.value.push_back(track.value[i]);
+    }
+    return kept;
 }
 
 SoundTrack sound_track(const Track& candidate, const std::vector<double>& contradicted_s) {

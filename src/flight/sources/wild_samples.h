@@ -18,6 +18,9 @@ std::vector<double> contradicted_times(const Track& power, const Track& product)
 /// alone is out of their order by more than 1 % of what was counted. A sample is judged once another follows it.
 std::vector<double> spike_times(const Track& track);
 
+/// The track without its samples at `times_s`, which rise.
+Track without_times(const Track& track, const std::vector<double>& times_s);
+
 /// A candidate without what cannot be.
 struct SoundTrack {
     Track track;           ///< empty if nothing of it is to be believed

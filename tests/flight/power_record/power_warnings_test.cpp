@@ -122,6 +122,17 @@ TEST(PowerWarnings, TellOfASensorThatFails) {
     EXPECT_THAT(test::said_of(reversed), HasSubstr("power is negative in 39 samples"));
 }
 
+TEST(PowerWarnings, TellOfDropoutsAndOfPowerThatEndsEarly) {
+    const auto dropouts = with_energy(false, [](test::Words& words, int number) {
+        if (number % 15 == 0) words[power] = words[current] = "0";
+    });
+    EXPECT_THAT(test::said_of(dropouts), HasSubstr("single samples far above or below the neighbours"));
+    const auto ends_early = test::examined(test::damaged_sample([](test::Words& words) {
+        if (words[2] == "ENERGY" && number_or_nan(words[0]) > 500.0) words.clear();
+    }));
+    EXPECT_THAT(test::said_of(ends_early), HasSubstr("power is logged to 500 s, altitude to 7"));
+}
+
 TEST(PowerWarnings, TellOfTheCounterFromThreePercentOn) {
     const auto apart = with_energy(true, [](test::Words& words, int) { scale(words, energy, 1.06); });
     EXPECT_THAT(test::said_of(apart), HasSubstr("away from the on-board energy counter"));
