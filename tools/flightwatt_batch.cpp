@@ -92,9 +92,8 @@ batch::BatchFit fit_batch(const cli::StageCall& call, std::vector<batch::BatchFl
     }
 }
 
-nlohmann::ordered_json summary_json(const std::vector<batch::BatchFlight>& flights,
-                                    const mechanical::MechanicalModel& model) {
-    auto json = cli::to_json(model);
+/// `json` of the model, if there is one, with what became of the logs.
+nlohmann::ordered_json with_logs(nlohmann::ordered_json json, const std::vector<batch::BatchFlight>& flights) {
     json["logs"] = nlohmann::ordered_json::array();
     for (const auto& flight : flights) {
         json["logs"].push_back({{"flight", flight.record.flight},
@@ -103,6 +102,13 @@ nlohmann::ordered_json summary_json(const std::vector<batch::BatchFlight>& fligh
                                 {"error", flight.record.error}});
     }
     return json;
+}
+
+/// Whether the batch did all that it can of logs whose power nobody measured: there is nothing to fit.
+bool lack_power(const std::vector<batch::BatchFlight>& flights) {
+    return std::ranges::all_of(flights, [](const batch::BatchFlight& flight) {
+        return !flight.record.accepted || !flight.record.lacks_power.empty();
+    });
 }
 
 batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechanical::ModelFitOptions& fit_options) {
@@ -136,6 +142,12 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         remove_model(options.out);
         throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", rejected));
     }
+    if (lack_power(flights)) {
+        remove_model(options.out);
+        cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
+        if (call.json) cli::print(cli::json_text(with_logs({}, flights)));
+        return rejected > 0 ? cli::input_rejected : cli::ok;
+    }
     auto fit = fit_batch(call, flights, options.out);
     fit.excluded = options.load.excluded;
     fit.keep = options.load.keep;
@@ -144,7 +156,7 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
     write_model(fit, table, options);
     warn_of_bounds(call, model);
     if (call.json)
-        cli::print(cli::json_text(summary_json(flights, model)));
+        cli::print(cli::json_text(with_logs(cli::to_json(model), flights)));
     else
         cli::print("\n" + to_text(table));
     if (rejected > 0) {
