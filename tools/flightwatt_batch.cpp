@@ -111,9 +111,8 @@ void refuse_mix(const cli::StageCall& call, const std::vector<batch::BatchFlight
                     mix));
 }
 
-nlohmann::ordered_json summary_json(const std::vector<batch::BatchFlight>& flights,
-                                    const mechanical::MechanicalModel& model) {
-    auto json = cli::to_json(model);
+/// `json` of the model, if there is one, with what became of the logs.
+nlohmann::ordered_json with_logs(nlohmann::ordered_json json, const std::vector<batch::BatchFlight>& flights) {
     json["logs"] = nlohmann::ordered_json::array();
     for (const auto& flight : flights) {
         json["logs"].push_back({{"flight", flight.record.flight},
@@ -122,6 +121,13 @@ nlohmann::ordered_json summary_json(const std::vector<batch::BatchFlight>& fligh
                                 {"error", flight.record.error}});
     }
     return json;
+}
+
+/// Whether the batch did all that it can of logs whose power nobody measured: there is nothing to fit.
+bool lack_power(const std::vector<batch::BatchFlight>& flights) {
+    return std::ranges::all_of(flights, [](const batch::BatchFlight& flight) {
+        return !flight.record.accepted || !flight.record.lacks_power.empty();
+    });
 }
 
 batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechanical::ModelFitOptions& fit_options) {
@@ -171,6 +177,12 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
             remove_model(options.out);
             throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", flights.size()));
         }
+        if (lack_power(flights)) {
+            remove_model(options.out);
+            cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
+            cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
+            return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
+        }
         refuse_mix(call, flights, options.out);
         auto fit = fit_batch(call, flights, options.out);
         fit.copies = copies;
@@ -179,7 +191,7 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         const auto table = cli::table_of(fit.model, published);
         write_model(fit, table, options);
         warn_of_model(call, fit.model);
-        cli::print(call.json ? cli::json_text(summary_json(flights, fit.model)) : shown + "\n" + to_text(table));
+        cli::print(call.json ? cli::json_text(with_logs(cli::to_json(fit.model), flights)) : shown + "\n" + to_text(table));
     } catch (const InputError&) {
         if (!call.json) cli::print(shown);
         throw;
