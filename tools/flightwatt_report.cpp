@@ -7,6 +7,7 @@
 #include "cli/output/mission_output.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
+#include "flight/flight_identity.h"
 #include "mission/mission_file.h"
 #include "report/batch_content.h"
 #include "report/battery_section.h"
@@ -84,6 +85,16 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
     page.sections.push_back(report::validation_section(leave_one_out(content.measured, content.fit->options)));
 }
 
+/// Why there is no battery of these flights: they are of several aircraft, and the batch was not asked to mix them.
+std::string mix_of(const report::BatchContent& content) {
+    std::vector<flight::FlownBy> flown;
+    for (const auto& flight : content.flights) {
+        if (!flight.rejected.empty() || !flight.unusable_power.empty()) continue;
+        flown.push_back({flight.name, flight.series.aircraft_id, flight.series.aircraft_name});
+    }
+    return content.fit ? "" : describe_mix(flown);
+}
+
 /// What the batch's folder has to say: flights, model, validation and battery.
 void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::path& out,
                const report::PublishedFigures& figures) {
@@ -95,6 +106,10 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
     page.sections.push_back(
         report::flights_section(content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt));
     add_model(page, call, content, figures);
+    if (const auto mix = mix_of(content); !mix.empty()) {
+        page.head.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
+        return;
+    }
     page.sections.push_back(report::battery_section(
         report::identify_for_report(content.flights, identification, cli::count_option(call, "max-battery-flights"))));
 }

@@ -236,17 +236,17 @@ std::map<std::string, std::string> exclude_copies(std::vector<BatchFlight>& flig
     for (auto& flight : flights)
         if (!flight.selection.flights.empty()) candidates.push_back(&flight);
     std::ranges::stable_partition(candidates, [](const auto* flight) { return !flight->is_kept; });
-    std::vector<const BatchFlight*> used;
+    flight::KnownFlights known;
+    std::vector<std::string> used;
     std::map<std::string, std::string> copies;
     for (auto* flight : candidates) {
-        const auto same = std::ranges::find_if(used, [&](const BatchFlight* other) {
-            return is_same_flight(flight->record.content, other->record.content);
-        });
-        if (same == used.end()) {
-            used.push_back(flight);
+        const auto same = known.find(flight->record.content);
+        if (!same) {
+            known.add(flight->record.content);
+            used.push_back(flight->record.flight);
             continue;
         }
-        const auto& other = (*same)->record.flight;
+        const auto& other = used[*same];
         copies[flight->record.flight] = other;
         flight->selection.flights.clear();
         flight->selection.sorties.clear();

@@ -75,6 +75,22 @@ bool is_same_flight(const FlightContent& one, const FlightContent& other) {
     return resemblance * both / (1.0 + resemblance) >= least_part * shorter;
 }
 
+std::optional<std::size_t> KnownFlights::find(const FlightContent& content) const {
+    std::set<std::size_t> sharing;
+    for (const auto stretch : content.sketch) {
+        const auto known = with_stretch_.find(stretch);
+        if (known != with_stretch_.end()) sharing.insert(known->second.begin(), known->second.end());
+    }
+    const auto same =
+        std::ranges::find_if(sharing, [&](std::size_t known) { return is_same_flight(content, contents_[known]); });
+    return same == sharing.end() ? std::nullopt : std::optional(*same);
+}
+
+void KnownFlights::add(FlightContent content) {
+    for (const auto stretch : content.sketch) with_stretch_[stretch].push_back(contents_.size());
+    contents_.push_back(std::move(content));
+}
+
 bool is_synthetic(const std::string& aircraft_name) { return boost::algorithm::icontains(aircraft_name, "synthetic"); }
 
 std::string describe_aircraft(const std::string& id, const std::string& name) {

@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 /// Which flight of which aircraft a series is of, by what it holds rather than by its name.
@@ -25,6 +27,18 @@ FlightContent content_of(const FlightSeries& series);
 /// Whether two are recordings of one flight: at least half of what the shorter one holds is in the other too. True for
 /// copies, for logs that begin or end elsewhere, and for several flights in one log. Two of which nothing varies are not.
 bool is_same_flight(const FlightContent& one, const FlightContent& other);
+
+/// Flights, to be asked for the one that another is the same as, without comparing it with all.
+class KnownFlights {
+  public:
+    /// The number of the first that is the same, in the order in which they were added.
+    std::optional<std::size_t> find(const FlightContent& content) const;
+    void add(FlightContent content);
+
+  private:
+    std::vector<FlightContent> contents_;
+    std::unordered_map<std::uint64_t, std::vector<std::size_t>> with_stretch_;
+};
 
 /// A flight and the aircraft that flew it, as far as its file tells.
 struct FlownBy {

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace flightwatt {
 namespace {
@@ -50,6 +52,18 @@ TEST(AtomicFile, WritesWhatALinkPointsTo) {
     EXPECT_TRUE(std::filesystem::is_symlink(folder / "to nothing"));
     EXPECT_EQ(read_file(folder / "results" / "a.txt"), "new");
     EXPECT_EQ(read_file(folder / "results" / "new.txt"), "first");
+}
+
+TEST(AtomicFile, WritesOpenFilesThatAreNamedAsDevStdoutIs) {
+    const auto folder = test::scratch_dir();
+    const int file = ::open((folder / "redirected").c_str(), O_RDWR | O_CREAT, 0600);
+    std::filesystem::create_symlink("/proc/self/fd/" + std::to_string(file), folder / "stdout");
+    write_file_atomically(folder / "stdout", "x");
+    char written = ' ';
+    EXPECT_EQ(::pread(file, &written, 1, 0), 1);  // not another file of that name
+    EXPECT_EQ(written, 'x');
+    ::close(file);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "stdout"));
 }
 
 TEST(AtomicFile, FollowsTheUmaskAndKeepsThePermissionsOfWhatItReplaces) {

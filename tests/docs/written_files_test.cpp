@@ -153,6 +153,7 @@ TEST(WrittenKeys, OfFlightsAreDocumented) {
     expect_summary("batch", {log_file, "-o", "out"}, folder);
     expect_keys(read_file(folder / "out" / "flights" / "opterra_synthetic_01.record.json"), "", "Record");
     expect_keys(read_file(folder / "out" / "fit.json"), "", "Fit of a batch");
+    expect_keys(read_file(folder / "out" / "batch.json"), "", "Manifest");
     expect_summary("validate", logs(), folder);
     expect_summary("validate", logs() + Words{"--until", "300"}, folder);
     expect_summary("battery", logs() + Words{"-o", "pack.toml"}, folder);

@@ -60,6 +60,14 @@ TEST(FlightIdentity, IsAnotherOfEveryOtherFlight) {
             EXPECT_EQ(is_same_flight(contents[i], contents[j]), i == j) << i << " " << j;
 }
 
+TEST(FlightIdentity, IsFoundAmongMany) {
+    KnownFlights known;
+    for (int number = 1; number <= 5; ++number) known.add(content_of(sample(number)));
+    EXPECT_EQ(known.find(content_of(cut_series(sample(3), 400.0))), 2U);
+    EXPECT_EQ(known.find(content_of(sample(6))), std::nullopt);
+    EXPECT_EQ(known.find({}), std::nullopt);
+}
+
 TEST(FlightIdentity, OfWhatDoesNotVaryIsUnknown) {
     FlightSeries series;
     Track altitude{.name = "altitude_m"};

@@ -107,7 +107,7 @@ void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
                      const std::function<void(const std::string&, flight::LoadedFlight&)>& use) {
     std::vector<std::string> flights;
     std::vector<flight::FlownBy> used;
-    std::vector<flight::FlightContent> contents;
+    flight::KnownFlights known;
     for (const auto& file : call.inputs) {
         auto loaded = flight::load_flight(std::filesystem::path(file), options);
         const auto name = loaded.series.flight;
@@ -117,15 +117,13 @@ void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
         flights.push_back(name);
         warn_of(call, file, loaded);
         auto content = content_of(loaded.series);
-        const auto same = std::ranges::find_if(
-            contents, [&](const flight::FlightContent& other) { return is_same_flight(content, other); });
-        if (same != contents.end()) {
-            const auto& other = used[static_cast<std::size_t>(same - contents.begin())].flight;
+        if (const auto same = known.find(content)) {
+            const auto& other = used[*same].flight;
             warn(call, fmt::format("{} is excluded: it is the same flight as {}, which is used", name, other));
             continue;
         }
         if (loaded.exclusion.empty()) {
-            contents.push_back(std::move(content));
+            known.add(std::move(content));
             used.push_back({name, loaded.series.aircraft_id, loaded.series.aircraft_name});
         }
         use(file, loaded);
