@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include <boost/algorithm/string/predicate.hpp>
 #include <fmt/format.h>
@@ -28,14 +29,21 @@ std::uint64_t mixed(std::uint64_t state, std::uint64_t word) {
     return state ^ (state >> 29);
 }
 
-void add_stretches(const Track& track, std::uint64_t seed, std::set<std::uint64_t>& stretches) {
-    for (std::size_t i = 0; i + stretch_length <= track.value.size(); ++i) {
-        const auto begin = track.value.begin() + static_cast<std::ptrdiff_t>(i);
-        const auto end = begin + stretch_length;
-        if (std::set<double>(begin, end).size() < least_different) continue;
+std::size_t different_in(std::span<const double, stretch_length> values) {
+    std::array<double, stretch_length> sorted{};
+    std::ranges::copy(values, sorted.begin());
+    std::ranges::sort(sorted);
+    return static_cast<std::size_t>(std::ranges::unique(sorted).begin() - sorted.begin());
+}
+
+void add_stretches(const Track& track, std::uint64_t seed, std::vector<std::uint64_t>& stretches) {
+    const std::span values(track.value);
+    for (std::size_t i = 0; i + stretch_length <= values.size(); ++i) {
+        const auto stretch = values.subspan(i).first<stretch_length>();
+        if (different_in(stretch) < least_different) continue;
         auto state = seed;
-        for (auto at = begin; at != end; ++at) state = mixed(state, std::bit_cast<std::uint64_t>(*at));
-        stretches.insert(mixed(state, stretch_length));
+        for (const double value : stretch) state = mixed(state, std::bit_cast<std::uint64_t>(value));
+        stretches.push_back(mixed(state, stretch_length));
     }
 }
 
@@ -43,17 +51,16 @@ void add_stretches(const Track& track, std::uint64_t seed, std::set<std::uint64_
 
 FlightContent content_of(const FlightSeries& series) {
     constexpr std::array<std::string_view, 4> names{"altitude_m", "voltage_v", "current_a", "power_w"};
-    std::set<std::uint64_t> stretches;
+    std::vector<std::uint64_t> stretches;
     for (const auto& track : series.tracks) {
-        const auto name = std::ranges::find(names, track.name);
+        const auto* name = std::ranges::find(names, track.name);
         if (name == names.end()) continue;
         add_stretches(track, mixed(0, static_cast<std::uint64_t>(name - names.begin()) + 1), stretches);
     }
-    FlightContent content{stretches.size(), {}};
-    for (const auto stretch : stretches) {
-        if (content.sketch.size() == sketch_size) break;
-        content.sketch.push_back(stretch);
-    }
+    std::ranges::sort(stretches);
+    stretches.erase(std::unique(stretches.begin(), stretches.end()), stretches.end());
+    FlightContent content{stretches.size(), std::move(stretches)};
+    content.sketch.resize(std::min(content.sketch.size(), sketch_size));
     return content;
 }
 
