@@ -23,8 +23,8 @@ std::vector<double> integrated_charge_ah(const std::vector<double>& time_s, cons
 
 /// The record cut where a pack was changed at rest, after a load and before another: where the voltage steps up by 3 %
 /// (0.12 V a cell) between the medians of five samples, later than 5 s after the load, when what a pack recovers comes
-/// slowly; or by 1 % later than 15 s after it, or where the charge counter begins anew. A counter that begins anew without that (the autopilot did)
-/// goes on from where it was, by the current's integral. `notes` says both.
+/// slowly; or by 1 % later than 15 s after it, or where the charge counter begins anew. A counter that begins anew
+/// without that (the autopilot did) goes on from where it was, by the current's integral. `notes` says both.
 std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std::string>& notes);
 
 }  // namespace flightwatt::battery

@@ -20,11 +20,11 @@ struct ErrorAnalysis {
 };
 
 /// Linearised error propagation through the joint least squares of all flights, with noise that is correlated
-/// (residual_correlation.h) and has a variance of its own in each flight: every estimate is a linear function of
-/// the noise, whose covariance is carried through it (docs/methods.md, Eq. 13). Where theta stands at a bound it
-/// is taken as given. Where the autocorrelation stands at its bound, the flights' own differences are taken instead if
-/// they tell less (PhaseErrors::from_flights). After a robust fit the residuals are Huber's pseudo-residuals, psi / mean psi'. `flights`,
-/// `fit` and `weights` are in the same order; their samples are those that were fitted.
+/// (residual_correlation.h) and has a variance of its own in each flight: every estimate is a linear function of the
+/// noise, whose covariance is carried through it (docs/methods.md, Eq. 13). Where theta stands at a bound it is taken
+/// as given. Where the autocorrelation stands at its bound, the flights' own differences are taken instead if they tell
+/// less (PhaseErrors::from_flights). After a robust fit the residuals are Huber's pseudo-residuals, psi / mean psi'.
+/// `flights`, `fit` and `weights` are in the same order; their samples are those that were fitted.
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights);
 

@@ -31,12 +31,12 @@ struct FlightResiduals {
     Eigen::MatrixXd used_up;
 };
 
-/// The autocorrelation r of the noise one step apart, common to the flights, in [0, highest_autocorrelation]: that at which the
-/// correlation of the residuals is what is expected of them (docs/methods.md, Eq. 12), for residuals of a fit are less
-/// correlated than the noise was. Neighbours further apart than 1.5 steps do not count, and negative correlation counts
-/// as none, so no flight counts more than its samples. A short phase hardly tells: in 25 samples less 8 that the fit
-/// used up, r is within about 0.25, and usually too low if the noise really is correlated.
-/// At the upper end the residuals are alike for as long as the phase lasts: how long is not known.
+/// The autocorrelation r of the noise one step apart, common to the flights, in [0, highest_autocorrelation]: that at
+/// which the correlation of the residuals is what is expected of them (docs/methods.md, Eq. 12), for residuals of a fit
+/// are less correlated than the noise was. Neighbours further apart than 1.5 steps do not count, and negative
+/// correlation counts as none, so no flight counts more than its samples. A short phase hardly tells: in 25 samples
+/// less 8 that the fit used up, r is within about 0.25, and usually too low if the noise really is correlated. At the
+/// upper end the residuals are alike for as long as the phase lasts: how long is not known.
 double estimate_autocorrelation(std::span<const FlightResiduals> flights);
 
 /// The variance of the noise, unbiased, and how well it is known (docs/methods.md, Eq. 12).
