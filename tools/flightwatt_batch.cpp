@@ -191,7 +191,8 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         const auto table = cli::table_of(fit.model, published);
         write_model(fit, table, options);
         warn_of_model(call, fit.model);
-        cli::print(call.json ? cli::json_text(with_logs(cli::to_json(fit.model), flights)) : shown + "\n" + to_text(table));
+        cli::print(call.json ? cli::json_text(with_logs(cli::to_json(fit.model), flights))
+                             : shown + "\n" + to_text(table));
     } catch (const InputError&) {
         if (!call.json) cli::print(shown);
         throw;

@@ -18,6 +18,7 @@
 #include <new>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -234,8 +235,11 @@ std::string reason_of_copy(const std::string& other) {
 std::map<std::string, std::string> exclude_copies(std::vector<BatchFlight>& flights) {
     std::vector<BatchFlight*> candidates;
     for (auto& flight : flights)
-        if (!flight.selection.flights.empty()) candidates.push_back(&flight);
-    std::ranges::stable_partition(candidates, [](const auto* flight) { return !flight->is_kept; });
+        if (!flight.selection.flights.empty() || !flight.record.lacks_power.empty()) candidates.push_back(&flight);
+    // The one with power is used, and of these one that is still there.
+    std::ranges::stable_sort(candidates, {}, [](const auto* flight) {
+        return std::pair(flight->selection.flights.empty(), flight->is_kept);
+    });
     flight::KnownFlights known;
     std::vector<std::string> used;
     std::map<std::string, std::string> copies;
@@ -247,10 +251,13 @@ std::map<std::string, std::string> exclude_copies(std::vector<BatchFlight>& flig
             continue;
         }
         const auto& other = used[*same];
-        copies[flight->record.flight] = other;
+        const bool has_power = flight->record.lacks_power.empty();
+        if (has_power) copies[flight->record.flight] = other;
         flight->selection.flights.clear();
         flight->selection.sorties.clear();
-        flight->selection.exclusions.push_back({flight->record.flight, std::nullopt, reason_of_copy(other)});
+        flight->selection.exclusions.push_back(
+            {flight->record.flight, std::nullopt,
+             has_power ? reason_of_copy(other) : fmt::format("it is the same flight as {}", other)});
     }
     return copies;
 }

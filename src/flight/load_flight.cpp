@@ -199,10 +199,10 @@ FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
         last = i;
     }
     if (ids.size() > 1) {
-        throw InputError({candidates.front().file},
-                         fmt::format("{}: {}", any ? "several aircraft flew" : "none of its aircraft flew",
-                                     short_list(ids)),
-                         "choose one with --aircraft ID");
+        throw InputError(
+            {candidates.front().file},
+            fmt::format("{}: {}", any ? "several aircraft flew" : "none of its aircraft flew", short_list(ids)),
+            any ? "choose one with --aircraft ID" : "");
     }
     return std::move(candidates[last]);
 }

@@ -6,6 +6,7 @@
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
@@ -186,9 +187,10 @@ TEST_F(HostileInput, IsALogOfManyAircraft) {
 TEST_F(HostileInput, IsALogOfManySorties) {
     std::string text;
     for (int i = 0; i < 120000; ++i) {
-        const bool flies = i / 50 % 2 == 1;
-        text += fmt::format("{0:.1f} 1 ESTIMATOR {1} 0\n{0:.1f} 1 ENERGY {2} 12 1 12 1 1\n", 6.4 * i, flies ? 100 : 0,
-                            flies ? 50 : 0);
+        const int of_flight = i % 100 - 50;  // below 0 it rests; it climbs and descends by 20 m a sample
+        const int altitude_m = std::clamp(20 * std::min(of_flight, 49 - of_flight), 0, 100);
+        text += fmt::format("{0:.1f} 1 ESTIMATOR {1} 0\n{0:.1f} 1 ENERGY {2} 12 1 12 1 1\n", 6.4 * i, altitude_m,
+                            of_flight >= 0 ? 50 : 0);
     }
     test::write_text(folder / "many.data", text);
     const auto result = test::run_shell("flightwatt segment many.data", folder);

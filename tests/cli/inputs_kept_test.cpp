@@ -157,23 +157,9 @@ void make_alias(Alias alias, const std::filesystem::path& input, const std::file
 }
 
 /// The metavariables of the help that name no file.
-const std::set<std::string> no_files{"N",
-                                     "S",
-                                     "X",
-                                     "P",
-                                     "M",
-                                     "W",
-                                     "A",
-                                     "AH",
-                                     "HOW",
-                                     "NAME",
-                                     "TITLE",
-                                     "ID",
-                                     "FLIGHT",
-                                     "A,B",
-                                     "KIND",
-                                     "A,B,power_w",
-                                     "FLIGHT[:PHASE]=W",
+const std::set<std::string> no_files{"N",          "S",      "X",   "P",    "M",           "W",
+                                     "A",          "AH",     "MB",  "HOW",  "NAME",        "TITLE",
+                                     "ID",         "FLIGHT", "A,B", "KIND", "A,B,power_w", "FLIGHT[:PHASE]=W",
                                      "NAME[,NAME]"};
 
 /// Options that name files to read; those that write have a command above.

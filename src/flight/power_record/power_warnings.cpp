@@ -31,6 +31,8 @@ constexpr double greatest_pack_v = 60.0;          // 14 LiPo cells
 constexpr double least_pack_v = 2.5;              // one cell, empty
 constexpr double least_voltage_part = 0.55;       // 2.3 V of a cell that began full
 constexpr double least_mean_power_w = 3.0;
+constexpr double doubtful_outside_part = 0.05;
+constexpr double longest_run_up_s = 30.0;
 
 /// The record and its energy in flight [J].
 struct FlownPower {
@@ -235,6 +237,30 @@ void warn_of_powerless_throttle(const FlownPower& flown, Warnings& warnings) {
                                    percent(part), powerless_throttle_percent));
 }
 
+/// Run-ups take some seconds. What takes longer was flown where the altitude does not show it.
+void warn_of_power_outside(const FlownPower& flown, Warnings& warnings) {
+    const auto& record = flown.record;
+    const auto& time_s = record.time_s;
+    const double longest_s = gap_threshold_s(time_s);
+    double outside_j = 0.0;
+    double outside_s = 0.0;
+    auto sortie = record.flown.begin();
+    for (std::size_t i = 1; i < time_s.size(); ++i) {
+        while (sortie != record.flown.end() && i >= sortie->last) ++sortie;
+        const bool is_flown = sortie != record.flown.end() && i >= sortie->first;
+        if (is_flown || !runs_by_throttle(record, i)) continue;
+        const double interval_s = std::min(time_s[i] - time_s[i - 1], longest_s);
+        outside_j += record.power_w[i] * interval_s;
+        outside_s += interval_s;
+    }
+    const double part = outside_j / flown.energy_j;
+    if (part <= doubtful_outside_part || outside_s <= longest_run_up_s) return;
+    warnings.push_back(
+        fmt::format("{:.3f} Wh, {} % of the energy in flight, were drawn outside of it with more than "
+                    "{:.0f} % throttle: a long run-up, or is the altitude wrong?",
+                    units::wh_from_joule(outside_j), percent(part), powerless_throttle_percent));
+}
+
 void warn_of_voltage(const FlownPower& flown, Warnings& warnings) {
     std::vector<double> voltages;
     if (flown.record.voltage_v.empty()) return;
@@ -271,6 +297,7 @@ std::vector<std::string> power_warnings_of(const PowerEvidence& evidence) {
     warn_of_standing(flown, warnings);
     warn_of_negative(flown, warnings);
     warn_of_powerless_throttle(flown, warnings);
+    warn_of_power_outside(flown, warnings);
     if (const double mean_w = flown.energy_j / flown.duration_s; mean_w < least_mean_power_w) {
         warnings.push_back(
             fmt::format("a mean of {:.3g} W in flight: hardly anything flies on that; is its unit W?", mean_w));

@@ -86,8 +86,7 @@ TEST(MotorRecord, BelievesNoThrottleBeyondFull) {
     for (auto& throttle : columns.throttle_percent) throttle += 213.0;
     const auto phases = segment(test::series_of(columns));
     expect_same_phases(phases, expected);
-    EXPECT_THAT(phases.warnings,
-                testing::Contains(HasSubstr("throttles are not between 0 and 100 %: the throttle is")));
+    EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor is taken to run above")));
 }
 
 }  // namespace
