@@ -75,9 +75,15 @@ void report_notes(const cli::StageCall& call, const std::vector<batch::BatchFlig
 }
 
 /// On failure no model of an earlier run stays behind to be taken for this one's.
-void remove_model(const std::filesystem::path& out) {
-    std::error_code ignored;
-    for (const auto* name : batch::model_names) std::filesystem::remove(out / name, ignored);
+void remove_model(const cli::StageCall& call, const std::filesystem::path& out) {
+    std::vector<std::string> removed;
+    for (const auto* name : batch::model_names) {
+        std::error_code ignored;
+        if (std::filesystem::remove(out / name, ignored)) removed.emplace_back(name);
+    }
+    if (removed.empty()) return;
+    cli::note(call, fmt::format("removed: {}: an earlier run fitted them to other flights than are in {} now",
+                                fmt::join(removed, ", "), out.string()));
 }
 
 /// Fits what the batch accepted. Takes the samples out of `flights`: of thousands, two copies are too many.
@@ -94,7 +100,7 @@ batch::BatchFit fit_batch(const cli::StageCall& call, std::vector<batch::BatchFl
     try {
         return batch::fit_flights(samples, options);
     } catch (...) {
-        remove_model(out);
+        remove_model(call, out);
         throw;
     }
 }
@@ -104,7 +110,7 @@ void refuse_mix(const cli::StageCall& call, const std::vector<batch::BatchFlight
                 const std::filesystem::path& out) {
     const auto mix = call.has("mix-aircraft") ? "" : mix_of(flights);
     if (mix.empty()) return;
-    remove_model(out);
+    remove_model(call, out);
     throw NoAnswerError(
         fmt::format("the catalogue is written, and no model: the flights are of several aircraft: {}; "
                     "--exclude flights, or fit all as if they were of one with --mix-aircraft",
@@ -174,11 +180,11 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         flights, [&](const auto& flight) { return flight.is_of_this_run && is_rejected(flight); });
     try {
         if (std::ranges::all_of(flights, is_rejected)) {
-            remove_model(options.out);
+            remove_model(call, options.out);
             throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", flights.size()));
         }
         if (lack_power(flights)) {
-            remove_model(options.out);
+            remove_model(call, options.out);
             cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
             cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
             return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));

@@ -90,6 +90,8 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
         }
     } catch (const InputError&) {
         throw;
+    } catch (const UsageError&) {
+        throw;
     } catch (const std::exception&) {
         throw InputError({file.string()}, "this is no fit of a batch that this version writes", again);
     }
