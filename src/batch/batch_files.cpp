@@ -7,6 +7,7 @@
 #include "batch/manifest.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"
+#include "telemetry/log_configuration.h"
 
 #include <algorithm>
 #include <string_view>
@@ -39,6 +40,9 @@ std::vector<ManifestFlight> stored_flights(const std::filesystem::path& out) {
 StoredFlight read_flight(const std::filesystem::path& out, const ManifestFlight& listed) {
     const auto& name = listed.flight;
     const auto folder = out / "flights";
+    // No result is to replace the log either, of which all this was made.
+    note_input(listed.place);
+    if (const auto configuration = telemetry::find_log_file(listed.place)) note_input(*configuration);
     StoredFlight flight;
     try {
         flight.record = read_intact_record(out, name);

@@ -226,6 +226,15 @@ TEST_F(InputsKept, ByEveryProgramEveryOutputAndEveryName) {
     }
 }
 
+TEST_F(InputsKept, WhereAPageWouldReplaceALogOfItsBatch) {
+    test::run_shell("flightwatt batch a.data -o batch", folder);
+    for (const auto* log : {"a.data", "a.log"}) {
+        const auto before = read_file(folder / log);
+        EXPECT_NE(test::run_shell(std::string("flightwatt report batch -o ") + log, folder).code, 0) << log;
+        EXPECT_EQ(read_file(folder / log), before) << log;
+    }
+}
+
 TEST_F(InputsKept, WhereTwoResultsAreToGoToOneFile) {
     for (const auto* words : {"fit a.data -o x.csv --table x.csv", "fit a.data --curves ./x.csv --table x.csv",
                               "simulate missions/paper/phased.toml -o x.csv --schedule-out x.csv",
