@@ -24,6 +24,7 @@ constexpr double doubtful_peak_part = 0.02;
 constexpr double doubtful_negative_part = 0.02;
 constexpr std::size_t standing_samples = 30;
 constexpr double doubtful_standing_part = 0.04;
+constexpr double doubtful_highest_part = 0.05;  // of the samples
 constexpr double powerless_throttle_percent = 30.0;
 constexpr double powerless_part = 0.05;           // of the median power at such a throttle
 constexpr double doubtful_powerless_part = 0.15;  // of the samples at such a throttle
@@ -205,6 +206,39 @@ void warn_of_standing(const FlownPower& flown, Warnings& warnings) {
     }
 }
 
+/// A current that stands still gives a power that moves with the voltage; one that stops at its highest is saturated.
+void warn_of_standing_current(const FlownPower& flown, Warnings& warnings) {
+    const auto& record = flown.record;
+    const auto& current_a = record.current_a;
+    if (current_a.empty()) return;
+    std::size_t standing = 0;
+    std::size_t samples = 0;
+    double highest_a = 0.0;
+    for (const auto& [first, last] : record.flown) {
+        samples += last - first;
+        for (auto begin = first; begin < last;) {
+            auto end = begin + 1;
+            while (end < last && current_a[end] == current_a[begin]) ++end;
+            if (current_a[begin] > 0.0 && end - begin >= standing_samples) standing += end - begin;
+            highest_a = std::max(highest_a, current_a[begin]);
+            begin = end;
+        }
+    }
+    std::size_t at_highest = 0;
+    for_each_flown(record, [&](std::size_t i) { at_highest += current_a[i] == highest_a ? 1 : 0; });
+    const auto part_of = [&](std::size_t count) { return static_cast<double>(count) / static_cast<double>(samples); };
+    if (part_of(standing) > doubtful_standing_part) {
+        warnings.push_back(
+            fmt::format("the current stands still in {} % of the samples in flight: a sensor that hangs?",
+                        percent(part_of(standing))));
+    } else if (at_highest >= standing_samples && part_of(at_highest) > doubtful_highest_part) {
+        warnings.push_back(
+            fmt::format("the current is {:.4g} A, its highest, in {} % of the samples in flight: does its "
+                        "sensor reach further?",
+                        highest_a, percent(part_of(at_highest))));
+    }
+}
+
 void warn_of_negative(const FlownPower& flown, Warnings& warnings) {
     const auto& record = flown.record;
     double negative_j = 0.0;
@@ -295,6 +329,7 @@ std::vector<std::string> power_warnings_of(const PowerEvidence& evidence) {
     warn_of_gaps(flown, warnings);
     warn_of_peaks(flown, warnings);
     warn_of_standing(flown, warnings);
+    warn_of_standing_current(flown, warnings);
     warn_of_negative(flown, warnings);
     warn_of_powerless_throttle(flown, warnings);
     warn_of_power_outside(flown, warnings);

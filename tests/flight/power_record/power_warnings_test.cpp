@@ -4,6 +4,7 @@
 #include "helpers/damaged_logs.h"
 #include "helpers/rejected.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -120,6 +121,20 @@ TEST(PowerWarnings, TellOfASensorThatFails) {
         if (number > 200 && number < 240) scale(words, power, -1.0), scale(words, current, -1.0);
     });
     EXPECT_THAT(test::said_of(reversed), HasSubstr("power is negative in 39 samples"));
+}
+
+TEST(PowerWarnings, TellOfACurrentThatHangsOrIsSaturated) {
+    const auto draw = [](test::Words& words, double current_a) {
+        set(words, current, current_a);
+        set(words, power, current_a * value(words, voltage));
+    };
+    const auto hangs = with_energy(false, [&](test::Words& words, int number) {
+        if (number > 100 && number < 300) draw(words, 2.9);
+    });
+    EXPECT_THAT(hangs.warnings, testing::Contains(HasSubstr("the current stands still in ")));
+    const auto saturated =
+        with_energy(false, [&](test::Words& words, int) { draw(words, std::min(value(words, current), 2.4)); });
+    EXPECT_THAT(saturated.warnings, testing::Contains(HasSubstr("the current is 2.4 A, its highest, in ")));
 }
 
 TEST(PowerWarnings, TellOfDropoutsAndOfPowerThatEndsEarly) {
