@@ -48,10 +48,10 @@ TEST(PowerWarnings, LeaveOutWildSamples) {
     const std::vector<std::pair<Field, double>> wild{{power, 900.0},  {power, 1e6},   {power, -300.0}, {current, 250.0},
                                                      {voltage, 99.0}, {voltage, 0.0}, {current, 1e9},  {power, 2e15}};
     for (const bool counts : {true, false}) {
-        for (const auto& [field, to] : wild) {
-            SCOPED_TRACE(fmt::format("word {} is {}", static_cast<int>(field), to));
+        for (const auto& damage : wild) {
+            SCOPED_TRACE(fmt::format("word {} is {}", static_cast<int>(damage.first), damage.second));
             const auto loaded = with_energy(counts, [&](test::Words& words, int number) {
-                if (number == 300 || number == 301 || number % 50 == 3) set(words, field, to);
+                if (number == 300 || number == 301 || number % 50 == 3) set(words, damage.first, damage.second);
             });
             EXPECT_NEAR(test::energy_in_flight_wh(loaded), sound_energy_wh(), 0.02 * sound_energy_wh());
             EXPECT_THAT(test::said_of(loaded), HasSubstr("are left out"));
