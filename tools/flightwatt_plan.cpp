@@ -51,9 +51,11 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
 
 /// What the chance that was asked for holds for.
 void note_sources(const cli::StageCall& call, const mission::MissionSetup& mission,
-                  const mission::DrawnSources& sources) {
-    cli::note(call, fmt::format("{}: chance {} over flights as --samples draws them; {}", mission.name,
-                                *probability(call), describe(sources)));
+                  const mission::DrawnSources& sources, double standard_error = 0.0) {
+    constexpr double worth_saying = 5e-4;
+    const auto exactness = standard_error < worth_saying ? "" : fmt::format(" (computed to +- {:.4f})", standard_error);
+    cli::note(call, fmt::format("{}: chance {}{} over flights as --samples draws them; {}", mission.name,
+                                *probability(call), exactness, describe(sources)));
 }
 
 [[noreturn]] void refuse_infeasible(const cli::StageCall& call, const MissionFile& file,
@@ -90,7 +92,7 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
         cli::print(cli::json_text(cli::to_json(plan, *problem)));
     } else {
         cli::note(call, text);
-        if (plan.sources) note_sources(call, *problem, *plan.sources);
+        if (plan.sources) note_sources(call, *problem, *plan.sources, plan.chance_standard_error);
     }
     return cli::ok;
 }

@@ -138,11 +138,12 @@ AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::o
             const double value = question.answer(margin_percent);
             const auto mission = question.mission_of(value);
             require_known_spread(mission);
-            const auto quantile = landing_quantile(mission, find_spreads(mission), *probability);
-            const double slack_percent = quantile.left_percent - mission.reserve_soc_percent;
+            const auto landing = landing_chance(mission, find_spreads(mission), *probability);
+            const double slack_percent = landing.spare_percent(*probability);
             search.learn(slack_percent, 0.0);
-            const bool is_close = std::abs(slack_percent) <= close_part * quantile.sd_percent;
-            if (slack_percent >= 0.0 || is_close) last = {value, quantile.margin_percent};
+            const bool is_close = std::abs(slack_percent) <= close_part * landing.sd_percent;
+            if (slack_percent >= 0.0 || is_close)
+                last = {value, std::max(0.0, landing.stated_spare_percent - slack_percent)};
             if (is_close) break;
         } catch (const NoAnswerError& error) {
             none = error;
@@ -287,9 +288,9 @@ std::optional<double> spare_without_fixed(PlanningProblem problem, const std::op
     if (problem.fixed.empty()) return std::nullopt;
     problem.fixed.clear();
     const auto least = with_minimum_energy_schedule(problem);
-    const double spare = probability ? landing_quantile(least, find_spreads(least), *probability).left_percent -
-                                           least.reserve_soc_percent
-                                     : spare_percent(least);
+    const double spare = probability
+                             ? landing_chance(least, find_spreads(least), *probability).spare_percent(*probability)
+                             : spare_percent(least);
     return spare < 0.0 ? std::nullopt : std::optional(spare);
 }
 

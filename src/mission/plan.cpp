@@ -174,40 +174,36 @@ MissionPlan plan_certain(const PlanningProblem& problem) {
     return by_simulation ? plan_by_simulation(problem) : plan_by_tables(problem);
 }
 
-/// The schedule of least energy demand as a plan, and what its flights land with.
-struct LeastPlan {
+/// The schedule of least energy demand as a plan.
+MissionPlan least_plan(const PlanningProblem& problem, const FlightSpreads& spreads, double probability) {
     MissionPlan plan;
-    LandingQuantile quantile;
-};
-
-LeastPlan least_plan(const PlanningProblem& problem, const FlightSpreads& spreads, double probability) {
-    LeastPlan least;
-    auto& [plan, quantile] = least;
     plan.flown = with_minimum_energy_schedule(problem);
     plan.summary = simulate(plan.flown).summary;
     plan.plan.schedule = plan.flown.schedule;
     plan.plan.deliverable = !plan.summary.undeliverable;
-    quantile = landing_quantile(plan.flown, spreads, probability);
+    const auto quantile = landing_quantile(plan.flown, spreads, probability);
     plan.margin_percent = quantile.margin_percent;
     plan.plan.final_soc_percent = quantile.left_percent + quantile.margin_percent;
-    plan.plan.feasible = plan.summary.keeps_reserve && quantile.left_percent >= problem.reserve_soc_percent;
+    plan.plan.feasible =
+        plan.summary.keeps_reserve && landing_chance(plan.flown, spreads, probability).below <= 1.0 - probability;
     plan.plan.utility = plan.plan.bound = plan.summary.utility.value_or(0.0);
-    return least;
+    return plan;
 }
 
 /// Plans with a margin above the reserve, and looks for the least with which enough of the plan's flights keep it.
 MissionPlan plan_with_chance(const PlanningProblem& problem, double probability) {
     require_known_spread(problem);
     const auto spreads = find_spreads(problem);
-    auto [best, quantile] = least_plan(problem, spreads, probability);
+    auto best = least_plan(problem, spreads, probability);
     best.sources = spreads.sources;
     if (!best.plan.feasible) {
         best.plan.bound = 0.0;
         return best;
     }
-    const double close_percent = slack_part * quantile.sd_percent;
-    MarginSearch search(quantile.margin_percent);
+    MarginSearch search(best.margin_percent);
     bool is_least = true;
+    LandingChance landing;
+    Schedule last;
     for (int round = 0; round < max_margin_rounds && !search.is_exhausted(); ++round) {
         const double planned_percent = std::max(search.margin_percent(), 0.0);  // as stated, it keeps the reserve too
         auto stricter = problem;
@@ -218,20 +214,23 @@ MissionPlan plan_with_chance(const PlanningProblem& problem, double probability)
             continue;
         }
         plan.flown.reserve_soc_percent = problem.reserve_soc_percent;
-        quantile = landing_quantile(plan.flown, spreads, probability);
-        const double slack_percent = quantile.left_percent - problem.reserve_soc_percent;
+        if (plan.flown.schedule != last) landing = landing_chance(plan.flown, spreads, probability);
+        last = plan.flown.schedule;
+        const double slack_percent = landing.spare_percent(probability);
+        const double close_percent = slack_part * landing.sd_percent;
         search.learn(slack_percent, close_percent / 2.0);
         if (slack_percent < 0.0) continue;
         const bool is_same = plan.flown.schedule == best.flown.schedule;
         if (is_least || *plan.summary.utility >= *best.summary.utility) {
-            plan.margin_percent = std::max(quantile.margin_percent, 0.0);
             plan.sources = spreads.sources;
+            plan.chance_standard_error = landing.standard_error;
             best = std::move(plan);
         }
         if (slack_percent <= close_percent || planned_percent == 0.0 || (is_same && !is_least)) break;
         is_least = false;
     }
     best.summary = simulate(best.flown).summary;
+    best.margin_percent = std::max(landing_quantile(best.flown, spreads, probability).margin_percent, 0.0);
     return best;
 }
 

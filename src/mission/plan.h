@@ -24,6 +24,7 @@ struct MissionPlan {
     Mission flown;                                       ///< the mission with the plan's schedule
     MissionSummary summary;                              ///< of that, simulated
     double margin_percent = 0.0;                         ///< kept above the reserve for the sake of the probability
+    double chance_standard_error = 0.0;                  ///< of the chance to keep the reserve, as it is computed
     std::optional<DrawnSources> sources = std::nullopt;  ///< what may differ with that probability
 };
 

@@ -2,6 +2,7 @@
 
 #include "helpers/paper_missions.h"
 #include "helpers/rejected.h"
+#include "helpers/steady_mission.h"
 #include "mission/sampling/flight_draws.h"
 
 #include <cmath>
@@ -16,14 +17,7 @@ using test::paper_mission;
 
 /// 20 W +- 5 % over 1000 s from 36 kJ, so that 55.6 +- 2.78 points are lost.
 Mission gaussian_depletion(double reserve_soc_percent) {
-    Mission mission;
-    mission.name = "steady";
-    mission.duration_s[flight::Phase::cruise] = 1000.0;
-    mission.battery = {"", 10.0, 0.0, 1.0};
-    mission.schedule = {{flight::Phase::cruise, 0.0, 1000.0, {}}};
-    mission.mechanical = mechanical::MechanicalModel();
-    mission.mechanical->phases[flight::Phase::cruise].fourier = {0.01, 20.0, {}, {}};
-    mission.mechanical->phases[flight::Phase::cruise].duration_s = 1000.0;
+    auto mission = test::steady_mission();
     mission.reserve_soc_percent = reserve_soc_percent;
     mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
     return mission;

@@ -11,10 +11,27 @@ struct LandingQuantile {
     double sd_percent = 0.0;      ///< of the flights, to first order
 };
 
-/// The state of charge that flights of `mission`, drawn as flight_of says, land with or above with `probability`, by
-/// line sampling (docs/methods.md, Eq. 34): no Gaussian is fitted, and what is not linear is flown. The probability of
-/// that state of charge is met within a tenth of the standard error that 20,000 flights have. Flights are drawn
+/// How many flights of a mission land with less than its reserve.
+struct LandingChance {
+    double below = 0.0;
+    double standard_error = 0.0;        ///< of `below`, as it is computed
+    double sd_percent = 0.0;            ///< of the flights, to first order
+    double stated_spare_percent = 0.0;  ///< what the flight as stated keeps above the reserve
+
+    /// What flights keep above the reserve with `probability`, if they are Gaussian; not negative just where as many
+    /// keep the reserve.
+    double spare_percent(double probability) const;
+};
+
+/// The chance that flights of `mission`, drawn as flight_of says, land with less than its reserve, by line sampling
+/// (docs/methods.md, Eq. 34): no Gaussian is fitted, and what is not linear is flown. Exact to a tenth of the standard
+/// error of 20,000 flights; where flights fail at once, as at a cut-off, to what it takes to know on which side of
+/// 1 - `probability` it is, or to what 512 lines or 20,000 flights tell: see `standard_error`. Flights are drawn
 /// independently of any --samples. Throws std::invalid_argument for a probability not from 0.5 to below 1.
+LandingChance landing_chance(const Mission& mission, const FlightSpreads& spreads, double probability);
+
+/// The state of charge that the same flights land with or above with `probability`, by the same lines. Throws as
+/// landing_chance does.
 LandingQuantile landing_quantile(const Mission& mission, const FlightSpreads& spreads, double probability);
 
 }  // namespace flightwatt::mission

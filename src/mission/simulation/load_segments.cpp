@@ -74,12 +74,15 @@ double depleted_percent(const battery::Battery& battery, const LoadSegment& segm
     if (segment.mechanical)
         turns = static_cast<double>(segment.mechanical->cos_w.size()) * segment.mechanical->omega_rad_per_s * length_s /
                 units::rad_per_turn;
-    const double pieces = std::min(1.0 + std::floor(turns * pieces_a_turn), std::max(16.0, length_s));
+    const auto pieces =
+        static_cast<std::size_t>(std::min(1.0 + std::floor(turns * pieces_a_turn), std::max(16.0, length_s)));
+    const double piece_s = length_s / static_cast<double>(pieces);
     const auto current_a = [&](double time_s) { return internal_current_a(battery, power_w(segment, time_s)); };
     double charge_as = 0.0;
-    for (double k = 0.0; k < pieces; ++k)
-        charge_as += boost::math::quadrature::gauss<double, 7>::integrate(
-            current_a, segment.start_s + length_s * k / pieces, segment.start_s + length_s * (k + 1.0) / pieces);
+    for (std::size_t k = 0; k < pieces; ++k) {
+        const double start_s = segment.start_s + piece_s * static_cast<double>(k);
+        charge_as += boost::math::quadrature::gauss<double, 7>::integrate(current_a, start_s, start_s + piece_s);
+    }
     return units::percent_of(charge_as, capacity_as);
 }
 

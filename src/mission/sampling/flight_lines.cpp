@@ -1,0 +1,158 @@
+#include "mission/sampling/flight_lines.h"
+
+#include "base/statistics.h"
+#include "mission/sampling/flown_landing.h"
+#include "mission/sampling/workers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <boost/math/constants/constants.hpp>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr std::uint64_t seed_of_lines = 0x6c696e6573;
+constexpr std::size_t first_lines = 64;
+constexpr double furthest = 9.0;     ///< deviations: beyond, nothing is as probable as 1e-18
+constexpr double resolution = 1e-4;  ///< of a threshold [deviations]: 3e-6 of a chance of 0.01
+constexpr int most_rounds = 60;
+
+double chance_beyond(double deviations) {
+    return 0.5 * std::erfc(deviations / boost::math::constants::root_two<double>());
+}
+
+double density(double deviations) {
+    return std::exp(-deviations * deviations / 2.0) / boost::math::constants::root_two_pi<double>();
+}
+
+double inner_product(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// Between which flights of a line the first is that falls below `left_percent`.
+std::pair<double, double> bracket_of(const LineSearch& line, double left_percent) {
+    double above = -furthest;
+    for (const auto& [at, left] : line.left_percent) {
+        if (left <= left_percent) return {above, at};
+        above = at;
+    }
+    return {above, furthest};
+}
+
+}  // namespace
+
+FlightLines::FlightLines(const Mission& mission, const FlightSpreads& spreads)
+    : spreads_(spreads),
+      setup_(without_evidence(mission)),
+      schedule_(mission.schedule),
+      worse_(count_normals(mission)) {
+    stated_percent_ = left_percent_of(worse_);
+    for_each_index(worse_.size(), [&](std::size_t k) {
+        std::vector<double> normals(worse_.size());
+        normals[k] = 1.0;
+        worse_[k] = -left_percent_of(normals);
+        normals[k] = -1.0;
+        worse_[k] = (worse_[k] + left_percent_of(normals)) / 2.0;
+    });
+    sd_percent_ = std::sqrt(inner_product(worse_, worse_));
+    set_direction(worse_);
+}
+
+double FlightLines::left_percent_of(std::span<const double> normals) const {
+    const auto flight = flight_of(setup_, spreads_, normals);
+    const auto schedule = rescale_to_flown_durations(schedule_, setup_.duration_s, flight.duration_s);
+    const double left_percent = land({flight, flight.battery, load_segments(flight, schedule)}).left_percent;
+    ++flown_;
+    if (left_percent < 0.0) some_fail_ = true;
+    return left_percent;
+}
+
+void FlightLines::set_direction(std::vector<double> direction) {
+    const double length = std::sqrt(inner_product(direction, direction));
+    if (!(length > 0.0)) return;
+    for (auto& part : direction) part /= length;
+    worse_ = std::move(direction);
+}
+
+/// Neighbours mirror each other.
+std::vector<double> FlightLines::across_of(std::size_t line) const {
+    auto across = draw_normals(worse_.size(), seed_of_lines, line / 2);
+    const double along = inner_product(across, worse_);
+    const double sign = line % 2 == 0 ? 1.0 : -1.0;
+    for (std::size_t k = 0; k < across.size(); ++k) across[k] = sign * (across[k] - along * worse_[k]);
+    return across;
+}
+
+void FlightLines::find_threshold(std::size_t line, double left_percent, LineSearch& search) const {
+    const auto across = across_of(line);
+    std::vector<double> normals(across.size());
+    auto [above, below] = bracket_of(search, left_percent);
+    double& at = search.threshold;
+    for (int round = 0; round < most_rounds && below - above > resolution; ++round) {
+        const bool is_slow = round % 4 == 3 && above > -furthest && below < furthest;  // at a jump
+        if (!(at > above && at < below) || is_slow) at = std::midpoint(above, below);
+        for (std::size_t k = 0; k < normals.size(); ++k) normals[k] = across[k] + at * worse_[k];
+        const double left = left_percent_of(normals);
+        search.left_percent[at] = left;
+        const double spare_percent = left - left_percent;
+        if (std::abs(spare_percent) <= 1e-4 * sd_percent_) return;
+        (spare_percent > 0.0 ? above : below) = at;
+        at += spare_percent / sd_percent_;
+    }
+    at = std::clamp(at, above, below);
+}
+
+void FlightLines::turn_to_beyond(const std::vector<LineSearch>& searches) {
+    std::vector<double> sum(worse_.size());
+    for (std::size_t line = 0; line < searches.size(); ++line) {
+        const double at = searches[line].threshold;
+        const auto across = across_of(line);
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += chance_beyond(at) * across[k] + density(at) * worse_[k];
+    }
+    set_direction(std::move(sum));
+}
+
+ChanceBelow::ChanceBelow(const FlightLines& lines, double left_percent)
+    : lines_(&lines),
+      left_percent_(left_percent),
+      searches_(first_lines, {(lines.stated_percent() - left_percent) / lines.sd_percent(), {}}) {
+    solve(0);
+}
+
+void ChanceBelow::double_lines() {
+    const auto before = searches_.size();
+    const double sum = std::accumulate(searches_.begin(), searches_.end(), 0.0,
+                                       [](double so_far, const auto& search) { return so_far + search.threshold; });
+    searches_.resize(2 * before, {sum / static_cast<double>(before), {}});
+    solve(before);
+}
+
+void ChanceBelow::move_to(double left_percent) {
+    for (auto& search : searches_) search.threshold += (left_percent_ - left_percent) / lines_->sd_percent();
+    left_percent_ = left_percent;
+    solve(0);
+}
+
+double ChanceBelow::chance() const { return mean(of_pairs()); }
+
+double ChanceBelow::standard_error() const {
+    const auto chances = of_pairs();
+    return sample_sd(chances) / std::sqrt(static_cast<double>(chances.size()));
+}
+
+void ChanceBelow::solve(std::size_t from) {
+    for_each_index(searches_.size() - from,
+                   [&](std::size_t i) { lines_->find_threshold(from + i, left_percent_, searches_[from + i]); });
+}
+
+std::vector<double> ChanceBelow::of_pairs() const {
+    std::vector<double> chances;
+    for (std::size_t i = 0; i + 1 < searches_.size(); i += 2)
+        chances.push_back((chance_beyond(searches_[i].threshold) + chance_beyond(searches_[i + 1].threshold)) / 2.0);
+    return chances;
+}
+
+}  // namespace flightwatt::mission

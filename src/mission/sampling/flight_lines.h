@@ -1,0 +1,74 @@
+#pragma once
+
+#include "mission/sampling/flight_draws.h"
+
+#include <atomic>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace flightwatt::mission {
+
+/// A line's threshold for some state of charge, and what its flights so far were left with, by where they are.
+struct LineSearch {
+    double threshold = 0.0;  ///< [deviations]
+    std::map<double, double> left_percent;
+};
+
+/// Lines of flights, each from the best to the worst: parallel to where flights lose most, and so far beside each other
+/// as normal numbers are. The flights are those that flight_of makes of `mission`, which has to outlive the lines.
+class FlightLines {
+  public:
+    FlightLines(const Mission& mission, const FlightSpreads& spreads);
+
+    double stated_percent() const { return stated_percent_; }  ///< what the flight as stated lands with
+    double sd_percent() const { return sd_percent_; }          ///< of the flights, to first order
+    bool some_fail() const { return some_fail_; }              ///< of those that were flown
+    std::size_t flown() const { return flown_; }               ///< flights
+
+    /// Where a line falls below `left_percent`, from the threshold that the search says.
+    void find_threshold(std::size_t line, double left_percent, LineSearch& search) const;
+
+    /// From now on along where the flights beyond the thresholds of lines are, by their chance.
+    void turn_to_beyond(const std::vector<LineSearch>& searches);
+
+  private:
+    double left_percent_of(std::span<const double> normals) const;
+    std::vector<double> across_of(std::size_t line) const;
+    void set_direction(std::vector<double> direction);
+
+    const FlightSpreads& spreads_;
+    MissionSetup setup_;
+    const Schedule& schedule_;
+    mutable std::atomic<std::size_t> flown_ = 0;
+    mutable std::atomic<bool> some_fail_ = false;
+    std::vector<double> worse_;  ///< the direction, of length 1
+    double stated_percent_ = 0.0;
+    double sd_percent_ = 0.0;
+};
+
+/// The chance to be left with less than some state of charge, over the lines so far: docs/methods.md, Eq. 34.
+class ChanceBelow {
+  public:
+    ChanceBelow(const FlightLines& lines, double left_percent);
+
+    std::size_t lines() const { return searches_.size(); }
+    double left_percent() const { return left_percent_; }
+    double chance() const;
+    double standard_error() const;
+    const std::vector<LineSearch>& searches() const { return searches_; }
+
+    /// As many again.
+    void double_lines();
+    void move_to(double left_percent);
+
+  private:
+    void solve(std::size_t from);
+    std::vector<double> of_pairs() const;
+
+    const FlightLines* lines_;
+    double left_percent_;
+    std::vector<LineSearch> searches_;
+};
+
+}  // namespace flightwatt::mission
