@@ -22,7 +22,7 @@ using ManifestJson = nlohmann::ordered_json;
 /// Names of files need not be UTF-8, as JSON is.
 ManifestJson bytes_json(const std::string& bytes) {
     try {
-        const ManifestJson text = bytes;
+        ManifestJson text = bytes;
         (void)text.dump();
         return text;
     } catch (const ManifestJson::exception&) {

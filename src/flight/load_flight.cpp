@@ -124,7 +124,7 @@ std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
     std::vector<FlightSeries> candidates;
     for (const auto& sender : senders) {
         candidates.push_back(flight_series(log, sender));
-        candidates.back().skipped = &sender == &senders.back() ? std::move(skipped) : skipped;
+        candidates.back().skipped = skipped;
     }
     return candidates;
 }

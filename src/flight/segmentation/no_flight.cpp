@@ -107,8 +107,8 @@ std::string why_only_driven(const FlightSeries& series, const FlightGrid& grid, 
     // A rotorcraft hovers, its altitude is that above the ground; and who writes a CSV knows what it is of.
     const auto source = chosen_track(series, "altitude_m").source;
     if (source.starts_with("ROTORCRAFT_FP") || source == plain_source) return "";
-    const auto [begin, end] = activity.moving;
     const auto part = [&](const std::vector<double>& all) {
+        const auto [begin, end] = activity.moving;
         std::vector<double> values(all.begin() + static_cast<std::ptrdiff_t>(begin),
                                    all.begin() + static_cast<std::ptrdiff_t>(end));
         std::ranges::sort(values);

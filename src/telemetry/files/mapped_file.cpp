@@ -49,10 +49,10 @@ void on_bus_error(int signal, siginfo_t* info, void* /*context*/) {
     const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
     auto* const slot = info->si_code == BUS_ADRERR ? slot_of(address) : nullptr;
     if (slot != nullptr) {
-        const auto page = address & ~(page_size - 1);
-        const auto rest = slot->begin.load() + slot->size.load() - page;
-        if (::mmap(reinterpret_cast<void*>(page), rest, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) !=
-            MAP_FAILED) {
+        const auto before = address & (page_size - 1);
+        const auto rest = slot->begin.load() + slot->size.load() - (address - before);
+        if (::mmap(static_cast<char*>(info->si_addr) - before, rest, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED,
+                   -1, 0) != MAP_FAILED) {
             slot->is_damaged = true;
             errno = error_before;
             return;
