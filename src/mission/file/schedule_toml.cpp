@@ -135,8 +135,9 @@ const ScheduleEntry* otherwise_of(const std::vector<ScheduleEntry>& entries, std
 
 void refuse_second_otherwise(const std::vector<ScheduleEntry>& entries) {
     for (const auto& entry : entries) {
+        if (!entry.otherwise) continue;
         const auto* first = otherwise_of(entries, entry.phase);
-        if (!entry.otherwise || first == &entry) continue;
+        if (first == &entry) continue;
         throw InputError(entry.where,
                          fmt::format("a second `otherwise` for {}, the first is in line {}",
                                      entry.phase ? to_string(*entry.phase) : "the whole mission", first->where.line),
@@ -216,9 +217,9 @@ Schedule resolve_schedule(const std::vector<ScheduleEntry>& entries, const PerPh
     std::set<const ScheduleEntry*> used;
     for (const auto phase : all_phases) {
         double covered_s = 0.0;
+        const auto* filler = otherwise_of(entries, phase);
+        if (filler == nullptr) filler = otherwise_of(entries, std::nullopt);
         const auto fill_until = [&](double until_s, const ScheduleEntry& near) {
-            const auto* filler = otherwise_of(entries, phase);
-            if (filler == nullptr) filler = otherwise_of(entries, std::nullopt);
             if (filler == nullptr)
                 throw InputError(near.where,
                                  fmt::format("nothing is scheduled for {}", spell(phase, covered_s, until_s)),
