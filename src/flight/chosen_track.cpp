@@ -13,6 +13,7 @@
 namespace flightwatt::flight {
 namespace {
 
+constexpr auto units_in_log = "units in the .log";
 constexpr auto any_source = [](const Track&) { return true; };
 
 /// A track as it is taken, and what of the log is not: samples that are left out, sources passed over.
@@ -128,7 +129,9 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
     if (!series.assumed_definitions.empty()) {
         std::vector<std::string> assumed;
         for (const auto& definition : series.assumed_definitions) assumed.push_back(definition.text);
-        warnings.push_back(fmt::format("no .log beside it: message layouts assumed: {}", fmt::join(assumed, ", ")));
+        warnings.push_back(fmt::format("{}: {}",
+                                       series.lacks_log ? "no .log beside it: message layouts assumed" : units_in_log,
+                                       fmt::join(assumed, ", ")));
     }
     if (series.current_origin == CurrentOrigin::throttle) {
         warnings.emplace_back(
@@ -156,7 +159,8 @@ std::string why_no_power(const FlightSeries& series) {
     if (!power.power_w.empty()) return "";
     std::vector<std::string> reasons = power.passed_over;
     for (const auto& skip : series.skipped) reasons.push_back(describe(skip));
-    for (const auto& assumed : series.assumed_definitions) reasons.push_back("assumed " + assumed.text);
+    for (const auto& assumed : series.assumed_definitions)
+        reasons.push_back(fmt::format("{} {}", series.lacks_log ? "assumed" : "the .log:", assumed.text));
     return fmt::format("{}", fmt::join(reasons, "; "));
 }
 

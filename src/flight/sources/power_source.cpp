@@ -8,6 +8,8 @@
 #include <iterator>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace flightwatt::flight {
 namespace {
 
@@ -167,6 +169,14 @@ PowerChoice choose_power(const FlightSeries& series) {
         if (sum.track.source.empty() || !take(sum.track, choice)) continue;
         std::ranges::move(sum.notes, std::back_inserter(choice.left_out));
         return choice;
+    }
+    for (const auto* message : {"ENERGY", "ESC", "POWER_DEVICE"}) {
+        const auto is_of = [&](const Track& track) {
+            return track.source.substr(0, track.source.find('.')) == message;
+        };
+        const bool is_power = find_power(series, is_of) != nullptr;
+        if (!is_power && std::ranges::any_of(series.tracks, is_of))
+            choice.passed_over.push_back(fmt::format("{} has no power in W, nor current in A with voltage", message));
     }
     return choice;
 }
