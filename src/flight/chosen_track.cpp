@@ -1,6 +1,7 @@
 #include "flight/chosen_track.h"
 
 #include "base/error.h"
+#include "flight/sources/device_check.h"
 #include "flight/sources/device_sum.h"
 #include "flight/sources/power_source.h"
 #include "flight/sources/wild_samples.h"
@@ -144,6 +145,10 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
         warnings.push_back(fmt::format("{}: power is taken from {}", reason, power.power_w.source));
     }
     warnings.insert(warnings.end(), power.left_out.begin(), power.left_out.end());
+    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
+        if (!power.power_w.source.starts_with(message)) continue;
+        for (auto& doubt : device_doubts(series, message)) warnings.push_back(std::move(doubt));
+    }
     for (const auto& name : track_names()) {
         if (name == "power_w") continue;
         for (auto& said : choose(series, name).said) warnings.push_back(std::move(said));
