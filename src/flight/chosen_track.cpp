@@ -25,11 +25,12 @@ struct Choice {
 
 /// Leaves out what cannot be.
 Choice sound_choice(const FlightSeries& series, const Track& candidate) {
-    auto sound = sound_track(candidate);
+    const bool is_current = candidate.name == "current_a";
+    auto sound = sound_track(candidate, {}, is_current ? dropout_throttle(series, candidate) : Track{});
     Choice choice{std::move(sound.track), {}};
     if (!sound.left_out.empty()) choice.said.push_back(std::move(sound.left_out));
     // Where the message contradicts itself is said of its power.
-    if (candidate.name == "voltage_v" || candidate.name == "current_a")
+    if (candidate.name == "voltage_v" || is_current)
         choice.track = without_times(choice.track, contradicted_times(series, candidate.source));
     return choice;
 }

@@ -24,6 +24,8 @@ struct PowerRecord {
     std::vector<double> charge_ah;
     std::vector<double> energy_wh;
     std::vector<double> throttle_percent;
+    std::vector<double> altitude_m;
+    bool is_sum = false;             ///< of several devices
     std::vector<SampleRange> flown;  ///< the samples of each sortie
 };
 
