@@ -18,7 +18,9 @@ PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
     record.charge_ah = on_clock("charge_ah");
     record.energy_wh = on_clock("energy_wh");
     record.throttle_percent = on_clock("throttle_percent");
-    record.altitude_m = on_clock("altitude_m");
+    const auto altitude = chosen_track(series, "altitude_m");
+    if (!altitude.empty()) record.altitude_m = resample(altitude, power.time_s);
+    record.altitude_time_s = altitude.time_s;
     record.is_sum = is_sum_over_devices(power);
     record.time_s = std::move(power.time_s);
     record.power_w = std::move(power.value);

@@ -25,8 +25,9 @@ struct PowerRecord {
     std::vector<double> energy_wh;
     std::vector<double> throttle_percent;
     std::vector<double> altitude_m;
-    bool is_sum = false;             ///< of several devices
-    std::vector<SampleRange> flown;  ///< the samples of each sortie
+    std::vector<double> altitude_time_s;  ///< the altitude's own clock
+    bool is_sum = false;                  ///< of several devices
+    std::vector<SampleRange> flown;       ///< the samples of each sortie
 };
 
 PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases);

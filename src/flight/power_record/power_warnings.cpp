@@ -22,6 +22,7 @@ constexpr double doubtful_phase_of_flight = 0.02;  // and of the flight's
 constexpr double told_gap_part = 0.02;             // links drop out for seconds all the time
 constexpr double doubtful_gap_part = 0.04;
 constexpr double doubtful_gaps_part = 0.05;  // all together, beyond usual intervals
+constexpr double doubtful_silence_part = 0.06;
 constexpr double doubtful_negative_part = 0.02;
 constexpr std::size_t standing_samples = 30;
 constexpr double doubtful_standing_part = 0.04;
@@ -119,6 +120,27 @@ struct GapSum {
     }
 };
 
+/// Where the altitude, which comes more often, pauses too, no message came, or the clock jumped.
+void warn_of_silence(const FlownPower& flown, Warnings& warnings) {
+    const auto& time_s = flown.record.altitude_time_s;
+    const double usual_s = usual_interval_s(time_s);
+    const double gap_s = gap_threshold_s(time_s);
+    GapSum sum;
+    for (const auto& sortie : flown.evidence.phases.sorties) {
+        for (std::size_t i = 1; i < time_s.size(); ++i) {
+            const double interval_s = time_s[i] - time_s[i - 1];
+            if (interval_s <= gap_s || time_s[i - 1] < sortie.start_s() || time_s[i] > sortie.end_s()) continue;
+            sum.add(time_s[i - 1], interval_s, flown.energy_j / flown.duration_s * (interval_s - usual_s));
+        }
+    }
+    const double part = sum.carried_j / flown.energy_j;
+    if (part <= doubtful_silence_part) return;
+    warnings.push_back(fmt::format(
+        "{} gaps in the altitude in flight, {:.0f} s in all: no message came, or the clock jumped; {} % of the "
+        "energy lies in them, and no counter confirms it",
+        sum.gaps, sum.together_s, percent_of_whole(part)));
+}
+
 /// A gap that begins or ends a sortie hides when that was: no counter helps. Many short ones add up: of these what is
 /// beyond a usual interval.
 void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
@@ -142,6 +164,7 @@ void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
                 large.add(time_s[i - 1], interval_s, mean_w * interval_s);
         }
     }
+    if (!is_counted) warn_of_silence(flown, warnings);
     const bool many = all.carried_j > doubtful_gaps_part * flown.energy_j;
     if (!many && large.carried_j <= doubtful_gap_part * flown.energy_j) return;
     const auto& told = many ? all : large;

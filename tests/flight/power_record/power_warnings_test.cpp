@@ -188,6 +188,15 @@ TEST(PowerWarnings, TellOfManyShortGapsTogether) {
     EXPECT_THAT(test::said_of(test::examined(text)), HasSubstr("gaps in the power, "));
 }
 
+TEST(PowerWarnings, TellOfJumpsOfTheClockThatLeaveNoGapInThePower) {
+    const auto text = test::damaged_sample([](test::Words& words) {
+        if (words[2] == "ENERGY") words[charge] = words[energy] = "0";
+        const double time_s = number_or_nan(words[0]);
+        words[time] = fmt::format("{:.3f}", time_s + 2.0 * std::clamp(std::floor((time_s - 64.0) / 20.0), 0.0, 30.0));
+    });
+    EXPECT_THAT(test::said_of(test::examined(text)), HasSubstr("no message came, or the clock jumped"));
+}
+
 TEST(PowerWarnings, TellOfACurrentThatDrifts) {
     const auto drifts = with_energy(false, [](test::Words& words, int) {
         const double drift_a = 0.0005 * std::max(0.0, value(words, time) - 64.0);
