@@ -1,7 +1,9 @@
+#include "base/statistics.h"
 #include "flight/phase_statistics.h"
 #include "flight/power_record/flown_power.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -9,6 +11,8 @@ namespace flightwatt::flight {
 namespace {
 
 constexpr double doubtful_change_part = 0.02;  // of the energy
+constexpr double doubtful_beside_throttle_part = 0.04;
+constexpr std::size_t least_at_throttle = 10;
 constexpr std::size_t longest_change = 5;
 constexpr std::size_t longest_fall_without_throttle = 3;
 constexpr double change_factor = 0.65;
@@ -71,7 +75,48 @@ struct Judge {
     }
 };
 
+/// The flown samples by throttle.
+std::map<int, std::vector<std::size_t>> samples_by_throttle(const PowerRecord& record) {
+    constexpr double step_percent = 5.0;
+    std::map<int, std::vector<std::size_t>> samples;
+    for_each_flown(record, [&](std::size_t i) {
+        const double percent = record.throttle_percent[i];
+        if (percent > running_throttle_percent) samples[static_cast<int>(percent / step_percent)].push_back(i);
+    });
+    std::erase_if(samples, [](const auto& step) { return step.second.size() < least_at_throttle; });
+    return samples;
+}
+
 }  // namespace
+
+void warn_of_power_beside_throttle(const FlownPower& flown, Warnings& warnings) {
+    const auto& record = flown.record;
+    if (record.throttle_percent.empty()) return;
+    const auto by_throttle = samples_by_throttle(record);
+    if (by_throttle.size() < 2) return;  // a switch, or a throttle that stands still
+    const double longest_s = gap_threshold_s(record.time_s);
+    double lacking_j = 0.0;
+    double beyond_j = 0.0;
+    std::size_t samples = 0;
+    for (const auto& [step, at_step] : by_throttle) {
+        std::vector<double> powers;
+        for (const auto i : at_step) powers.push_back(record.power_w[i]);
+        const double usual_w = upper_median(std::move(powers));
+        for (const auto i : at_step) {
+            const double power_w = record.power_w[i];
+            const bool is_usual = power_w >= change_factor * usual_w && change_factor * power_w <= usual_w;
+            if (is_usual || i == 0 || i + 1 == record.time_s.size()) continue;
+            const double lasts_s = std::min((record.time_s[i + 1] - record.time_s[i - 1]) / 2.0, longest_s);
+            (power_w < usual_w ? lacking_j : beyond_j) += std::abs(power_w - usual_w) * lasts_s;
+            ++samples;
+        }
+    }
+    if (lacking_j + beyond_j <= doubtful_beside_throttle_part * flown.energy_j) return;
+    warnings.push_back(fmt::format(
+        "power is far from what it usually is at the same throttle in {} samples in flight: {} % "
+        "of the energy less, {} % more",
+        samples, percent_of_whole(lacking_j / flown.energy_j), percent_of_whole(beyond_j / flown.energy_j)));
+}
 
 void warn_of_brief_changes(const FlownPower& flown, Warnings& warnings) {
     const auto& record = flown.record;

@@ -32,6 +32,9 @@ using Warnings = std::vector<std::string>;
 /// 2 % of the energy. Where no throttle is known, of deep falls of one to three and of single high samples.
 void warn_of_brief_changes(const FlownPower& flown, Warnings& warnings);
 
+/// Of power that is far from its median at the same throttle (steps of 5 %, above 30 %): more than 4 % of the energy.
+void warn_of_power_beside_throttle(const FlownPower& flown, Warnings& warnings);
+
 /// Of a current at rest that is another one after a sortie than before: a sensor that drifts.
 void warn_of_drift(const FlownPower& flown, Warnings& warnings);
 

@@ -323,6 +323,7 @@ std::vector<std::string> power_warnings_of(const PowerEvidence& evidence) {
     warn_of_phases(flown, warnings);
     warn_of_gaps(flown, warnings);
     warn_of_brief_changes(flown, warnings);
+    warn_of_power_beside_throttle(flown, warnings);
     warn_of_standing(flown, warnings);
     warn_of_standing_current(flown, warnings);
     warn_of_negative(flown, warnings);

@@ -172,6 +172,17 @@ TEST(PowerWarnings, TellOfBriefChangesThatTheThrottleDoesNotShare) {
     }
 }
 
+TEST(PowerWarnings, TellOfPowerThatIsNotWhatItIsAtTheSameThrottle) {
+    for (const double factor : {0.5, 2.0}) {
+        const auto loaded = with_energy(false, [&](test::Words& words, int number) {
+            if (number < 200 || number > 270) return;
+            scale(words, power, factor);
+            scale(words, current, factor);
+        });
+        EXPECT_THAT(test::said_of(loaded), HasSubstr("power is far from what it usually is at the same throttle"));
+    }
+}
+
 TEST(PowerWarnings, TellOfPowerThatEndsEarly) {
     const auto ends_early = test::examined(test::damaged_sample([](test::Words& words) {
         if (words[2] == "ENERGY" && number_or_nan(words[0]) > 500.0) words.clear();
