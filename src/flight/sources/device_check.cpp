@@ -70,7 +70,7 @@ struct Beside {
     std::vector<bool> stands;
 };
 
-Beside beside_others(const DeviceTable& table, std::size_t device, const Track& reported) {
+Beside beside_others(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported) {
     Beside beside{table.power_w[device], {}, {}, std::vector<bool>(table.time_s.size(), false)};
     for (std::size_t i = 0; i < table.time_s.size(); ++i) {
         std::vector<double> others;
@@ -79,10 +79,12 @@ Beside beside_others(const DeviceTable& table, std::size_t device, const Track& 
         beside.sum_w.push_back(std::reduce(others.begin(), others.end()));
         beside.median_w.push_back(median(std::move(others)));
     }
-    for (const auto& standstill : standstills_of(reported)) {
-        const auto first = std::ranges::lower_bound(table.time_s, standstill.from_s) - table.time_s.begin();
-        const auto last = std::ranges::upper_bound(table.time_s, standstill.to_s) - table.time_s.begin();
-        std::fill(beside.stands.begin() + first, beside.stands.begin() + std::max(first, last), true);
+    for (const auto& track : reported) {
+        for (const auto& standstill : standstills_of(track)) {
+            const auto first = std::ranges::lower_bound(table.time_s, standstill.from_s) - table.time_s.begin();
+            const auto last = std::ranges::upper_bound(table.time_s, standstill.to_s) - table.time_s.begin();
+            std::fill(beside.stands.begin() + first, beside.stands.begin() + std::max(first, last), true);
+        }
     }
     return beside;
 }
@@ -134,8 +136,10 @@ Doubt doubt_of_motor(const DeviceTable& table, const Beside& beside) {
     return doubt;
 }
 
-Doubt doubt_of_circuit(const DeviceTable& table, const Beside& beside, const Track& reported, double all_j) {
-    const bool is_steady_load = is_constant(reported) && reported.value.front() != 0.0;
+Doubt doubt_of_circuit(const DeviceTable& table, const Beside& beside, const std::vector<Track>& reported,
+                       double all_j) {
+    const bool is_steady_load = std::ranges::any_of(
+        reported, [](const Track& track) { return is_constant(track) && track.value.front() != 0.0; });
     if (is_steady_load && energy_j(table, beside.own_w) < small_load_part * all_j) return {};
     const double part = usual_part(table, beside);
     Doubt doubt;
@@ -154,7 +158,9 @@ std::string odd_part(const DeviceTable& table, const Beside& beside, double all_
     std::vector<double> apart_w(beside.sum_w.size());
     std::ranges::transform(beside.own_w, beside.sum_w, apart_w.begin(),
                            [](double own_w, double others_w) { return std::abs(own_w - others_w); });
-    if (table.power_w.size() > 2 && energy_j(table, apart_w) < alike_part * own_j)
+    const auto is_part = [&](const auto& power_w) { return energy_j(table, power_w) > alike_part * own_j; };
+    const bool has_parts = std::ranges::count_if(table.power_w, is_part) > 2;  // itself, and two others
+    if (has_parts && energy_j(table, apart_w) < alike_part * own_j)
         return "reports what all others do together: if it is the pack's, the energy is counted twice";
     return "";
 }
@@ -188,8 +194,9 @@ std::vector<std::string> device_doubts(const FlightSeries& series, std::string_v
     double all_j = 0.0;
     for (const auto& power_w : table.power_w) all_j = energy_j(table, power_w, all_j);
     for (std::size_t d = 0; d < devices.size(); ++d) {
+        std::vector<Track> reported{devices[d].track};
         const auto current = std::ranges::find(currents, devices[d].id, &Device::id);
-        const auto& reported = current == currents.end() ? devices[d].track : current->track;
+        if (current != currents.end()) reported.push_back(current->track);
         const auto beside = beside_others(table, d, reported);
         const auto doubt =
             message == "ESC" ? doubt_of_motor(table, beside) : doubt_of_circuit(table, beside, reported, all_j);

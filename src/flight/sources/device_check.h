@@ -8,8 +8,8 @@
 
 namespace flightwatt::flight {
 
-/// Which of the devices of `message` is not to be believed: one that stands still (30 reports alike, in current or else
-/// in power) while the others go on, and an ESC below 5 % of the others' median while these run. Told where more than
+/// Which of the devices of `message` is not to be believed: one that stands still (30 reports alike, in current or in
+/// power) while the others go on, and an ESC below 5 % of the others' median while these run. Told where more than
 /// 4 % of the energy would be missing if it went with the others: an ESC draws their median, a circuit
 /// (POWER_DEVICE) the part of their power that it drew otherwise. A circuit that draws the same small power
 /// throughout is the electronics'; one that is 0 throughout is told of. So are devices of negative power, and one that

@@ -80,6 +80,20 @@ TEST(DeviceDoubts, TellOfADeviceThatRepeatsItsLastValue) {
     }
 }
 
+TEST(DeviceDoubts, TellOfAPowerThatStandsStillWhileTheCurrentGoesOn) {
+    std::string text;
+    for (int k = 0; k < 800; ++k) {
+        for (int motor = 0; motor < 6; ++motor) {
+            const double current_a = 1.0 + 0.1 * std::sin(0.1 * k);
+            text += fmt::format("{}.{} 7 ESC {:.4f} 12.0 {:.4f} 5000 12.0 0 {}\n", k, motor, current_a,
+                                motor == 5 && k > 100 ? 2.5 : 12.0 * current_a, motor);
+        }
+    }
+    const auto series = flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7");
+    EXPECT_THAT(device_doubts(series, "ESC"),
+                testing::ElementsAre(HasSubstr("ESC 5 reports the same value again and again (2.50 W)")));
+}
+
 TEST(DeviceDoubts, LetElectronicsDrawWhatTheyDraw) {
     for (const bool is_exact : {true, false}) {
         const auto loaded = with_devices("POWER_DEVICE", 2, [&](int device, double time_s, Report pack) {
