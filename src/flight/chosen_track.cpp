@@ -14,6 +14,7 @@
 namespace flightwatt::flight {
 namespace {
 
+constexpr std::string_view power_device = "POWER_DEVICE";
 constexpr auto units_in_log = "units in the .log";
 constexpr auto any_source = [](const Track&) { return true; };
 
@@ -70,11 +71,21 @@ Choice throttle(const FlightSeries& series) {
 /// The pack's current, or else the sum of what its consumers report.
 Choice current(const FlightSeries& series) {
     auto found = first_that_varies(series, "current_a");
-    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
+    for (const std::string_view message : {std::string_view("ESC"), power_device}) {
         if (!found.track.empty()) break;
+        if (message == power_device && !own_voltages(series).empty()) continue;
         found.track = sum_over_devices(series, "current_a", message).track;
     }
     return found;
+}
+
+/// Of circuits with voltages of their own none.
+Choice voltage(const FlightSeries& series) {
+    auto found = first_that_varies(series, "voltage_v");
+    if (!found.track.source.starts_with(power_device)) return found;
+    auto reason = own_voltages(series);
+    if (reason.empty()) return found;
+    return {{}, {std::move(reason)}};
 }
 
 Choice charge(const FlightSeries& series) {
@@ -89,6 +100,7 @@ Choice charge(const FlightSeries& series) {
 /// Any track but power, which has reasons of its own.
 Choice choose(const FlightSeries& series, std::string_view name) {
     if (name == "current_a") return current(series);
+    if (name == "voltage_v") return voltage(series);
     if (name == "charge_ah") return charge(series);
     if (name == "throttle_percent") return throttle(series);
     if (name == "ground_speed_m_per_s") return first_of(series, name);

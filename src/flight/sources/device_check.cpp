@@ -208,4 +208,23 @@ std::vector<std::string> device_doubts(const FlightSeries& series, std::string_v
     return doubts;
 }
 
+std::string own_voltages(const FlightSeries& series) {
+    constexpr double most_apart = 1.1;
+    const auto currents = devices_of(series, "current_a", "POWER_DEVICE");
+    std::vector<double> voltages;
+    for (const auto& device : devices_of(series, "power_w", "POWER_DEVICE")) {
+        const auto current = std::ranges::find(currents, device.id, &Device::id);
+        if (current == currents.end()) continue;
+        const auto sum = [](const Track& track) { return std::reduce(track.value.begin(), track.value.end()); };
+        const double volts = sum(device.track) / sum(current->track);
+        if (std::isfinite(volts) && volts > 0.0) voltages.push_back(volts);
+    }
+    if (voltages.empty()) return "";
+    const auto [low, high] = std::ranges::minmax(voltages);
+    if (high <= most_apart * low) return "";
+    return fmt::format(
+        "the circuits of POWER_DEVICE have {:.1f} to {:.1f} V: voltage and current of the pack are not known", low,
+        high);
+}
+
 }  // namespace flightwatt::flight

@@ -16,4 +16,8 @@ namespace flightwatt::flight {
 /// reports the sum of two or more others.
 std::vector<std::string> device_doubts(const FlightSeries& series, std::string_view message);
 
+/// Why voltage and current of POWER_DEVICE are not the pack's: "its circuits have 5.0 to 12.3 V ...". Empty where their
+/// voltages (energy over charge) lie within 10 %.
+std::string own_voltages(const FlightSeries& series);
+
 }  // namespace flightwatt::flight

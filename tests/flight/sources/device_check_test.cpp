@@ -124,6 +124,9 @@ TEST(DeviceDoubts, DoNotFaultCircuitsOfOtherVoltages) {
         return device == 0 ? pack : Report{0.5 * pack.current_a, 5.0};
     });
     EXPECT_THAT(loaded.power.power_faults, testing::IsEmpty());
+    EXPECT_THAT(test::said_of(loaded), HasSubstr("the circuits of POWER_DEVICE have 5.0 to 12.3 V"));
+    EXPECT_TRUE(chosen_track(loaded.series, "voltage_v").empty());
+    EXPECT_TRUE(chosen_track(loaded.series, "current_a").empty());
 }
 
 TEST(DeviceDoubts, LetLiftMotorsStandWhileThePusherRuns) {
