@@ -2,6 +2,7 @@
 #include "flight/power_record/flown_power.h"
 
 #include <algorithm>
+#include <span>
 
 #include <fmt/format.h>
 
