@@ -1,6 +1,7 @@
 #include "flight/chosen_track.h"
 
 #include "base/error.h"
+#include "flight/sources/device_check.h"
 #include "flight/sources/device_sum.h"
 #include "flight/sources/power_source.h"
 #include "flight/sources/wild_samples.h"
@@ -13,6 +14,8 @@
 namespace flightwatt::flight {
 namespace {
 
+constexpr std::string_view power_device = "POWER_DEVICE";
+constexpr auto units_in_log = "units in the .log";
 constexpr auto any_source = [](const Track&) { return true; };
 
 /// A track as it is taken, and what of the log is not: samples that are left out, sources passed over.
@@ -23,11 +26,12 @@ struct Choice {
 
 /// Leaves out what cannot be.
 Choice sound_choice(const FlightSeries& series, const Track& candidate) {
-    auto sound = sound_track(candidate);
+    const bool is_current = candidate.name == "current_a";
+    auto sound = sound_track(candidate, {}, is_current ? dropout_throttle(series, candidate) : Track{});
     Choice choice{std::move(sound.track), {}};
     if (!sound.left_out.empty()) choice.said.push_back(std::move(sound.left_out));
     // Where the message contradicts itself is said of its power.
-    if (candidate.name == "voltage_v" || candidate.name == "current_a")
+    if (candidate.name == "voltage_v" || is_current)
         choice.track = without_times(choice.track, contradicted_times(series, candidate.source));
     return choice;
 }
@@ -67,11 +71,21 @@ Choice throttle(const FlightSeries& series) {
 /// The pack's current, or else the sum of what its consumers report.
 Choice current(const FlightSeries& series) {
     auto found = first_that_varies(series, "current_a");
-    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
+    for (const std::string_view message : {std::string_view("ESC"), power_device}) {
         if (!found.track.empty()) break;
+        if (message == power_device && !own_voltages(series).empty()) continue;
         found.track = sum_over_devices(series, "current_a", message).track;
     }
     return found;
+}
+
+/// Of circuits with voltages of their own none.
+Choice voltage(const FlightSeries& series) {
+    auto found = first_that_varies(series, "voltage_v");
+    if (!found.track.source.starts_with(power_device)) return found;
+    auto reason = own_voltages(series);
+    if (reason.empty()) return found;
+    return {{}, {std::move(reason)}};
 }
 
 Choice charge(const FlightSeries& series) {
@@ -86,6 +100,7 @@ Choice charge(const FlightSeries& series) {
 /// Any track but power, which has reasons of its own.
 Choice choose(const FlightSeries& series, std::string_view name) {
     if (name == "current_a") return current(series);
+    if (name == "voltage_v") return voltage(series);
     if (name == "charge_ah") return charge(series);
     if (name == "throttle_percent") return throttle(series);
     if (name == "ground_speed_m_per_s") return first_of(series, name);
@@ -128,7 +143,9 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
     if (!series.assumed_definitions.empty()) {
         std::vector<std::string> assumed;
         for (const auto& definition : series.assumed_definitions) assumed.push_back(definition.text);
-        warnings.push_back(fmt::format("no .log beside it: message layouts assumed: {}", fmt::join(assumed, ", ")));
+        warnings.push_back(fmt::format("{}: {}",
+                                       series.lacks_log ? "no .log beside it: message layouts assumed" : units_in_log,
+                                       fmt::join(assumed, ", ")));
     }
     if (series.current_origin == CurrentOrigin::throttle) {
         warnings.emplace_back(
@@ -141,6 +158,10 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
         warnings.push_back(fmt::format("{}: power is taken from {}", reason, power.power_w.source));
     }
     warnings.insert(warnings.end(), power.left_out.begin(), power.left_out.end());
+    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
+        if (!power.power_w.source.starts_with(message)) continue;
+        for (auto& doubt : device_doubts(series, message)) warnings.push_back(std::move(doubt));
+    }
     for (const auto& name : track_names()) {
         if (name == "power_w") continue;
         for (auto& said : choose(series, name).said) warnings.push_back(std::move(said));
@@ -156,7 +177,8 @@ std::string why_no_power(const FlightSeries& series) {
     if (!power.power_w.empty()) return "";
     std::vector<std::string> reasons = power.passed_over;
     for (const auto& skip : series.skipped) reasons.push_back(describe(skip));
-    for (const auto& assumed : series.assumed_definitions) reasons.push_back("assumed " + assumed.text);
+    for (const auto& assumed : series.assumed_definitions)
+        reasons.push_back(fmt::format("{} {}", series.lacks_log ? "assumed" : "the .log:", assumed.text));
     return fmt::format("{}", fmt::join(reasons, "; "));
 }
 

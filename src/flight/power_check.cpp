@@ -49,6 +49,21 @@ std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, co
     return idle;
 }
 
+/// At rest before the first sortie, between it and the next, ..., after the last.
+std::vector<std::optional<IdleCurrent>> idle_currents(const PowerRecord& record,
+                                                      const std::vector<std::size_t>& resting) {
+    std::vector<std::optional<IdleCurrent>> currents;
+    auto begin = resting.begin();
+    for (std::size_t sortie = 0; sortie <= record.flown.size(); ++sortie) {
+        const auto end = sortie == record.flown.size()
+                             ? resting.end()
+                             : std::lower_bound(begin, resting.end(), record.flown[sortie].first);
+        currents.push_back(idle_current(record.current_a, {begin, end}));
+        begin = end;
+    }
+    return currents;
+}
+
 /// How far a rising counter ran back in flight, over what it counted there. On the ground a pack may be changed.
 double counter_return(const std::vector<double>& counter, const std::vector<SampleRange>& flown) {
     if (counter.empty()) return 0.0;
@@ -63,9 +78,10 @@ double counter_return(const std::vector<double>& counter, const std::vector<Samp
     return counted > 0.0 ? returned / counted : returned > 0.0 ? 1.0 : 0.0;
 }
 
-/// Median of |power - voltage * current| over the product, where that is large enough; 0 if it cannot be compared.
+/// Median of |power - voltage * current| over the product, where that is large enough; 0 if it cannot be compared, as
+/// where devices have voltages of their own.
 double power_difference(const PowerRecord& record) {
-    if (record.voltage_v.empty() || record.current_a.empty()) return 0.0;
+    if (record.is_sum || record.voltage_v.empty() || record.current_a.empty()) return 0.0;
     std::vector<double> differences;
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
         const double product = record.voltage_v[i] * record.current_a[i];
@@ -185,7 +201,7 @@ PowerReport check_power_record(const FlightSeries& series, const FlightPhases& p
         }
     }
     report.power_faults = power_faults_of(record, motor_known ? resting : std::vector<std::size_t>{}, report);
-    report.warnings = power_warnings_of({record, phases, report, at_rest});
+    report.warnings = power_warnings_of({record, phases, report, at_rest, idle_currents(record, resting)});
     warn_of_short_record(series, time_s, report.warnings);
     return report;
 }

@@ -38,9 +38,10 @@ struct SkippedLines {
 /// "ENERGY: another number of fields than the .log defines: 3 lines, first at line 17".
 std::string describe(const SkippedLines& skipped);
 
-/// A message layout that was assumed, for want of a .log, and since when it was needed.
+/// A message's layout that was assumed for want of a .log, or what was assumed of its units where the .log has none or
+/// none that is known; and since when it was needed.
 struct AssumedDefinition {
-    std::string text;  ///< "ENERGY: 2018 (6 fields)"
+    std::string text;  ///< "ENERGY: 2018 (6 fields)", "POWER_DEVICE: current has none: A is assumed"
     double since_s = 0.0;
     bool operator==(const AssumedDefinition&) const = default;
 };

@@ -1,6 +1,7 @@
 #include "telemetry/message_definition.h"
 
 #include <algorithm>
+#include <set>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -23,6 +24,8 @@ constexpr BuiltinLayout builtin_layouts[] = {
     {"BAT", "2010 (8 fields)",
      "throttle:pprz voltage:1e-1V amps:A flight_time:s kill_auto_throttle block_time:s stage_time:s energy:mAh"},
     {"ESC", "2016 (7 fields)", "amps:A bat_volts:V power:W rpm motor_volts:V energy:Wh motor_id"},
+    {"ESC", "10 fields",
+     "amps:A bat_volts:V power:W rpm motor_volts:V energy:Wh temperature temperature_dev node_id motor_id"},
     {"POWER_DEVICE", "2024 (4 fields)", "node_id circuit current:A voltage:V"},
     {"ESTIMATOR", "2 fields", "z:m z_dot:m/s"},
     {"GPS", "before 2011 (10 fields)",
@@ -89,6 +92,20 @@ FieldConversion conversion_of(std::string_view message, const FieldDefinition& f
         return {unit->quantity, unit->factor * *field.alt_unit_coef};
     }
     return {};
+}
+
+std::string undeclared_unit(const MessageDefinition& definition, std::size_t field) {
+    const auto& declared = definition.fields[field];
+    if (!declared.unit.empty() || !declared.alt_unit.empty()) return "";
+    std::set<std::string> units;
+    for (const auto& layout : builtin_definitions(definition.name)) {
+        const auto index = field_index(layout, declared.name);
+        if (!index) continue;
+        if (std::ranges::equal(layout.fields, definition.fields, {}, &FieldDefinition::name, &FieldDefinition::name))
+            return layout.fields[*index].unit;
+        units.insert(layout.fields[*index].unit);
+    }
+    return units.size() == 1 ? *units.begin() : "";
 }
 
 std::optional<std::size_t> field_index(const MessageDefinition& definition, std::string_view field) {

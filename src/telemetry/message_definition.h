@@ -35,6 +35,11 @@ struct FieldConversion {
 /// BAT.amps, an integer declared "A", counts 0.01 A in every version of Paparazzi.
 FieldConversion conversion_of(std::string_view message, const FieldDefinition& field);
 
+/// The unit that Paparazzi's own definitions give a field that `definition`, of a .log, gives none: those of its own
+/// POWER_DEVICE have none. Empty where it has one, where none is known, and where layouts that have the field differ
+/// and none has the definition's fields.
+std::string undeclared_unit(const MessageDefinition& definition, std::size_t field);
+
 /// Index of a field; std::nullopt if the message has none of that name.
 std::optional<std::size_t> field_index(const MessageDefinition& definition, std::string_view field);
 

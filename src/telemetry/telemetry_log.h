@@ -52,7 +52,7 @@ struct TelemetryLog {
     std::optional<LogConfiguration> configuration;  ///< absent without a .log
     std::vector<SenderLog> senders;                 ///< in the order of their first wanted line
     std::vector<SkippedLines> skipped;
-    std::vector<AssumedDefinition> assumed_definitions;  ///< where there was no .log
+    std::vector<AssumedDefinition> assumed_definitions;  ///< for want of a .log, or of its units
     std::size_t lines = 0;
 };
 

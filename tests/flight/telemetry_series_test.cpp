@@ -47,6 +47,37 @@ TEST(TelemetrySeries, TakesPowerFromEnergyAndEverythingElseOntoItsClock) {
     EXPECT_EQ(source_of(series, "altitude_m"), "ESTIMATOR.z");
 }
 
+/// The series of a log whose .log defines POWER_DEVICE with these attributes of current and voltage.
+FlightSeries with_power_device(const std::string& current, const std::string& voltage) {
+    const auto log =
+        "<configuration><conf></conf><protocol><msg_class name=\"telemetry\"><message name=\"POWER_DEVICE\" id=\"19\">"
+        "<field name=\"node_id\" type=\"uint8\"/><field name=\"circuit\" type=\"uint8\"/><field type=\"float\" " +
+        current + "/><field type=\"float\" " + voltage + "/></message></msg_class></protocol></configuration>";
+    return flight_series(parse_telemetry("1 20 POWER_DEVICE 1 0 2. 11.\n2 20 POWER_DEVICE 1 0 3. 11.\n", "x.data",
+                                         telemetry::parse_log_configuration(log, "x.log"), flight_messages()),
+                         "20");
+}
+
+TEST(TelemetrySeries, AssumesTheUnitsThatPaparazziLeavesOutAndSaysSo) {
+    const auto series = with_power_device("name=\"current\"", "name=\"voltage\"");
+    EXPECT_THAT(power_track(series).value, ElementsAre(22, 33));
+    const auto assumed =
+        "units in the .log: POWER_DEVICE: current has none: A is assumed, voltage has none: V is assumed";
+    EXPECT_THAT(warnings_of(series), Contains(assumed));
+    EXPECT_THAT(warnings_of(cut_series(series, 0.5)), testing::IsEmpty());
+    EXPECT_THAT(power_track(with_power_device("name=\"current\" unit=\"mA\"", "name=\"voltage\"")).value,
+                ElementsAre(0.022, 0.033));
+}
+
+TEST(TelemetrySeries, SaysWhyAMessageTellsNoPower) {
+    const auto strange = with_power_device("name=\"current\" unit=\"furlong\"", "name=\"voltage\" unit=\"V\"");
+    EXPECT_EQ(why_no_power(strange),
+              "POWER_DEVICE has no power in W, nor current in A with voltage; the .log: POWER_DEVICE: current "
+              "has 'furlong', which is none that is known");
+    const auto renamed = with_power_device("name=\"current_2\"", "name=\"voltage\" unit=\"V\"");
+    EXPECT_THAT(why_no_power(renamed), HasSubstr("POWER_DEVICE has no power in W"));
+}
+
 TEST(TelemetrySeries, FallsBackToVoltageTimesCurrent) {
     const auto energy = series_of("1 20 ENERGY 11. 2. 5 0.\n2 20 ENERGY 11. 3. 6 0.\n");
     EXPECT_THAT(on_power_clock(energy, "power_w"), ElementsAre(22, 33));

@@ -36,6 +36,23 @@ TEST(ConversionOf, TakesTheCurrentOfBatInHundredths) {
     expect_conversion("ESC", {"amps", "float", "A", "", {}}, Quantity::ampere, 1.0);
 }
 
+TEST(UndeclaredUnit, IsThatOfPaparazzisOwnDefinition) {
+    const auto definition_of = [](const std::string& message, const std::vector<std::string>& names) {
+        MessageDefinition definition{message, {}, ".log"};
+        for (const auto& name : names) definition.fields.push_back({name, "float", "", "", {}});
+        return definition;
+    };
+    const auto device = definition_of("POWER_DEVICE", {"node_id", "circuit", "current", "voltage", "more"});
+    EXPECT_EQ(undeclared_unit(device, 2), "A");
+    EXPECT_EQ(undeclared_unit(device, 3), "V");
+    EXPECT_EQ(undeclared_unit(device, 0), "");
+    EXPECT_EQ(undeclared_unit(definition_of("PONG", {"current"}), 0), "");
+    // Energy was mAh and is Wh: the fields beside it tell.
+    EXPECT_EQ(undeclared_unit(definition_of("ENERGY", {"bat", "amp", "energy", "power"}), 2), "mAh");
+    EXPECT_EQ(undeclared_unit(definition_of("ENERGY", {"energy", "power"}), 0), "");
+    EXPECT_EQ(undeclared_unit({"ENERGY", {{"power", "float", "mW", "", {}}}, ".log"}, 0), "");
+}
+
 TEST(FieldIndex, IsOfTheNameAlone) {
     const MessageDefinition definition{"X", {{"a", "", "", "", {}}, {"b", "", "", "", {}}}, ".log"};
     EXPECT_EQ(field_index(definition, "b"), 1U);

@@ -2,6 +2,7 @@
 
 #include "flight/chosen_track.h"
 #include "flight/segmentation/flight_grid.h"
+#include "flight/sources/device_sum.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,6 +18,10 @@ PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
     record.charge_ah = on_clock("charge_ah");
     record.energy_wh = on_clock("energy_wh");
     record.throttle_percent = on_clock("throttle_percent");
+    const auto altitude = chosen_track(series, "altitude_m");
+    if (!altitude.empty()) record.altitude_m = resample(altitude, power.time_s);
+    record.altitude_time_s = altitude.time_s;
+    record.is_sum = is_sum_over_devices(power);
     record.time_s = std::move(power.time_s);
     record.power_w = std::move(power.value);
     const auto& time_s = record.time_s;

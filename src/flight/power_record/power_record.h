@@ -24,7 +24,10 @@ struct PowerRecord {
     std::vector<double> charge_ah;
     std::vector<double> energy_wh;
     std::vector<double> throttle_percent;
-    std::vector<SampleRange> flown;  ///< the samples of each sortie
+    std::vector<double> altitude_m;
+    std::vector<double> altitude_time_s;  ///< the altitude's own clock
+    bool is_sum = false;                  ///< of several devices
+    std::vector<SampleRange> flown;       ///< the samples of each sortie
 };
 
 PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases);

@@ -4,6 +4,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/phase_statistics.h"
+#include "flight/power_record/flown_power.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,8 @@ constexpr double doubtful_phase_part = 0.10;       // of the phase's energy,
 constexpr double doubtful_phase_of_flight = 0.02;  // and of the flight's
 constexpr double told_gap_part = 0.02;             // links drop out for seconds all the time
 constexpr double doubtful_gap_part = 0.04;
-constexpr double doubtful_peak_part = 0.02;
+constexpr double doubtful_gaps_part = 0.05;  // all together, beyond usual intervals
+constexpr double doubtful_silence_part = 0.06;
 constexpr double doubtful_negative_part = 0.02;
 constexpr std::size_t standing_samples = 30;
 constexpr double doubtful_standing_part = 0.04;
@@ -35,24 +37,6 @@ constexpr double least_mean_power_w = 3.0;
 constexpr double doubtful_outside_part = 0.05;
 constexpr double longest_run_up_s = 30.0;
 
-/// The record and its energy in flight [J].
-struct FlownPower {
-    const PowerEvidence& evidence;
-    const PowerRecord& record;
-    double energy_j = 0.0;
-    double duration_s = 0.0;
-};
-
-template <typename Visit>
-void for_each_flown(const PowerRecord& record, Visit&& visit) {
-    for (const auto& [first, last] : record.flown)
-        for (auto i = first; i < last; ++i) visit(i);
-}
-
-int percent(double part) { return static_cast<int>(std::lround(part * units::percent_per_whole)); }
-
-using Warnings = std::vector<std::string>;
-
 void warn_of_rest(const FlownPower& flown, Warnings& warnings) {
     const auto& idle = flown.evidence.at_rest;
     if (!idle || flown.record.current_a.empty()) return;
@@ -64,7 +48,7 @@ void warn_of_rest(const FlownPower& flown, Warnings& warnings) {
     warnings.push_back(
         fmt::format("the current is {:.2f} A at rest on the ground, {} % of the mean in flight: what the electronics "
                     "draw, or an offset of the sensor that its counters share; --correct-idle-offset takes it out",
-                    idle->mean_a, percent(part)));
+                    idle->mean_a, percent_of_whole(part)));
 }
 
 /// The least step of a counter in flight; 0 if it does not move.
@@ -121,64 +105,74 @@ void warn_of_phases(const FlownPower& flown, Warnings& warnings) {
     }
 }
 
-/// A gap that begins or ends a sortie hides when that was: no counter helps.
+/// Gaps together, and the energy that a straight line across them adds.
+struct GapSum {
+    std::size_t gaps = 0;
+    double carried_j = 0.0;
+    double together_s = 0.0;
+    PowerGap longest = {};
+
+    void add(double start_s, double interval_s, double energy_j) {
+        ++gaps;
+        carried_j += energy_j;
+        together_s += interval_s;
+        if (interval_s > longest.duration_s) longest = {start_s, interval_s};
+    }
+};
+
+/// Where the altitude, which comes more often, pauses too, no message came, or the clock jumped.
+void warn_of_silence(const FlownPower& flown, Warnings& warnings) {
+    const auto& time_s = flown.record.altitude_time_s;
+    const double usual_s = usual_interval_s(time_s);
+    const double gap_s = gap_threshold_s(time_s);
+    GapSum sum;
+    for (const auto& sortie : flown.evidence.phases.sorties) {
+        for (std::size_t i = 1; i < time_s.size(); ++i) {
+            const double interval_s = time_s[i] - time_s[i - 1];
+            if (interval_s <= gap_s || time_s[i - 1] < sortie.start_s() || time_s[i] > sortie.end_s()) continue;
+            sum.add(time_s[i - 1], interval_s, flown.energy_j / flown.duration_s * (interval_s - usual_s));
+        }
+    }
+    const double part = sum.carried_j / flown.energy_j;
+    if (part <= doubtful_silence_part) return;
+    warnings.push_back(fmt::format(
+        "{} gaps in the altitude in flight, {:.0f} s in all: no message came, or the clock jumped; {} % of the "
+        "energy lies in them, and no counter confirms it",
+        sum.gaps, sum.together_s, percent_of_whole(part)));
+}
+
+/// A gap that begins or ends a sortie hides when that was: no counter helps. Many short ones add up: of these what is
+/// beyond a usual interval.
 void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
     const auto& record = flown.record;
     const auto& time_s = record.time_s;
+    const double usual_s = usual_interval_s(time_s);
     const double gap_s = gap_threshold_s(time_s);
     const auto& report = flown.evidence.report;
     const bool is_counted = report.energy_closure_percent || report.charge_closure_percent;
-    double carried_j = 0.0;
-    double together_s = 0.0;
-    PowerGap longest;
-    std::size_t gaps = 0;
+    GapSum all;
+    GapSum large;
     for (const auto& sortie : flown.evidence.phases.sorties) {
         for (std::size_t i = 1; i < time_s.size(); ++i) {
             const double interval_s = time_s[i] - time_s[i - 1];
             if (interval_s <= gap_s || time_s[i] <= sortie.start_s() || time_s[i - 1] >= sortie.end_s()) continue;
             const bool inside = time_s[i - 1] >= sortie.start_s() && time_s[i] <= sortie.end_s();
             if (inside && is_counted) continue;  // the closure tells
-            const double energy_j = std::abs(record.power_w[i - 1] + record.power_w[i]) / 2.0 * interval_s;
-            if (energy_j < told_gap_part * flown.energy_j) continue;
-            carried_j += energy_j;
-            together_s += interval_s;
-            ++gaps;
-            if (interval_s > longest.duration_s) longest = {time_s[i - 1], interval_s};
+            const double mean_w = std::abs(record.power_w[i - 1] + record.power_w[i]) / 2.0;
+            all.add(time_s[i - 1], interval_s, mean_w * (interval_s - usual_s));
+            if (mean_w * interval_s >= told_gap_part * flown.energy_j)
+                large.add(time_s[i - 1], interval_s, mean_w * interval_s);
         }
     }
-    const double part = carried_j / flown.energy_j;
-    if (part <= doubtful_gap_part) return;
+    if (!is_counted) warn_of_silence(flown, warnings);
+    const bool many = all.carried_j > doubtful_gaps_part * flown.energy_j;
+    if (!many && large.carried_j <= doubtful_gap_part * flown.energy_j) return;
+    const auto& told = many ? all : large;
     warnings.push_back(
         fmt::format("{} gap{} in the power, {:.0f} s in all, the longest {:.0f} s from {:.1f} s on: {} % "
                     "of the energy is a straight line across, and no counter confirms it",
-                    gaps, gaps == 1 ? "" : "s", together_s, longest.duration_s, longest.start_s, percent(part)));
-}
-
-/// Of single samples that rise above both neighbours by more than half of what was ever held for three samples, or fall
-/// below a fifth of both while these are more than a tenth of that.
-void warn_of_peaks(const FlownPower& flown, Warnings& warnings) {
-    const auto& record = flown.record;
-    const auto& power_w = record.power_w;
-    const double longest_s = gap_threshold_s(record.time_s);
-    double held_w = 0.0;
-    for (std::size_t i = 2; i < power_w.size(); ++i)
-        held_w = std::max(held_w, std::min({power_w[i - 2], power_w[i - 1], power_w[i]}));
-    double carried_j = 0.0;
-    std::size_t peaks = 0;
-    for_each_flown(record, [&](std::size_t i) {
-        if (i == 0 || i + 1 >= power_w.size()) return;
-        const auto [lower_w, higher_w] = std::minmax(power_w[i - 1], power_w[i + 1]);
-        const bool rises = power_w[i] - higher_w > held_w / 2.0;
-        const bool falls = lower_w > 0.1 * held_w && power_w[i] < 0.2 * lower_w;
-        if (!rises && !falls) return;
-        const double apart_w = rises ? power_w[i] - higher_w : lower_w - power_w[i];
-        carried_j += apart_w * std::min(record.time_s[i + 1] - record.time_s[i - 1], longest_s) / 2.0;
-        ++peaks;
-    });
-    const double part = carried_j / flown.energy_j;
-    if (part <= doubtful_peak_part) return;
-    warnings.push_back(fmt::format("{} single sample{} far above or below the neighbours make{} {} % of the energy",
-                                   peaks, peaks == 1 ? "" : "s", peaks == 1 ? "s" : "", percent(part)));
+                    told.gaps, told.gaps == 1 ? "" : "s", told.together_s, told.longest.duration_s,
+                    told.longest.start_s, percent_of_whole(told.carried_j / flown.energy_j)));
 }
 
 bool runs_by_throttle(const PowerRecord& record, std::size_t i) {
@@ -199,7 +193,7 @@ void warn_of_standing(const FlownPower& flown, Warnings& warnings) {
             if (end - begin >= standing_samples && end - begin < last - first && part > doubtful_standing_part) {
                 warnings.push_back(
                     fmt::format("power stands still at {:.2f} W from {:.1f} to {:.1f} s, {} % of the flight",
-                                power_w[begin], time_s[begin], time_s[end - 1], percent(part)));
+                                power_w[begin], time_s[begin], time_s[end - 1], percent_of_whole(part)));
             }
             begin = end;
         }
@@ -230,12 +224,12 @@ void warn_of_standing_current(const FlownPower& flown, Warnings& warnings) {
     if (part_of(standing) > doubtful_standing_part) {
         warnings.push_back(
             fmt::format("the current stands still in {} % of the samples in flight: a sensor that hangs?",
-                        percent(part_of(standing))));
+                        percent_of_whole(part_of(standing))));
     } else if (at_highest >= standing_samples && part_of(at_highest) > doubtful_highest_part) {
         warnings.push_back(
             fmt::format("the current is {:.4g} A, its highest, in {} % of the samples in flight: does its "
                         "sensor reach further?",
-                        highest_a, percent(part_of(at_highest))));
+                        highest_a, percent_of_whole(part_of(at_highest))));
     }
 }
 
@@ -250,7 +244,7 @@ void warn_of_negative(const FlownPower& flown, Warnings& warnings) {
     });
     if (negative_j <= doubtful_negative_part * flown.energy_j) return;
     warnings.push_back(fmt::format("power is negative in {} samples in flight, {} % of the energy", samples,
-                                   percent(negative_j / flown.energy_j)));
+                                   percent_of_whole(negative_j / flown.energy_j)));
 }
 
 void warn_of_powerless_throttle(const FlownPower& flown, Warnings& warnings) {
@@ -268,7 +262,7 @@ void warn_of_powerless_throttle(const FlownPower& flown, Warnings& warnings) {
     const double part = static_cast<double>(without) / static_cast<double>(powers.size());
     if (part <= doubtful_powerless_part) return;
     warnings.push_back(fmt::format("no power in {} % of the samples in flight with more than {:.0f} % throttle",
-                                   percent(part), powerless_throttle_percent));
+                                   percent_of_whole(part), powerless_throttle_percent));
 }
 
 /// Run-ups take some seconds. What takes longer was flown where the altitude does not show it.
@@ -292,7 +286,7 @@ void warn_of_power_outside(const FlownPower& flown, Warnings& warnings) {
     warnings.push_back(
         fmt::format("{:.3f} Wh, {} % of the energy in flight, were drawn outside of it with more than "
                     "{:.0f} % throttle: a long run-up, or is the altitude wrong?",
-                    units::wh_from_joule(outside_j), percent(part), powerless_throttle_percent));
+                    units::wh_from_joule(outside_j), percent_of_whole(part), powerless_throttle_percent));
 }
 
 void warn_of_voltage(const FlownPower& flown, Warnings& warnings) {
@@ -322,17 +316,20 @@ std::vector<std::string> power_warnings_of(const PowerEvidence& evidence) {
         flown.duration_s += sortie.end_s() - sortie.start_s();
     }
     warn_of_rest(flown, warnings);
+    warn_of_drift(flown, warnings);
     warn_of_voltage(flown, warnings);
     if (!(flown.energy_j > 0.0)) return warnings;  // a fault
     warn_of_closure(flown, warnings);
     warn_of_phases(flown, warnings);
     warn_of_gaps(flown, warnings);
-    warn_of_peaks(flown, warnings);
+    warn_of_brief_changes(flown, warnings);
+    warn_of_power_beside_throttle(flown, warnings);
     warn_of_standing(flown, warnings);
     warn_of_standing_current(flown, warnings);
     warn_of_negative(flown, warnings);
     warn_of_powerless_throttle(flown, warnings);
     warn_of_power_outside(flown, warnings);
+    warn_of_powerless_climb(flown, warnings);
     if (const double mean_w = flown.energy_j / flown.duration_s; mean_w < least_mean_power_w) {
         warnings.push_back(
             fmt::format("a mean of {:.3g} W in flight: hardly anything flies on that; is its unit W?", mean_w));

@@ -14,8 +14,9 @@ namespace flightwatt::flight {
 struct PowerEvidence {
     const PowerRecord& record;
     const FlightPhases& phases;
-    const PowerReport& report;           ///< closures and faults are known
-    std::optional<IdleCurrent> at_rest;  ///< also where no throttle tells that the motor is off
+    const PowerReport& report;                      ///< closures and faults are known
+    std::optional<IdleCurrent> at_rest;             ///< also where no throttle tells that the motor is off
+    std::vector<std::optional<IdleCurrent>> rests;  ///< the same before the first sortie, after it, ... the last
 };
 
 /// What of a power record is doubtful (docs/methods.md has the thresholds and why): an offset at rest, energy away from

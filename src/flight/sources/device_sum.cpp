@@ -1,11 +1,10 @@
 #include "flight/sources/device_sum.h"
 
 #include "flight/phase_statistics.h"
-#include "flight/physical_bounds.h"
+#include "flight/sources/device_tracks.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 
 #include <fmt/format.h>
@@ -13,40 +12,15 @@
 namespace flightwatt::flight {
 namespace {
 
+constexpr std::string_view summed_over = ", summed over ";
 constexpr double silent_intervals = 5.0;
 constexpr double outside_intervals = 3.0;
-constexpr double hardly_part = 0.01;
-constexpr std::size_t hardly_reports = 3;
+constexpr double near_intervals = 0.9;
 constexpr std::size_t many_reports = 30;
 constexpr double repeated_part = 0.05;  // of a device's reports: less is damage
 constexpr double burst_part = 0.4;      // of the intervals, that are a fifth of the mean or less
 constexpr double short_interval = 0.2;
 constexpr double least_summed_part = 0.25;  // of the times: with less there is no power record
-
-/// One device, and what it reports more than once at one time.
-struct Device {
-    std::string id;
-    Track track;
-    std::vector<Track> repeated;
-};
-
-std::vector<Device> devices_of(const FlightSeries& series, std::string_view name, std::string_view message) {
-    std::vector<Device> devices;
-    for (const auto& track : series.tracks) {
-        const bool is_device = track.name == name && !track.device.empty() && !track.empty() &&
-                               track.source.substr(0, track.source.find('.')) == message;
-        if (!is_device) continue;
-        const auto id = track.device.substr(0, track.device.find(report_mark));
-        const auto known = std::ranges::find(devices, id, &Device::id);
-        if (known != devices.end()) {
-            known->repeated.push_back(track);
-        } else if (auto sound = within_bounds(track); !sound.empty()) {
-            devices.push_back({id, std::move(sound), {}});
-        }
-    }
-    std::ranges::stable_sort(devices, std::ranges::greater(), [](const Device& d) { return d.track.time_s.size(); });
-    return devices;
-}
 
 /// How many reports came beside others of the same time, and how many of these differ from the first.
 struct Repetition {
@@ -98,7 +72,8 @@ void judge_ids(const std::vector<Device>& devices, std::string_view message, Dev
     }
 }
 
-/// The device's value at t; std::nullopt where it is silent.
+/// The device's value at t; std::nullopt where it is silent. Devices report one after the other, so the one before or
+/// after a gap of all is no further away than an interval: it counts.
 std::optional<double> report_at(const Track& track, double usual_s, double time_s) {
     const auto after = std::ranges::upper_bound(track.time_s, time_s);
     const bool begun = after != track.time_s.begin();
@@ -108,8 +83,10 @@ std::optional<double> report_at(const Track& track, double usual_s, double time_
         return since_s > outside_intervals * usual_s ? std::nullopt : std::optional(track.value.back());
     const double until_s = *after - time_s;
     if (!begun) return until_s > outside_intervals * usual_s ? std::nullopt : std::optional(track.value.front());
-    if (since_s + until_s > silent_intervals * usual_s) return std::nullopt;
-    return value_at(track, time_s);
+    if (since_s + until_s <= silent_intervals * usual_s) return value_at(track, time_s);
+    if (std::min(since_s, until_s) > near_intervals * usual_s) return std::nullopt;
+    const auto nearest = after - track.time_s.begin() - (since_s < until_s ? 1 : 0);
+    return track.value[static_cast<std::size_t>(nearest)];
 }
 
 /// Adds a device where it reports, and leaves out the rest.
@@ -143,17 +120,12 @@ DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, st
     auto devices = devices_of(series, name, message);
     if (devices.empty()) return sum;
     const auto most = devices.front().track.time_s.size();
-    const auto hardly_reports_at_all = [&](const Device& device) {
-        const auto reports = device.track.time_s.size();
-        return static_cast<double>(reports) < hardly_part * static_cast<double>(most) ||
-               (reports < hardly_reports && most >= many_reports);
-    };
     for (const auto& device : devices) {
-        if (!hardly_reports_at_all(device)) continue;
+        if (!hardly_reports_at_all(device, most)) continue;
         sum.notes.push_back(fmt::format("{} {} reports only {} times: it is left out of the sum", message, device.id,
                                         device.track.time_s.size()));
     }
-    std::erase_if(devices, hardly_reports_at_all);
+    std::erase_if(devices, [&](const Device& device) { return hardly_reports_at_all(device, most); });
     judge_ids(devices, message, sum);
     if (!sum.ambiguity.empty()) return sum;
     sum.track = devices.front().track;
@@ -165,8 +137,13 @@ DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, st
         return sum;
     }
     sum.track.device.clear();
-    sum.track.source = fmt::format("{}, summed over {} devices", sum.track.source, devices.size());
+    sum.track.source = fmt::format("{}{}{} devices", sum.track.source, summed_over, devices.size());
     return sum;
+}
+
+bool is_sum_over_devices(const Track& track) {
+    const auto at = track.source.find(summed_over);
+    return at != std::string::npos && track.source.substr(at + summed_over.size()) != "1 devices";
 }
 
 }  // namespace flightwatt::flight

@@ -22,6 +22,9 @@ struct DeviceSum {
 /// quarter of the times. `source` says of how many.
 DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message);
 
+/// Whether that made the track, of more than one device.
+bool is_sum_over_devices(const Track& track);
+
 /// Several reports of one device at one time are tracks of their own: "0", "0~2" for the second, "0~3" ...
 inline constexpr char report_mark = '~';
 

@@ -1,5 +1,6 @@
 #include "flight/sources/power_source.h"
 
+#include "flight/physical_bounds.h"
 #include "flight/sources/device_sum.h"
 #include "flight/sources/wild_samples.h"
 
@@ -7,6 +8,8 @@
 #include <cmath>
 #include <iterator>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace flightwatt::flight {
 namespace {
@@ -89,8 +92,9 @@ bool measures_something(const Track& power) {
 }
 
 /// Takes a candidate if it measures something, or says why not.
-bool take(const Track& candidate, PowerChoice& choice, const std::vector<double>& contradicted_s = {}) {
-    auto sound = sound_track(candidate, contradicted_s);
+bool take(const FlightSeries& series, const Track& candidate, PowerChoice& choice,
+          const std::vector<double>& contradicted_s = {}) {
+    auto sound = sound_track(candidate, contradicted_s, dropout_throttle(series, candidate));
     if (measures_something(sound.track)) {
         choice.power_w = std::move(sound.track);
         if (!sound.left_out.empty()) choice.left_out.push_back(std::move(sound.left_out));
@@ -137,11 +141,19 @@ std::vector<double> contradicted_times(const FlightSeries& series, std::string_v
     return contradicted_times(energy_power(series), *product);
 }
 
+Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
+    if (std::ranges::find(candidate.value, 0.0) == candidate.value.end()) return {};
+    const auto found = std::ranges::find_if(series.tracks, [](const Track& track) {
+        return track.name == "throttle_percent" && track.device.empty() && !is_constant(track);
+    });
+    return found == series.tracks.end() ? Track{} : within_bounds(*found);
+}
+
 PowerChoice choose_power(const FlightSeries& series) {
     PowerChoice choice;
     if (const auto* plain = find_plain(series, "power_w")) {
         // Believed even where it is 0 throughout.
-        auto sound = sound_track(*plain, contradicted_times(series, plain->source));
+        auto sound = sound_track(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
         choice.power_w = std::move(sound.track);
         if (!sound.left_out.empty()) choice.left_out.push_back(std::move(sound.left_out));
         return choice;
@@ -150,23 +162,31 @@ PowerChoice choose_power(const FlightSeries& series) {
     if (const auto power = energy_power(series); !power.source.empty()) {
         if (product != nullptr && contradicts(power, *product)) {
             choice.passed_over.emplace_back("ENERGY.power is not voltage times current");
-        } else if (take(power, choice, contradicted_times(series, power.source))) {
+        } else if (take(series, power, choice, contradicted_times(series, power.source))) {
             return choice;
         }
     }
-    if (product != nullptr && take(*product, choice)) return choice;
+    if (product != nullptr && take(series, *product, choice)) return choice;
     const auto is_bat = [](const Track& track) { return track.source.starts_with("BAT."); };
     if (std::ranges::any_of(series.tracks, is_bat)) {
         const auto* bat = find_product(series, "BAT.");
         if (bat == nullptr) choice.passed_over.emplace_back("BAT has no current");
-        if (bat != nullptr && take(*bat, choice)) return choice;
+        if (bat != nullptr && take(series, *bat, choice)) return choice;
     }
     for (const auto* message : {"ESC", "POWER_DEVICE"}) {
         auto sum = sum_over_devices(series, "power_w", message);
         if (!sum.ambiguity.empty()) choice.passed_over.push_back(std::move(sum.ambiguity));
-        if (sum.track.source.empty() || !take(sum.track, choice)) continue;
+        if (sum.track.source.empty() || !take(series, sum.track, choice)) continue;
         std::ranges::move(sum.notes, std::back_inserter(choice.left_out));
         return choice;
+    }
+    for (const auto* message : {"ENERGY", "ESC", "POWER_DEVICE"}) {
+        const auto is_of = [&](const Track& track) {
+            return track.source.substr(0, track.source.find('.')) == message;
+        };
+        const bool is_power = find_power(series, is_of) != nullptr;
+        if (!is_power && std::ranges::any_of(series.tracks, is_of))
+            choice.passed_over.push_back(fmt::format("{} has no power in W, nor current in A with voltage", message));
     }
     return choice;
 }

@@ -24,6 +24,10 @@ PowerChoice choose_power(const FlightSeries& series);
 /// itself: its power is not its voltage times its current.
 std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source);
 
+/// The throttle that tells where a track of power or current dropped out (dropout_times in wild_samples.h); empty
+/// without one, and where the track is nowhere 0.
+Track dropout_throttle(const FlightSeries& series, const Track& candidate);
+
 /// The 4-field ENERGY without a .log, so that the order of its last two fields was assumed: whether they fit
 /// the other way round (power is voltage times current). Its tracks are then those of source
 /// power_read_as_energy and energy_read_as_power.

@@ -18,6 +18,9 @@ constexpr double spike_factor = 3.0;
 constexpr double neighbour_factor = 2.0;
 constexpr double voltage_step = 0.30;
 constexpr double counter_step = 0.01;
+constexpr std::size_t longest_dropout = 3;
+constexpr double dropout_throttle_percent = 30.0;
+constexpr double beside_dropout_part = 0.25;
 
 struct ComparedPower {
     double time_s;
@@ -122,6 +125,29 @@ std::vector<double> spike_times(const Track& track) {
     });
 }
 
+std::vector<double> dropout_times(const Track& track, const Track& throttle) {
+    const auto& value = track.value;
+    std::vector<double> times_s;
+    if (throttle.empty() || std::ranges::find(value, 0.0) == value.end()) return times_s;
+    const auto percent = resample(throttle, track.time_s);
+    std::vector<double> running;
+    for (std::size_t i = 0; i < value.size(); ++i)
+        if (percent[i] > dropout_throttle_percent) running.push_back(value[i]);
+    if (running.empty()) return times_s;
+    const double beside = beside_dropout_part * upper_median(std::move(running));
+    const auto runs = [&](std::size_t i) { return percent[i] > dropout_throttle_percent; };
+    const auto is_beside = [&](std::size_t i) { return runs(i) && value[i] > 0.0 && value[i] > beside; };
+    for (std::size_t i = 1; i + 1 < value.size(); ++i) {
+        if (value[i] != 0.0 || !is_beside(i - 1)) continue;
+        const auto first = i;
+        while (i < value.size() && value[i] == 0.0 && runs(i)) ++i;
+        if (i == value.size() || i - first > longest_dropout || !is_beside(i)) continue;
+        times_s.insert(times_s.end(), track.time_s.begin() + static_cast<std::ptrdiff_t>(first),
+                       track.time_s.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    return times_s;
+}
+
 Track without_times(const Track& track, const std::vector<double>& times_s) {
     if (times_s.empty()) return track;
     Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
@@ -135,7 +161,7 @@ Track without_times(const Track& track, const std::vector<double>& times_s) {
     return kept;
 }
 
-SoundTrack sound_track(const Track& candidate, const std::vector<double>& contradicted_s) {
+SoundTrack sound_track(const Track& candidate, const std::vector<double>& contradicted_s, const Track& throttle) {
     SoundTrack sound{within_bounds(candidate), ""};
     const auto all = candidate.value.size();
     if (sound.track.empty() && all > 0) {
@@ -154,6 +180,8 @@ SoundTrack sound_track(const Track& candidate, const std::vector<double>& contra
     note("beyond what can be");
     sound.track = without_times(sound.track, contradicted_s);
     note("where power is not voltage times current");
+    sound.track = without_times(sound.track, dropout_times(sound.track, throttle));
+    note("at 0 for up to three samples with the throttle open");
     sound.track = without_times(sound.track, spike_times(sound.track));
     note(is_counter(candidate) ? "out of the counter's order" : "far beyond the samples beside");
     if (!reasons.empty()) {

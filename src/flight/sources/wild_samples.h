@@ -18,6 +18,11 @@ std::vector<double> contradicted_times(const Track& power, const Track& product)
 /// alone is out of their order by more than 1 % of what was counted. A sample is judged once another follows it.
 std::vector<double> spike_times(const Track& track);
 
+/// The times, rising, of samples of power or current that dropped out: up to three in a row at exactly 0 while the
+/// throttle stands above 30 %, as it does before and after, where there is more than a quarter of the median at such a
+/// throttle. A motor that is cut for so short a time has its throttle closed.
+std::vector<double> dropout_times(const Track& track, const Track& throttle);
+
 /// The track without its samples at `times_s`, which rise.
 Track without_times(const Track& track, const std::vector<double>& times_s);
 
@@ -27,7 +32,9 @@ struct SoundTrack {
     std::string left_out;  ///< "3 of 628 samples of power_w (ENERGY.power) are left out: ..."; empty if none is
 };
 
-/// Leaves out the samples beyond the physical bounds, those at `contradicted_s` (rising), and spikes.
-SoundTrack sound_track(const Track& candidate, const std::vector<double>& contradicted_s = {});
+/// Leaves out the samples beyond the physical bounds, those at `contradicted_s` (rising), dropouts as `throttle` (empty
+/// if not known) tells, and spikes.
+SoundTrack sound_track(const Track& candidate, const std::vector<double>& contradicted_s = {},
+                       const Track& throttle = {});
 
 }  // namespace flightwatt::flight

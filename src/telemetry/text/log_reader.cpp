@@ -14,6 +14,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -34,6 +35,7 @@ struct MessagePlan {
         double factor;
     };
     std::vector<Target> targets;
+    std::vector<std::string> units;          ///< what is odd about the .log's units, and what is done about it
     std::size_t fields_wanted = max_fields;  ///< up to the last target's; all while no definition is chosen
 };
 
@@ -50,6 +52,24 @@ MessagePlan plan_of(const MessageRequest& request, const std::optional<LogConfig
     return plan;
 }
 
+/// What a field of a .log's definition is taken for.
+FieldConversion declared_conversion(MessagePlan& plan, std::size_t index) {
+    auto field = plan.definition->fields[index];
+    if (const auto unit = undeclared_unit(*plan.definition, index); !unit.empty()) {
+        plan.units.push_back(fmt::format("{} has none: {} is assumed", field.name, unit));
+        field.unit = unit;
+    }
+    const auto conversion = conversion_of(plan.definition->name, field);
+    if (!conversion.quantity && !field.unit.empty() && field.alt_unit.empty()) {
+        constexpr std::size_t longest_unit = 20;
+        std::ranges::replace_if(
+            field.unit, [](char c) { return c < ' ' || c > '~'; }, '?');
+        plan.units.push_back(
+            fmt::format("{} has '{}', which is none that is known", field.name, field.unit.substr(0, longest_unit)));
+    }
+    return conversion;
+}
+
 bool choose_definition(MessagePlan& plan, std::size_t field_count) {
     const auto fits = [&](const MessageDefinition& candidate) { return candidate.fields.size() == field_count; };
     const auto found = std::find_if(plan.candidates.begin(), plan.candidates.end(), fits);
@@ -59,7 +79,8 @@ bool choose_definition(MessagePlan& plan, std::size_t field_count) {
     for (const auto& field : plan.request.fields) {
         const auto index = field_index(*found, field);
         if (!index) continue;
-        const auto conversion = conversion_of(found->name, found->fields[*index]);
+        const auto conversion =
+            plan.from_log ? declared_conversion(plan, *index) : conversion_of(found->name, found->fields[*index]);
         plan.targets.push_back({*index, conversion.quantity, conversion.factor});
         plan.fields_wanted = std::max(plan.fields_wanted, *index + 1);
     }
@@ -96,9 +117,10 @@ class LogReader {
             log_.skipped.push_back(std::move(skipped));
         }
         for (const auto& plan : plans_) {
-            if (plan.definition == nullptr || plan.from_log) continue;
-            log_.assumed_definitions.push_back({fmt::format("{}: {}", plan.request.message, plan.definition->origin),
-                                                first_time_s(plan.request.message)});
+            const auto& message = plan.request.message;
+            if (plan.definition == nullptr || (plan.from_log && plan.units.empty())) continue;
+            const auto text = plan.from_log ? fmt::format("{}", fmt::join(plan.units, ", ")) : plan.definition->origin;
+            log_.assumed_definitions.push_back({fmt::format("{}: {}", message, text), first_time_s(message)});
         }
     }
 

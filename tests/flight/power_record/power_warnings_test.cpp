@@ -1,6 +1,7 @@
 #include "flight/power_record/power_warnings.h"
 
 #include "base/number.h"
+#include "flight/chosen_track.h"
 #include "helpers/damaged_logs.h"
 #include "helpers/rejected.h"
 
@@ -137,15 +138,89 @@ TEST(PowerWarnings, TellOfACurrentThatHangsOrIsSaturated) {
     EXPECT_THAT(saturated.warnings, testing::Contains(HasSubstr("the current is 2.4 A, its highest, in ")));
 }
 
-TEST(PowerWarnings, TellOfDropoutsAndOfPowerThatEndsEarly) {
-    const auto dropouts = with_energy(false, [](test::Words& words, int number) {
-        if (number % 15 == 0) words[power] = words[current] = "0";
+TEST(PowerWarnings, LeaveOutShortDropoutsWhileTheThrottleIsOpen) {
+    for (const int length : {1, 2, 3}) {
+        const auto loaded = with_energy(false, [&](test::Words& words, int number) {
+            if (number % 20 < length) words[power] = words[current] = "0";
+        });
+        EXPECT_NEAR(test::energy_in_flight_wh(loaded), sound_energy_wh(), 0.02 * sound_energy_wh()) << length;
+        EXPECT_THAT(test::said_of(loaded), HasSubstr("at 0 for up to three samples with the throttle open")) << length;
+        EXPECT_EQ(chosen_track(loaded.series, "current_a").time_s, power_track(loaded.series).time_s);
+    }
+}
+
+TEST(PowerWarnings, LeaveAMotorThatIsCutForShort) {
+    const auto loaded = with_energy(false, [](test::Words& words, int number) {
+        if (number % 40 < 2) words[power] = words[current] = words[throttle] = "0";
     });
-    EXPECT_THAT(test::said_of(dropouts), HasSubstr("single samples far above or below the neighbours"));
+    EXPECT_THAT(loaded.warnings, testing::IsEmpty());
+    EXPECT_EQ(power_track(loaded.series).time_s.size(), 628U);
+}
+
+TEST(PowerWarnings, TellOfBriefChangesThatTheThrottleDoesNotShare) {
+    for (const double factor : {0.0, 0.05, 0.25, 0.5, 2.0, 2.9}) {
+        for (const int length : {1, 2, 4}) {
+            if (factor == 0.0 && length < 4) continue;  // left out
+            const auto loaded = with_energy(false, [&](test::Words& words, int number) {
+                if (number % (7 * length) >= length) return;
+                scale(words, power, factor);
+                scale(words, current, factor);
+            });
+            EXPECT_THAT(test::said_of(loaded), HasSubstr("samples and the throttle does not"))
+                << length << " times " << factor;
+        }
+    }
+}
+
+TEST(PowerWarnings, TellOfPowerThatIsNotWhatItIsAtTheSameThrottle) {
+    for (const double factor : {0.5, 2.0}) {
+        const auto loaded = with_energy(false, [&](test::Words& words, int number) {
+            if (number < 200 || number > 270) return;
+            scale(words, power, factor);
+            scale(words, current, factor);
+        });
+        EXPECT_THAT(test::said_of(loaded), HasSubstr("power is far from what it usually is at the same throttle"));
+    }
+}
+
+TEST(PowerWarnings, TellOfPowerThatEndsEarly) {
     const auto ends_early = test::examined(test::damaged_sample([](test::Words& words) {
         if (words[2] == "ENERGY" && number_or_nan(words[0]) > 500.0) words.clear();
     }));
     EXPECT_THAT(test::said_of(ends_early), HasSubstr("power is logged to 500 s, altitude to 7"));
+}
+
+TEST(PowerWarnings, TellOfManyShortGapsTogether) {
+    const auto text = test::damaged_sample([](test::Words& words) {
+        if (words[2] == "ENERGY") words[charge] = words[energy] = "0";
+        const double time_s = number_or_nan(words[0]);
+        words[time] = fmt::format("{:.3f}", time_s + 5.0 * std::clamp(std::floor((time_s - 64.0) / 50.0), 0.0, 12.0));
+    });
+    EXPECT_THAT(test::said_of(test::examined(text)), HasSubstr("gaps in the power, "));
+}
+
+TEST(PowerWarnings, TellOfJumpsOfTheClockThatLeaveNoGapInThePower) {
+    const auto text = test::damaged_sample([](test::Words& words) {
+        if (words[2] == "ENERGY") words[charge] = words[energy] = "0";
+        const double time_s = number_or_nan(words[0]);
+        words[time] = fmt::format("{:.3f}", time_s + 2.0 * std::clamp(std::floor((time_s - 64.0) / 20.0), 0.0, 30.0));
+    });
+    EXPECT_THAT(test::said_of(test::examined(text)), HasSubstr("no message came, or the clock jumped"));
+}
+
+TEST(PowerWarnings, TellOfACurrentThatDrifts) {
+    const auto drifts = with_energy(false, [](test::Words& words, int) {
+        const double drift_a = 0.0005 * std::max(0.0, value(words, time) - 64.0);
+        set(words, power, value(words, power) + drift_a * value(words, voltage));
+        set(words, current, value(words, current) + drift_a);
+    });
+    EXPECT_THAT(test::said_of(drifts), HasSubstr("does its sensor drift?"));
+}
+
+TEST(PowerWarnings, TellOfAClimbWithoutPower) {
+    const auto late = with_energy(
+        false, [](test::Words& words, int) { words[time] = fmt::format("{:.3f}", value(words, time) + 10.0); });
+    EXPECT_THAT(test::said_of(late), HasSubstr("without power: was it towed, or is the power logged late?"));
 }
 
 TEST(PowerWarnings, TellOfTheCounterFromThreePercentOn) {

@@ -1,0 +1,230 @@
+#include "flight/sources/device_check.h"
+
+#include "base/statistics.h"
+#include "base/units.h"
+#include "flight/phase_statistics.h"
+#include "flight/sources/device_tracks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr std::size_t alike_reports = 30;
+constexpr double doubtful_missing_part = 0.04;  // of the energy
+constexpr double next_to_nothing_part = 0.05;   // of the others' median
+constexpr double running_part = 0.2;            // of the others' upper quartile
+constexpr double small_load_part = 0.25;        // of the energy: electronics
+constexpr double telling_part = 0.1;            // of the others' energy, from which a circuit's part is known
+constexpr double alike_part = 0.05;             // of its energy, by which a device differs from the others' sum
+constexpr std::size_t most_judged = 32;
+
+/// The devices' power on one clock.
+struct DeviceTable {
+    std::vector<double> time_s;
+    std::vector<double> step_s;  ///< for which each sample counts; what is longer than a gap does not
+    std::vector<std::vector<double>> power_w;
+};
+
+DeviceTable table_of(const std::vector<Device>& devices) {
+    DeviceTable table;
+    table.time_s = devices.front().track.time_s;
+    const auto& time_s = table.time_s;
+    const double longest_s = gap_threshold_s(time_s);
+    for (std::size_t i = 0; i < time_s.size(); ++i)
+        table.step_s.push_back(i == 0 ? 0.0 : std::min(time_s[i] - time_s[i - 1], longest_s));
+    for (const auto& device : devices) table.power_w.push_back(resample(device.track, time_s));
+    return table;
+}
+
+double energy_j(const DeviceTable& table, const std::vector<double>& power_w, double before_j = 0.0) {
+    return std::transform_reduce(power_w.begin(), power_w.end(), table.step_s.begin(), before_j);
+}
+
+/// From `from_s` to `to_s` a device reported one value.
+struct Standstill {
+    double from_s;
+    double to_s;
+};
+
+std::vector<Standstill> standstills_of(const Track& track) {
+    std::vector<Standstill> found;
+    for (std::size_t begin = 0, end = 0; begin < track.value.size(); begin = end) {
+        while (end < track.value.size() && track.value[end] == track.value[begin]) ++end;
+        if (end - begin >= alike_reports) found.push_back({track.time_s[begin], track.time_s[end - 1]});
+    }
+    return found;
+}
+
+/// What one device does beside the others, sample by sample.
+struct Beside {
+    const std::vector<double>& own_w;
+    std::vector<double> median_w;  ///< of the others
+    std::vector<double> sum_w;     ///< of the others
+    std::vector<bool> stands;
+};
+
+Beside beside_others(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported) {
+    Beside beside{table.power_w[device], {}, {}, std::vector<bool>(table.time_s.size(), false)};
+    for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+        std::vector<double> others;
+        for (std::size_t d = 0; d < table.power_w.size(); ++d)
+            if (d != device) others.push_back(table.power_w[d][i]);
+        beside.sum_w.push_back(std::reduce(others.begin(), others.end()));
+        beside.median_w.push_back(median(std::move(others)));
+    }
+    for (const auto& track : reported) {
+        for (const auto& standstill : standstills_of(track)) {
+            const auto first = std::ranges::lower_bound(table.time_s, standstill.from_s) - table.time_s.begin();
+            const auto last = std::ranges::upper_bound(table.time_s, standstill.to_s) - table.time_s.begin();
+            std::fill(beside.stands.begin() + first, beside.stands.begin() + std::max(first, last), true);
+        }
+    }
+    return beside;
+}
+
+/// What part of the others' power the circuit draws where it moves; of that which hardly does, an equal one.
+double usual_part(const DeviceTable& table, const Beside& beside) {
+    double own_j = 0.0;
+    double others_j = 0.0;
+    double all_others_j = 0.0;
+    for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+        all_others_j += beside.sum_w[i] * table.step_s[i];
+        if (beside.stands[i]) continue;
+        own_j += beside.own_w[i] * table.step_s[i];
+        others_j += beside.sum_w[i] * table.step_s[i];
+    }
+    if (others_j > telling_part * all_others_j) return own_j / others_j;
+    return 1.0 / static_cast<double>(table.power_w.size() - 1);
+}
+
+/// What is doubted of one device: from when to when, and the energy that would be missing.
+struct Doubt {
+    double missing_j = 0.0;
+    double own_j = 0.0;
+    double expected_j = 0.0;
+    double lasts_s = 0.0;
+    double from_s = 0.0;
+    double to_s = 0.0;
+
+    void add(double time_s, double step_s, double own_w, double expected_w) {
+        if (lasts_s == 0.0) from_s = time_s - step_s;
+        to_s = time_s;
+        lasts_s += step_s;
+        own_j += own_w * step_s;
+        expected_j += expected_w * step_s;
+        missing_j = std::abs(expected_j - own_j);
+    }
+};
+
+Doubt doubt_of_motor(const DeviceTable& table, const Beside& beside) {
+    auto sorted = beside.median_w;
+    std::ranges::sort(sorted);
+    const double running_w = running_part * quantile(sorted, 0.75);
+    Doubt doubt;
+    for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+        const double others_w = beside.median_w[i];
+        const bool idles = others_w > running_w && beside.own_w[i] < next_to_nothing_part * others_w;
+        if (idles || beside.stands[i]) doubt.add(table.time_s[i], table.step_s[i], beside.own_w[i], others_w);
+    }
+    return doubt;
+}
+
+Doubt doubt_of_circuit(const DeviceTable& table, const Beside& beside, const std::vector<Track>& reported,
+                       double all_j) {
+    const bool is_steady_load = std::ranges::any_of(
+        reported, [](const Track& track) { return is_constant(track) && track.value.front() != 0.0; });
+    if (is_steady_load && energy_j(table, beside.own_w) < small_load_part * all_j) return {};
+    const double part = usual_part(table, beside);
+    Doubt doubt;
+    for (std::size_t i = 0; i < table.time_s.size(); ++i)
+        if (beside.stands[i]) doubt.add(table.time_s[i], table.step_s[i], beside.own_w[i], part * beside.sum_w[i]);
+    return doubt;
+}
+
+/// What is odd of a device's part in the sum: it is taken off, or it is the others' sum.
+std::string odd_part(const DeviceTable& table, const Beside& beside, double all_j) {
+    const double own_j = energy_j(table, beside.own_w);
+    if (own_j < -doubtful_missing_part * std::abs(all_j)) {
+        return fmt::format("reports negative power, {:.0f} % of the sum: a source, or a sensor that is reversed?",
+                           units::percent_of(own_j, all_j));
+    }
+    std::vector<double> apart_w(beside.sum_w.size());
+    std::ranges::transform(beside.own_w, beside.sum_w, apart_w.begin(),
+                           [](double own_w, double others_w) { return std::abs(own_w - others_w); });
+    const auto is_part = [&](const auto& power_w) { return energy_j(table, power_w) > alike_part * own_j; };
+    const bool has_parts = std::ranges::count_if(table.power_w, is_part) > 2;  // itself, and two others
+    if (has_parts && energy_j(table, apart_w) < alike_part * own_j)
+        return "reports what all others do together: if it is the pack's, the energy is counted twice";
+    return "";
+}
+
+std::string said_of(const Doubt& doubt, std::string_view message, const std::string& id, double all_j) {
+    const bool nothing = doubt.own_j < next_to_nothing_part * doubt.expected_j;
+    const auto what = nothing ? fmt::format("next to nothing ({:.2f} W)", doubt.own_j / doubt.lasts_s)
+                              : fmt::format("the same value again and again ({:.2f} W)", doubt.own_j / doubt.lasts_s);
+    return fmt::format(
+        "{} {} reports {} for {:.0f} s from {:.1f} to {:.1f} s, while the others go on: is it off, or its sensor dead? "
+        "Drawing what they do, it would change the energy by {:+.0f} %",
+        message, id, what, doubt.lasts_s, doubt.from_s, doubt.to_s,
+        units::percent_of(doubt.expected_j - doubt.own_j, all_j));
+}
+
+}  // namespace
+
+std::vector<std::string> device_doubts(const FlightSeries& series, std::string_view message) {
+    std::vector<std::string> doubts;
+    auto devices = devices_of(series, "power_w", message);
+    if (devices.empty()) return doubts;
+    const auto most = devices.front().track.time_s.size();
+    std::erase_if(devices, [&](const Device& device) { return hardly_reports_at_all(device, most); });
+    if (devices.size() < 2 || most < alike_reports) return doubts;
+    if (devices.size() > most_judged) {
+        doubts.push_back(fmt::format("{} {} devices: none is judged beside the others", devices.size(), message));
+        return doubts;
+    }
+    const auto currents = devices_of(series, "current_a", message);
+    const auto table = table_of(devices);
+    double all_j = 0.0;
+    for (const auto& power_w : table.power_w) all_j = energy_j(table, power_w, all_j);
+    for (std::size_t d = 0; d < devices.size(); ++d) {
+        std::vector<Track> reported{devices[d].track};
+        const auto current = std::ranges::find(currents, devices[d].id, &Device::id);
+        if (current != currents.end()) reported.push_back(current->track);
+        const auto beside = beside_others(table, d, reported);
+        const auto doubt =
+            message == "ESC" ? doubt_of_motor(table, beside) : doubt_of_circuit(table, beside, reported, all_j);
+        if (doubt.missing_j > doubtful_missing_part * std::abs(all_j))
+            doubts.push_back(said_of(doubt, message, devices[d].id, all_j));
+        if (const auto odd = odd_part(table, beside, all_j); !odd.empty())
+            doubts.push_back(fmt::format("{} {} {}", message, devices[d].id, odd));
+    }
+    return doubts;
+}
+
+std::string own_voltages(const FlightSeries& series) {
+    constexpr double most_apart = 1.1;
+    const auto currents = devices_of(series, "current_a", "POWER_DEVICE");
+    std::vector<double> voltages;
+    for (const auto& device : devices_of(series, "power_w", "POWER_DEVICE")) {
+        const auto current = std::ranges::find(currents, device.id, &Device::id);
+        if (current == currents.end()) continue;
+        const auto sum = [](const Track& track) { return std::reduce(track.value.begin(), track.value.end()); };
+        const double volts = sum(device.track) / sum(current->track);
+        if (std::isfinite(volts) && volts > 0.0) voltages.push_back(volts);
+    }
+    if (voltages.empty()) return "";
+    const auto [low, high] = std::ranges::minmax(voltages);
+    if (high <= most_apart * low) return "";
+    return fmt::format(
+        "the circuits of POWER_DEVICE have {:.1f} to {:.1f} V: voltage and current of the pack are not known", low,
+        high);
+}
+
+}  // namespace flightwatt::flight

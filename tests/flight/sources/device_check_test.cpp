@@ -1,0 +1,141 @@
+#include "flight/sources/device_check.h"
+
+#include "base/number.h"
+#include "flight/chosen_track.h"
+#include "helpers/damaged_logs.h"
+
+#include <cmath>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+struct Report {
+    double current_a;
+    double voltage_v;
+};
+
+/// What one of several devices reports, given what the pack draws.
+using DeviceReport = std::function<Report(int device, double time_s, Report pack)>;
+
+/// The first sample log, read without its .log, with ENERGY told by `count` devices, one millisecond after the other.
+LoadedFlight with_devices(const std::string& message, int count, const DeviceReport& report) {
+    std::string text;
+    test::damaged_sample([&](test::Words& words) {
+        if (words[2] != "ENERGY") {
+            text += fmt::format("{}\n", fmt::join(words, " "));
+            return;
+        }
+        const double time_s = number_or_nan(words[0]);
+        for (int device = 0; device < count; ++device) {
+            const auto [a, v] = report(device, time_s, {number_or_nan(words[5]), number_or_nan(words[4])});
+            text += fmt::format("{:.3f} {} ", time_s + 0.001 * device, words[1]);
+            text += message == "ESC" ? fmt::format("ESC {:.5f} {} {:.6f} 5000 {} 0 {}\n", a, v, a * v, v, device)
+                                     : fmt::format("POWER_DEVICE 1 {} {:.5f} {}\n", device, a, v);
+        }
+    });
+    return examine_flight(flight_series(parse_telemetry(text, "damaged.data", std::nullopt, flight_messages()), "7"),
+                          {});
+}
+
+Report a_quarter(Report pack) { return {pack.current_a / 4.0, pack.voltage_v}; }
+
+TEST(DeviceDoubts, SayNothingOfDevicesThatGoTogether) {
+    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
+        const auto loaded = with_devices(message, 4, [](int, double, Report pack) { return a_quarter(pack); });
+        EXPECT_THAT(test::said_of(loaded), Not(HasSubstr("silent")));
+        EXPECT_THAT(test::said_of(loaded), Not(HasSubstr("reports")));
+        EXPECT_NEAR(test::energy_in_flight_wh(loaded), 5.017, 0.01);
+    }
+}
+
+TEST(DeviceDoubts, TellOfAMotorThatReportsNothing) {
+    for (const double since_s : {0.0, 120.0, 400.0}) {
+        const auto loaded = with_devices("ESC", 4, [&](int motor, double time_s, Report pack) {
+            return motor == 3 && time_s > since_s ? Report{0.0, pack.voltage_v} : a_quarter(pack);
+        });
+        EXPECT_THAT(test::said_of(loaded), HasSubstr("ESC 3 reports next to nothing (0.00 W)")) << since_s;
+    }
+    const auto noise = with_devices("ESC", 2, [](int motor, double time_s, Report pack) {
+        return motor == 1 ? Report{0.01 + 0.01 * std::sin(time_s), pack.voltage_v} : a_quarter(pack);
+    });
+    EXPECT_THAT(test::said_of(noise), HasSubstr("ESC 1 reports next to nothing"));
+}
+
+TEST(DeviceDoubts, TellOfADeviceThatRepeatsItsLastValue) {
+    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
+        for (const double value_a : {0.0123, 0.2, 1.5}) {
+            const auto loaded = with_devices(message, 4, [&](int device, double time_s, Report pack) {
+                return device == 2 && time_s > 40.0 ? Report{value_a, pack.voltage_v} : a_quarter(pack);
+            });
+            const auto device = std::string(message) + (std::string(message) == "ESC" ? " 2" : " 1/2");
+            EXPECT_THAT(test::said_of(loaded), HasSubstr(device + " reports ")) << value_a;
+        }
+    }
+}
+
+TEST(DeviceDoubts, TellOfAPowerThatStandsStillWhileTheCurrentGoesOn) {
+    std::string text;
+    for (int k = 0; k < 800; ++k) {
+        for (int motor = 0; motor < 6; ++motor) {
+            const double current_a = 1.0 + 0.1 * std::sin(0.1 * k);
+            text += fmt::format("{}.{} 7 ESC {:.4f} 12.0 {:.4f} 5000 12.0 0 {}\n", k, motor, current_a,
+                                motor == 5 && k > 100 ? 2.5 : 12.0 * current_a, motor);
+        }
+    }
+    const auto series = flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7");
+    EXPECT_THAT(device_doubts(series, "ESC"),
+                testing::ElementsAre(HasSubstr("ESC 5 reports the same value again and again (2.50 W)")));
+}
+
+TEST(DeviceDoubts, LetElectronicsDrawWhatTheyDraw) {
+    for (const bool is_exact : {true, false}) {
+        const auto loaded = with_devices("POWER_DEVICE", 2, [&](int device, double time_s, Report pack) {
+            if (device == 0) return pack;
+            return Report{0.4 + (is_exact ? 0.0 : 0.01 * std::sin(1000.0 * time_s)), 5.0};
+        });
+        EXPECT_THAT(test::said_of(loaded), Not(HasSubstr("reports"))) << is_exact;
+    }
+    const auto dead = with_devices("POWER_DEVICE", 2, [](int device, double, Report pack) {
+        return device == 0 ? a_quarter(pack) : Report{0.0, pack.voltage_v};
+    });
+    EXPECT_THAT(test::said_of(dead), HasSubstr("POWER_DEVICE 1/1 reports next to nothing"));
+}
+
+TEST(DeviceDoubts, TellOfASumThatHoldsOneTwiceOrTakesOneOff) {
+    const auto pack_and_parts = with_devices("POWER_DEVICE", 3, [](int device, double, Report pack) {
+        return Report{pack.current_a * (device == 0 ? 1.0 : device == 1 ? 0.6 : 0.4), pack.voltage_v};
+    });
+    EXPECT_THAT(test::said_of(pack_and_parts), HasSubstr("POWER_DEVICE 1/0 reports what all others do together"));
+    const auto reversed = with_devices("POWER_DEVICE", 2, [](int device, double, Report pack) {
+        return Report{pack.current_a * (device == 0 ? 1.0 : -0.3), pack.voltage_v};
+    });
+    EXPECT_THAT(test::said_of(reversed), HasSubstr("POWER_DEVICE 1/1 reports negative power, -43 % of the sum"));
+}
+
+TEST(DeviceDoubts, DoNotFaultCircuitsOfOtherVoltages) {
+    const auto loaded = with_devices("POWER_DEVICE", 2, [](int device, double, Report pack) {
+        return device == 0 ? pack : Report{0.5 * pack.current_a, 5.0};
+    });
+    EXPECT_THAT(loaded.power.power_faults, testing::IsEmpty());
+    EXPECT_THAT(test::said_of(loaded), HasSubstr("the circuits of POWER_DEVICE have 5.0 to 12.3 V"));
+    EXPECT_TRUE(chosen_track(loaded.series, "voltage_v").empty());
+    EXPECT_TRUE(chosen_track(loaded.series, "current_a").empty());
+}
+
+TEST(DeviceDoubts, LetLiftMotorsStandWhileThePusherRuns) {
+    const auto loaded = with_devices("ESC", 5, [](int motor, double time_s, Report pack) {
+        const bool hovers = time_s < 70.0;
+        return hovers == (motor == 4) ? Report{0.0, pack.voltage_v} : Report{pack.current_a, pack.voltage_v};
+    });
+    EXPECT_THAT(test::said_of(loaded), Not(HasSubstr("reports")));
+}
+
+}  // namespace
+}  // namespace flightwatt::flight
