@@ -215,14 +215,16 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     record.power_faults = loaded.power.power_faults;
     record.lacks_power = loaded.lacks_power;
     if (record.lacks_power.empty()) record.measured = mechanical::measure_flights(series, phases, 0);
+    const flight::ChosenTracks tracks(series);
+    const flight::PowerStatistics power(series);
     for (const auto& sortie : phases.sorties) {
-        for (const auto& edge : explain_edges(series, sortie)) {
+        for (const auto& edge : explain_edges(tracks, sortie)) {
             record.verdicts.push_back({edge.edge.time_s, verdict_text(edge)});
         }
         for (const auto& span : sortie.phases) {
             record.phases.push_back({sortie.number, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s,
                                      span.end.gap_s, span.complete,
-                                     phase_statistics(series, span.start.time_s, span.end.time_s)});
+                                     power.between(span.start.time_s, span.end.time_s)});
         }
     }
     return record;
