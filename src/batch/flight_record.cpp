@@ -54,6 +54,7 @@ void visit_content(Content& content, const Visit& visit) {
     visit("has_definitions", content.has_definitions);
     visit("samples", content.samples);
     visit("decimals", content.decimals);
+    visit("parts", content.parts);
     visit("marks", content.marks);
 }
 

@@ -26,12 +26,13 @@ constexpr std::size_t farthest_sample = 8;
 constexpr double farthest_s = 10.0;
 constexpr double interval_step_s = 0.25;  // clocks that drift and jitter a little say the same
 constexpr std::array<std::size_t, precisions> most_marks{256, 256, 256, 512};
-constexpr std::size_t most_candidate_marks = 65536;
+constexpr std::size_t most_candidate_marks = 8192;
 constexpr std::array<std::size_t, precisions> indexed_marks{64, 64, 64, 128};
 constexpr std::size_t most_sharing = 64;  // what more flights have in common tells of none
 // Of two recordings of one flight.
 constexpr std::size_t least_shared = 6;
 constexpr double least_shared_part = 0.05;
+constexpr std::size_t least_told = 10;
 constexpr double least_block_s = 30.0;
 constexpr double most_blocks = 24.0;
 constexpr double least_agreeing = 0.5;
@@ -56,23 +57,24 @@ std::uint64_t rounded(double value, std::size_t precision) {
     return static_cast<std::uint64_t>(std::llround(value * scale));
 }
 
-/// How many decimals the values have; `exact` if more than two.
+/// How many decimals the values have; two if more.
 std::size_t decimals_of(const Track& track) {
     constexpr double nearly_all = 0.98;
     constexpr double nearly_whole = 1e-6;
-    for (std::size_t decimals = 0; decimals < exact; ++decimals) {
+    for (std::size_t decimals = 0; decimals < most_decimals; ++decimals) {
         const double scale = std::pow(10.0, static_cast<double>(decimals));
         const auto whole = std::ranges::count_if(track.value, [&](double value) {
             return std::abs(value * scale - std::round(value * scale)) < nearly_whole;
         });
         if (static_cast<double>(whole) >= nearly_all * static_cast<double>(track.value.size())) return decimals;
     }
-    return exact;
+    return most_decimals;
 }
 
 void add_marks(const Track& track, std::size_t precision, std::uint64_t highest, std::vector<FlightMark>& marks) {
     auto seed = mixed(0, precision);
     for (const char c : track.name + ' ' + track.source) seed = mixed(seed, static_cast<unsigned char>(c));
+    const bool is_altitude = track.name == "altitude_m";
     std::vector<std::uint64_t> values(track.value.size());
     std::ranges::transform(track.value, values.begin(), [&](double value) { return rounded(value, precision); });
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -81,7 +83,8 @@ void add_marks(const Track& track, std::size_t precision, std::uint64_t highest,
             if (values[j] == values[i]) continue;
             const auto interval = std::llround((track.time_s[j] - track.time_s[i]) / interval_step_s);
             const auto mark = mixed(mixed(mixed(seed, values[i]), values[j]), static_cast<std::uint64_t>(interval));
-            if (mark <= highest) marks.push_back({mark, to_millisecond(track.time_s[i])});
+            if (mark > highest) continue;
+            marks.push_back({is_altitude ? mark | 1U : mark & ~std::uint64_t{1}, to_millisecond(track.time_s[i])});
         }
     }
 }
@@ -97,16 +100,20 @@ void keep_least(std::vector<FlightMark>& marks, std::size_t most) {
     marks.resize(kept);
 }
 
-/// The marks of both that can be in both: beyond the last of a full sketch nothing is known.
-std::span<const FlightMark> comparable(const std::vector<FlightMark>& marks, const std::vector<FlightMark>& other,
-                                       std::size_t precision) {
-    if (other.size() < most_marks[precision]) return marks;
-    const auto end = std::ranges::upper_bound(marks, other.back().fingerprint, {}, &FlightMark::fingerprint);
-    return {marks.begin(), end};
+std::uint64_t highest_fingerprint(std::size_t parts) { return std::numeric_limits<std::uint64_t>::max() / parts; }
+
+/// The marks that can be in the other too: beyond what was looked at, and the last of a full sketch, nothing is known.
+std::span<const FlightMark> comparable(const FlightContent& one, const FlightContent& other, std::size_t precision) {
+    const auto& marks = one.marks[precision];
+    const auto& others = other.marks[precision];
+    auto highest = highest_fingerprint(other.parts);
+    if (others.size() >= most_marks[precision]) highest = std::min(highest, others.back().fingerprint);
+    return {marks.begin(), std::ranges::upper_bound(marks, highest, {}, &FlightMark::fingerprint)};
 }
 
 /// Of marks in both: when, by the clock of the first, and how much later than by that of the second.
 struct SharedMark {
+    std::uint64_t fingerprint;
     double time_s;
     double offset_s;
 };
@@ -133,25 +140,36 @@ std::size_t blocks_of(const Marks& marks, double block_s) {
     return blocks.size();
 }
 
+/// Whether altitude, and what is electrical, both agree as far as both logs tell of them: one of two may follow from a plan.
+bool agree_in_kind(std::span<const FlightMark> marks, std::span<const FlightMark> with,
+                   const std::vector<SharedMark>& shared) {
+    for (const bool is_altitude : {false, true}) {
+        const auto count = [&](const auto& all) {
+            return static_cast<std::size_t>(
+                std::ranges::count_if(all, [&](const auto& mark) { return (mark.fingerprint & 1U) == is_altitude; }));
+        };
+        const auto told = std::min(count(marks), count(with));
+        if (told < least_told) continue;
+        if (static_cast<double>(count(shared)) < least_shared_part * static_cast<double>(told)) return false;
+    }
+    return true;
+}
+
 Likeness compare_at(const FlightContent& one, const FlightContent& other, std::size_t precision) {
-    const auto& ones = one.marks[precision];
-    const auto& others = other.marks[precision];
-    auto marks = comparable(ones, others, precision);
-    auto with = comparable(others, ones, precision);
+    auto marks = comparable(one, other, precision);
+    auto with = comparable(other, one, precision);
     if (with.size() < marks.size()) std::swap(marks, with);
     if (marks.empty()) return {};
     std::vector<SharedMark> shared;
     for (const auto& mark : marks) {
         const auto found = std::ranges::lower_bound(with, mark.fingerprint, {}, &FlightMark::fingerprint);
         if (found == with.end() || found->fingerprint != mark.fingerprint) continue;
-        shared.push_back({mark.time_s, mark.time_s - found->time_s});
+        shared.push_back({mark.fingerprint, mark.time_s, mark.time_s - found->time_s});
     }
     const auto [first, last] = std::ranges::minmax_element(marks, {}, &FlightMark::time_s);
     const double span_s = last->time_s - first->time_s;
     shared = at_one_offset(std::move(shared), clock_slack_s + clock_drift * span_s);
-    if (shared.size() < least_shared ||
-        static_cast<double>(shared.size()) < least_shared_part * static_cast<double>(marks.size()))
-        return {};
+    if (shared.size() < least_shared || !agree_in_kind(marks, with, shared)) return {};
     const double block_s = std::max(least_block_s, span_s / most_blocks);
     const auto agreeing = blocks_of(shared, block_s);
     if (precision != exact && agreeing < least_rounded_blocks) return {};
@@ -176,11 +194,10 @@ FlightContent content_of(const FlightSeries& series) {
         if (track.name == "altitude_m" || track.name == "power_w")
             content.decimals = std::min(content.decimals, decimals_of(track));
     }
-    constexpr auto all = std::numeric_limits<std::uint64_t>::max();
-    const auto parts = farthest_sample * values / most_candidate_marks + 1;
+    content.parts = farthest_sample * values / most_candidate_marks + 1;
     for (std::size_t precision = 0; precision < precisions; ++precision) {
         auto& marks = content.marks[precision];
-        for (const auto* track : tracks) add_marks(*track, precision, all / parts, marks);
+        for (const auto* track : tracks) add_marks(*track, precision, highest_fingerprint(content.parts), marks);
         keep_least(marks, most_marks[precision]);
     }
     return content;

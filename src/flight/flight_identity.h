@@ -15,20 +15,22 @@ namespace flightwatt::flight {
 
 /// Two values of one field, some samples apart, and when: one of many by which a flight is known again.
 struct FlightMark {
-    std::uint64_t fingerprint = 0;  ///< of the two values and the time between them
+    std::uint64_t fingerprint = 0;  ///< of the two values and the time between them; odd: of an altitude
     double time_s = 0.0;            ///< the log's own seconds
     bool operator==(const FlightMark&) const = default;
 };
 
 /// In how many ways values are compared: rounded to 0, 1 and 2 decimals, and exactly.
 inline constexpr std::size_t precisions = 4;
+inline constexpr std::size_t most_decimals = 2;
 
 /// What its samples are, in short: marks of its altitude, voltage, current and power.
 struct FlightContent {
     std::array<std::vector<FlightMark>, precisions> marks;  ///< of each precision those with the least fingerprints
-    std::size_t decimals = precisions - 1;                  ///< of what was logged in the fewest
+    std::size_t decimals = most_decimals;                   ///< of what was logged in the fewest, if less
     bool has_definitions = true;                            ///< its .log is beside it
     std::size_t samples = 0;                                ///< of power, or else of altitude
+    std::size_t parts = 1;  ///< of the fingerprints that can be, only the lowest one of so many parts was looked at
 
     bool operator==(const FlightContent&) const = default;
 };
