@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <boost/algorithm/string/predicate.hpp>
@@ -29,6 +30,7 @@ constexpr std::array<std::size_t, precisions> most_marks{256, 256, 256, 512};
 constexpr std::size_t most_candidate_marks = 8192;
 constexpr std::array<std::size_t, precisions> indexed_marks{64, 64, 64, 128};
 constexpr std::size_t most_sharing = 64;  // what more flights have in common tells of none
+constexpr std::size_t least_indexed = 3;
 // Of two recordings of one flight.
 constexpr std::size_t least_shared = 6;
 constexpr double least_shared_part = 0.05;
@@ -214,7 +216,8 @@ Likeness likeness_of(const FlightContent& one, const FlightContent& other) {
 }
 
 bool is_better_copy(const FlightContent& one, const FlightContent& other) {
-    return std::pair(one.has_definitions, one.samples) > std::pair(other.has_definitions, other.samples);
+    return std::tuple(one.has_definitions, one.samples, one.decimals) >
+           std::tuple(other.has_definitions, other.samples, other.decimals);
 }
 
 std::string describe_overlap(const std::string& one, const std::string& other, const Likeness& likeness) {
@@ -226,16 +229,19 @@ std::string describe_overlap(const std::string& one, const std::string& other, c
 
 std::vector<KnownFlights::Like> KnownFlights::find(const FlightContent& content) const {
     std::map<std::size_t, std::size_t> sharing;  // marks with each
-    for (const auto& marks : content.marks) {
-        for (const auto& mark : marks) {
+    for (std::size_t precision = 0; precision < precisions; ++precision) {
+        for (const auto& mark : content.marks[precision]) {
             const auto [first, last] = with_mark_.equal_range(mark.fingerprint);
             if (static_cast<std::size_t>(std::distance(first, last)) > most_sharing) continue;
-            for (auto known = first; known != last; ++known) ++sharing[known->second];
+            for (auto known = first; known != last; ++known) {
+                const auto& other = contents_[known->second];
+                if (precision >= std::min(content.decimals, other.decimals)) ++sharing[known->second];
+            }
         }
     }
     std::vector<Like> alike;
     for (const auto& [known, marks] : sharing) {
-        if (marks < 2) continue;
+        if (marks < least_indexed) continue;
         const auto likeness = likeness_of(content, contents_[known]);
         if (likeness.shared_s > 0.0) alike.push_back({known, likeness});
     }

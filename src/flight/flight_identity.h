@@ -48,7 +48,8 @@ struct Likeness {
 /// nothing varies are not, nor two that sampled the flight at other moments.
 Likeness likeness_of(const FlightContent& one, const FlightContent& other);
 
-/// Which of two recordings of one flight is used: one with definitions, then one with more samples.
+/// Which of two recordings of one flight is used: one with definitions, then one with more samples, then one with more
+/// decimals.
 bool is_better_copy(const FlightContent& one, const FlightContent& other);
 
 /// A warning that two flights, which both are used, share a part.
