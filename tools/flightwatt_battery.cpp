@@ -32,22 +32,23 @@ battery::IdentificationOptions read_options(const cli::StageCall& call) {
 std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
     auto options = cli::read_flight_options(call);
     options.flight_required = false;  // without altitude there is no telling power faults, but a battery
-    std::vector<battery::DischargeRecord> records;
     std::optional<InputError> last_refusal;
-    cli::for_each_flight(call, options, [&](const std::string& file, const auto& loaded) {
+    const auto read = [&](const std::string& file, const flight::LoadedFlight& loaded) {
         try {
             if (!loaded.exclusion.empty()) {
                 throw InputError({file}, fmt::format("{}: {}", loaded.series.flight, loaded.exclusion));
             }
             auto found = battery::discharge_records(loaded.series);
             for (const auto& text : found.notes) cli::warn(call, fmt::format("{}: {}", file, text));
-            std::ranges::move(found.records, std::back_inserter(records));
+            return std::move(found.records);
         } catch (const InputError& error) {
             if (call.inputs.size() == 1) throw;
             cli::warn(call, fmt::format("excluded: {}", error.what()));
             last_refusal = error;
+            return std::vector<battery::DischargeRecord>{};
         }
-    });
+    };
+    auto records = cli::from_flights<battery::DischargeRecord>(call, options, read);
     if (records.empty() && last_refusal) throw InputError(*last_refusal);
     return records;
 }

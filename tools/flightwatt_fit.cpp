@@ -41,14 +41,15 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
 }
 
 std::vector<mechanical::FlightSamples> read_flights(const cli::StageCall& call, int order) {
-    std::vector<mechanical::FlightSamples> flights;
     const auto needed = mechanical::samples_needed(order);
-    cli::for_each_flight(call, cli::read_flight_options(call), [&](const auto&, const auto& loaded) {
+    const auto options = cli::read_flight_options(call);
+    return cli::from_flights<mechanical::FlightSamples>(call, options, [&](const auto&, const auto& loaded) {
         auto measured = mechanical::measure_flights(loaded, needed);
         for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
+        std::vector<mechanical::FlightSamples> flights;
         for (auto& flight : measured.flights) flights.push_back(std::move(flight.samples));
+        return flights;
     });
-    return flights;
 }
 
 /// Chooses each phase's order and says why.

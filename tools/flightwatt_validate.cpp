@@ -41,17 +41,14 @@ std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, co
 
 /// The flights of all inputs. In flight, those that are not in cruise at the moment are excluded.
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples) {
-    std::vector<mechanical::MeasuredFlight> flights;
     const auto until_s = call.maybe<double>("until");
     const auto options = cli::read_flight_options(call);
-    cli::for_each_flight(call, options, [&](const auto&, const auto& loaded) {
+    return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
         auto measured = mechanical::measure_flights(loaded, needed_samples);
         for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
-        auto read = until_s ? in_cruise(call, loaded, std::move(measured), *until_s, options.segmentation)
-                            : std::move(measured.flights);
-        std::move(read.begin(), read.end(), std::back_inserter(flights));
+        return until_s ? in_cruise(call, loaded, std::move(measured), *until_s, options.segmentation)
+                       : std::move(measured.flights);
     });
-    return flights;
 }
 
 /// --covariate NAME[,NAME] or all.

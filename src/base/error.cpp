@@ -40,7 +40,7 @@ std::string short_list(const std::vector<std::string>& names) {
     return text;
 }
 
-InputError::InputError(Location where, const std::string& message, std::string hint)
+InputError::InputError(Location where, const std::string& message, const std::string& hint)
     : std::runtime_error(clipped(message)), where_(std::move(where)), hint_(clipped(hint)) {}
 
 }  // namespace flightwatt

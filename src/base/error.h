@@ -28,7 +28,7 @@ std::string short_list(const std::vector<std::string>& names);
 /// Both are clipped.
 class InputError : public std::runtime_error {
   public:
-    InputError(Location where, const std::string& message, std::string hint = "");
+    InputError(Location where, const std::string& message, const std::string& hint = "");
     const Location& where() const { return where_; }
     const std::string& hint() const { return hint_; }
 

@@ -41,7 +41,7 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     const auto& load = options.load;
     const auto& segmentation = load.segmentation;
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 7");
+    fingerprint.add(FLIGHTWATT_VERSION " record 8");
     fingerprint.add(log.flight);
     fingerprint.add(log.path.string());
     fingerprint.add(load.aircraft_id.value_or(""));
@@ -236,27 +236,35 @@ std::map<std::string, std::string> exclude_copies(std::vector<BatchFlight>& flig
     std::vector<BatchFlight*> candidates;
     for (auto& flight : flights)
         if (!flight.selection.flights.empty() || !flight.record.lacks_power.empty()) candidates.push_back(&flight);
-    // The one with power is used, and of these one that is still there.
-    std::ranges::stable_sort(candidates, {}, [](const auto* flight) {
-        return std::pair(flight->selection.flights.empty(), flight->is_kept);
+    // The one with power is used, of these one that is still there, of these the better copy.
+    std::ranges::stable_sort(candidates, [](const auto* one, const auto* other) {
+        const auto rank = [](const auto* flight) {
+            return std::pair(flight->selection.flights.empty(), flight->is_kept);
+        };
+        if (rank(one) != rank(other)) return rank(one) < rank(other);
+        return is_better_copy(one->record.content, other->record.content);
     });
     flight::KnownFlights known;
     std::vector<std::string> used;
     std::map<std::string, std::string> copies;
     for (auto* flight : candidates) {
-        const auto same = known.find(flight->record.content);
-        if (!same) {
-            known.add(flight->record.content);
-            used.push_back(flight->record.flight);
+        auto& record = flight->record;
+        const auto alike = known.find(record.content);
+        const auto same = std::ranges::find_if(alike, [](const auto& like) { return like.likeness.is_same; });
+        if (same == alike.end()) {
+            for (const auto& [number, likeness] : alike)
+                record.warnings.push_back(flight::describe_overlap(used[number], record.flight, likeness));
+            known.add(record.content);
+            used.push_back(record.flight);
             continue;
         }
-        const auto& other = used[*same];
-        const bool has_power = flight->record.lacks_power.empty();
-        if (has_power) copies[flight->record.flight] = other;
+        const auto& other = used[same->number];
+        const bool has_power = record.lacks_power.empty();
+        if (has_power) copies[record.flight] = other;
         flight->selection.flights.clear();
         flight->selection.sorties.clear();
         flight->selection.exclusions.push_back(
-            {flight->record.flight, std::nullopt,
+            {record.flight, std::nullopt,
              has_power ? reason_of_copy(other) : fmt::format("it is the same flight as {}", other)});
     }
     return copies;

@@ -16,6 +16,7 @@ namespace flightwatt::batch {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using FlightMarks = decltype(flight::FlightContent::marks);
 
 // The keys of a record: `visit` is called with each and with what it holds, for writing and for reading.
 
@@ -48,6 +49,15 @@ void visit_measured_phase(Flight& flight, flight::Phase phase, Samples& samples,
     visit("power_w", samples.power_w);
 }
 
+template <typename Content, typename Visit>
+void visit_content(Content& content, const Visit& visit) {
+    visit("has_definitions", content.has_definitions);
+    visit("samples", content.samples);
+    visit("decimals", content.decimals);
+    visit("parts", content.parts);
+    visit("marks", content.marks);
+}
+
 template <typename Record, typename Visit>
 void visit_record(Record& record, const Visit& visit) {
     visit("flight", record.flight);
@@ -58,8 +68,7 @@ void visit_record(Record& record, const Visit& visit) {
     visit("error", record.error);
     visit("aircraft_id", record.aircraft_id);
     visit("aircraft_name", record.aircraft_name);
-    visit("content_stretches", record.content.stretches);
-    visit("content_sketch", record.content.sketch);
+    visit("content", record.content);
     visit("power_source", record.power_source);
     visit("current_origin", record.current_origin);
     visit("phases", record.phases);
@@ -94,6 +103,24 @@ struct RecordWriter {
         Json json = Json::object();
         for (const auto covariate : mechanical::all_covariates) {
             if (const auto& value = covariates[covariate]) json[std::string(to_string(covariate))] = *value;
+        }
+        return json;
+    }
+    static Json json_of(const flight::FlightContent& content) {
+        Json json = Json::object();
+        visit_content(content, RecordWriter{json});
+        return json;
+    }
+    static Json json_of(const FlightMarks& of_precisions) {
+        Json json = Json::array();
+        for (const auto& marks : of_precisions) {
+            Json fingerprints = Json::array();
+            Json times_s = Json::array();
+            for (const auto& [fingerprint, time_s] : marks) {
+                fingerprints.push_back(fingerprint);
+                times_s.push_back(time_s);
+            }
+            json.push_back({{"fingerprints", fingerprints}, {"times_s", times_s}});
         }
         return json;
     }
@@ -152,6 +179,15 @@ struct RecordReader {
     static void read(const Json& json, mechanical::Covariates& covariates) {
         for (const auto& [name, value] : json.items()) {
             covariates[mechanical::covariate_from(name).value()] = value.get<double>();
+        }
+    }
+    static void read(const Json& json, flight::FlightContent& content) { visit_content(content, RecordReader{json}); }
+    static void read(const Json& json, FlightMarks& of_precisions) {
+        for (std::size_t i = 0; i < of_precisions.size(); ++i) {
+            const auto& fingerprints = json.at(i).at("fingerprints");
+            const auto& times_s = json.at(i).at("times_s");
+            for (std::size_t k = 0; k < fingerprints.size(); ++k)
+                of_precisions[i].push_back({fingerprints.at(k), times_s.at(k)});
         }
     }
     static void read(const Json& json, std::vector<RecordedPhase>& phases) {
@@ -215,14 +251,15 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     record.power_faults = loaded.power.power_faults;
     record.lacks_power = loaded.lacks_power;
     if (record.lacks_power.empty()) record.measured = mechanical::measure_flights(series, phases, 0);
+    const flight::ChosenTracks tracks(series);
+    const flight::PowerStatistics power(series);
     for (const auto& sortie : phases.sorties) {
-        for (const auto& edge : explain_edges(series, sortie)) {
+        for (const auto& edge : explain_edges(tracks, sortie)) {
             record.verdicts.push_back({edge.edge.time_s, verdict_text(edge)});
         }
         for (const auto& span : sortie.phases) {
             record.phases.push_back({sortie.number, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s,
-                                     span.end.gap_s, span.complete,
-                                     phase_statistics(series, span.start.time_s, span.end.time_s)});
+                                     span.end.gap_s, span.complete, power.between(span.start.time_s, span.end.time_s)});
         }
     }
     return record;

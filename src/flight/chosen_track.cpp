@@ -1,12 +1,15 @@
 #include "flight/chosen_track.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
+#include "base/units.h"
 #include "flight/sources/device_check.h"
 #include "flight/sources/device_sum.h"
 #include "flight/sources/power_source.h"
 #include "flight/sources/wild_samples.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -62,10 +65,51 @@ Choice first_of(const FlightSeries& series, std::string_view name) {
     return {};
 }
 
+/// Whether a throttle is written as 0 to 1: power tells that a motor ran at so little, or what is no whole percent.
+bool is_fraction(const Track& throttle, const FlightSeries& series) {
+    constexpr std::size_t enough = 10;
+    constexpr double idle = 0.05;
+    constexpr double runs = 0.2;
+    constexpr double full = 1.5;
+    if (throttle.empty()) return false;
+    const auto [least, most] = std::ranges::minmax(throttle.value);
+    if (most < runs || most > full || least < -idle) return false;
+    const auto power = choose_power(series).power_w;
+    std::vector<double> idle_w;
+    std::vector<double> running_w;
+    for (std::size_t i = 0; i < power.time_s.size(); ++i) {
+        const double part = value_at(throttle, power.time_s[i]);
+        if (part <= idle) idle_w.push_back(power.value[i]);
+        if (part >= runs) running_w.push_back(power.value[i]);
+    }
+    if (!is_constant(power) && idle_w.size() >= enough && running_w.size() >= enough)
+        return upper_median(std::move(running_w)) >= 3.0 * std::max(upper_median(std::move(idle_w)), 0.0) + 1.0;
+    const auto is_part = [](double value) { return value > idle && value != 1.0; };
+    return std::ranges::count_if(throttle.value, is_part) >= static_cast<std::ptrdiff_t>(enough);
+}
+
+/// In percent.
+void scale_fraction(const FlightSeries& series, Choice& throttle) {
+    auto& track = throttle.track;
+    if (track.empty() || !is_fraction(track, series)) return;
+    const auto [least, most] = std::ranges::minmax(track.value);
+    throttle.said.push_back(
+        fmt::format("the throttle ({}) runs from {:.3g} to {:.3g}: it is taken for a fraction, "
+                    "{:.0f} to {:.0f} %",
+                    track.source, least, most, units::percent_of(least, 1.0), units::percent_of(most, 1.0)));
+    for (auto& value : track.value) value = units::percent_of(value, 1.0);
+}
+
 Choice throttle(const FlightSeries& series) {
     const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
     auto found = first_that_varies(series, "throttle_percent", [&](const Track& track) { return !is_thrust(track); });
-    return found.track.empty() ? first_that_varies(series, "throttle_percent", is_thrust) : found;
+    if (found.track.empty()) {
+        auto thrust = first_that_varies(series, "throttle_percent", is_thrust);
+        found.track = std::move(thrust.track);
+        std::ranges::move(thrust.said, std::back_inserter(found.said));
+    }
+    scale_fraction(series, found);
+    return found;
 }
 
 /// The pack's current, or else the sum of what its consumers report.
@@ -113,6 +157,11 @@ Choice choose(const FlightSeries& series, std::string_view name) {
 
 Track chosen_track(const FlightSeries& series, std::string_view name) {
     return name == "power_w" ? choose_power(series).power_w : choose(series, name).track;
+}
+
+const Track& ChosenTracks::operator[](const std::string& name) const {
+    const auto made = made_.find(name);
+    return made != made_.end() ? made->second : made_.emplace(name, chosen_track(series_, name)).first->second;
 }
 
 std::vector<double> chosen_at(const FlightSeries& series, std::string_view name, const std::vector<double>& time_s) {

@@ -12,7 +12,8 @@ namespace flightwatt::flight {
 
 /// The track of that name that the programs compute with: the first candidate that varies, else the first that has
 /// values. Exceptions: of airspeed one that varies or none (without a sensor it is constant); of ground speed the
-/// first; of throttle a rotorcraft's thrust comes last; of current and power the sum over devices where no message
+/// first; of throttle a rotorcraft's thrust comes last, and a
+/// fraction is made percent; of current and power the sum over devices where no message
 /// tells the whole. Power is the first that measures something (is not 0 throughout) and is not contradicted by voltage
 /// times current. Samples that cannot be are left out, and said in warnings_of: those beyond physical bounds
 /// (physical_bounds.h), of power, voltage and current where the message contradicts itself, and lonely spikes
@@ -23,6 +24,19 @@ Track chosen_track(const FlightSeries& series, std::string_view name);
 /// The track of that name at other times, linear between its points and constant outside; `time_s` must rise.
 /// Empty if the log has none.
 std::vector<double> chosen_at(const FlightSeries& series, std::string_view name, const std::vector<double>& time_s);
+
+/// The chosen tracks of a series, each made when it is first asked for. The series must outlive it.
+class ChosenTracks {
+  public:
+    explicit ChosenTracks(const FlightSeries& series) : series_(series) {}
+
+    const FlightSeries& series() const { return series_; }
+    const Track& operator[](const std::string& name) const;
+
+  private:
+    const FlightSeries& series_;
+    mutable std::map<std::string, Track> made_;
+};
 
 /// The power samples, whose clock most programs compute on.
 inline Track power_track(const FlightSeries& series) { return chosen_track(series, "power_w"); }

@@ -24,10 +24,17 @@ struct Change {
     int to = 0;
 };
 
-std::vector<Change> changes_of(const Track& state) {
+/// Those within reach of a time; of a track of states its changes, of one of messages all.
+std::vector<Change> changes_about(const Track& state, double about_s, bool is_message) {
     std::vector<Change> changes;
-    for (std::size_t i = 1; i < state.value.size(); ++i) {
-        if (state.value[i] == state.value[i - 1]) continue;
+    const auto first = std::ranges::lower_bound(state.time_s, about_s - witness_reach_s) - state.time_s.begin();
+    for (auto i = static_cast<std::size_t>(first); i < state.value.size(); ++i) {
+        if (state.time_s[i] > about_s + witness_reach_s) break;
+        if (is_message) {
+            changes.push_back({state.time_s[i]});
+            continue;
+        }
+        if (i == 0 || state.value[i] == state.value[i - 1]) continue;
         changes.push_back({state.time_s[i], static_cast<int>(state.value[i - 1]), static_cast<int>(state.value[i])});
     }
     return changes;
@@ -79,16 +86,12 @@ std::string event_text(const FlightSeries& series, std::string_view track, const
 }
 
 /// Of each sign of that edge the nearest one within reach.
-std::vector<EdgeWitness> events_of(const FlightSeries& series, EdgeKind kind, double edge_s) {
+std::vector<EdgeWitness> events_of(const ChosenTracks& tracks, EdgeKind kind, double edge_s) {
+    const auto& series = tracks.series();
     std::vector<EdgeWitness> events;
     for (const auto& sign : signs) {
         if (sign.edge != kind) continue;
-        const auto track = chosen_track(series, sign.track);
-        auto changes = changes_of(track);
-        if (kind == EdgeKind::lift_off) {
-            changes.clear();
-            for (const double time_s : track.time_s) changes.push_back({time_s});
-        }
+        auto changes = changes_about(tracks[sign.track], edge_s, kind == EdgeKind::lift_off);
         const auto distance_s = [&](const Change& change) { return std::abs(change.time_s - edge_s); };
         std::erase_if(changes, [&](const Change& change) {
             return distance_s(change) > witness_reach_s || !sign.matches(series.block_names, change);
@@ -110,7 +113,7 @@ std::string_view to_string(EdgeKind kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
-std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sortie& sortie) {
+std::vector<ExplainedEdge> explain_edges(const ChosenTracks& tracks, const Sortie& sortie) {
     std::vector<ExplainedEdge> edges;
     const auto add = [&](EdgeKind kind, const PhaseEdge& edge) {
         ExplainedEdge explained;
@@ -118,7 +121,7 @@ std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sorti
         explained.edge = edge;
         explained.height_percent =
             units::percent_per_whole * (edge.altitude_m - sortie.ground_altitude_m) / sortie.height_m;
-        (marks_edge(kind) ? explained.witnesses : explained.nearby) = events_of(series, kind, edge.time_s);
+        (marks_edge(kind) ? explained.witnesses : explained.nearby) = events_of(tracks, kind, edge.time_s);
         if (explained.witnesses.empty()) {
             explained.verdict = "no witness";
         } else {

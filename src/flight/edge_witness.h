@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
-#include "flight/flight_series.h"
 
 #include <string>
 #include <string_view>
@@ -41,6 +41,6 @@ inline constexpr double witness_reach_s = 60.0;
 /// the other two edges, so they have no witness and their events are only listed: the block called take-off
 /// is left and AUTO2 begins where the flight plan or the pilot says, at a fraction of the height flown; and
 /// the pilot takes the switch to MANUAL when the aircraft has long come to rest.
-std::vector<ExplainedEdge> explain_edges(const FlightSeries& series, const Sortie& sortie);
+std::vector<ExplainedEdge> explain_edges(const ChosenTracks& tracks, const Sortie& sortie);
 
 }  // namespace flightwatt::flight

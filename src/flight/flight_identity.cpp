@@ -1,12 +1,17 @@
 #include "flight/flight_identity.h"
 
+#include "flight/chosen_track.h"
+#include "flight/flight_phases.h"
+
 #include <algorithm>
-#include <array>
 #include <bit>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <boost/algorithm/string/predicate.hpp>
@@ -16,85 +21,240 @@
 namespace flightwatt::flight {
 namespace {
 
-// A stretch is so many values in a row of which so many differ: shorter ones, and those of a state that hardly changes,
-// recur in other flights.
-constexpr std::size_t stretch_length = 12;
-constexpr std::size_t least_different = 8;
-constexpr std::size_t sketch_size = 128;
-constexpr std::size_t least_shared = 4;
-constexpr double least_part = 0.5;
+// A mark is a pair of values that differ, of up to so many samples and seconds apart: copies that lost other lines still
+// share many, and of what differs hardly any two flights share one, at one time between them.
+constexpr std::size_t farthest_sample = 8;
+constexpr double farthest_s = 10.0;
+constexpr double interval_step_s = 0.25;  // clocks that drift and jitter a little say the same
+constexpr std::array<std::size_t, precisions> most_marks{256, 256, 256, 512};
+constexpr std::size_t most_candidate_marks = 8192;
+constexpr std::array<std::size_t, precisions> indexed_marks{64, 64, 64, 128};
+constexpr std::size_t most_sharing = 64;  // what more flights have in common tells of none
+constexpr std::size_t least_indexed = 3;
+// Of two recordings of one flight.
+constexpr std::size_t least_shared = 6;
+constexpr double least_shared_part = 0.05;
+constexpr std::size_t least_told = 10;
+constexpr double least_block_s = 30.0;
+constexpr double most_blocks = 24.0;
+constexpr double least_agreeing = 0.5;
+constexpr std::size_t least_rounded_blocks = 5;
+constexpr double clock_slack_s = 1.0;
+constexpr double clock_drift = 2e-3;
+
+constexpr std::size_t exact = precisions - 1;
 
 std::uint64_t mixed(std::uint64_t state, std::uint64_t word) {
-    state = (state ^ word) * 0x9E3779B97F4A7C15U;
-    return state ^ (state >> 29);
+    state = (state ^ word) + 0x9E3779B97F4A7C15U;  // splitmix64
+    state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9U;
+    state = (state ^ (state >> 27)) * 0x94D049BB133111EBU;
+    return state ^ (state >> 31);
 }
 
-std::size_t different_in(std::span<const double, stretch_length> values) {
-    std::array<double, stretch_length> sorted{};
-    std::ranges::copy(values, sorted.begin());
-    std::ranges::sort(sorted);
-    return static_cast<std::size_t>(std::ranges::unique(sorted).begin() - sorted.begin());
+/// The value as one of so many decimals says it, or exactly.
+std::uint64_t rounded(double value, std::size_t precision) {
+    constexpr double most = 1e12;
+    if (precision == exact || std::abs(value) > most) return std::bit_cast<std::uint64_t>(value + 0.0);
+    const double scale = std::pow(10.0, static_cast<double>(precision));
+    return static_cast<std::uint64_t>(std::llround(value * scale));
 }
 
-void add_stretches(const Track& track, std::uint64_t seed, std::vector<std::uint64_t>& stretches) {
-    const std::span values(track.value);
-    for (std::size_t i = 0; i + stretch_length <= values.size(); ++i) {
-        const auto stretch = values.subspan(i).first<stretch_length>();
-        if (different_in(stretch) < least_different) continue;
-        auto state = seed;
-        for (const double value : stretch) state = mixed(state, std::bit_cast<std::uint64_t>(value));
-        stretches.push_back(mixed(state, stretch_length));
+/// How many decimals the values have; two if more.
+std::size_t decimals_of(const Track& track) {
+    constexpr double nearly_all = 0.98;
+    constexpr double nearly_whole = 1e-6;
+    for (std::size_t decimals = 0; decimals < most_decimals; ++decimals) {
+        const double scale = std::pow(10.0, static_cast<double>(decimals));
+        const auto whole = std::ranges::count_if(track.value, [&](double value) {
+            return std::abs(value * scale - std::round(value * scale)) < nearly_whole;
+        });
+        if (static_cast<double>(whole) >= nearly_all * static_cast<double>(track.value.size())) return decimals;
     }
+    return most_decimals;
+}
+
+void add_marks(const Track& track, std::size_t precision, std::uint64_t highest, std::vector<FlightMark>& marks) {
+    auto seed = mixed(0, precision);
+    for (const char c : track.name + ' ' + track.source) seed = mixed(seed, static_cast<unsigned char>(c));
+    const bool is_altitude = track.name == "altitude_m";
+    std::vector<std::uint64_t> values(track.value.size());
+    std::ranges::transform(track.value, values.begin(), [&](double value) { return rounded(value, precision); });
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto last = std::min(values.size(), i + 1 + farthest_sample);
+        for (auto j = i + 1; j < last && track.time_s[j] - track.time_s[i] <= farthest_s; ++j) {
+            if (values[j] == values[i]) continue;
+            const auto interval = std::llround((track.time_s[j] - track.time_s[i]) / interval_step_s);
+            const auto mark = mixed(mixed(mixed(seed, values[i]), values[j]), static_cast<std::uint64_t>(interval));
+            if (mark > highest) continue;
+            marks.push_back({is_altitude ? mark | 1U : mark & ~std::uint64_t{1}, to_millisecond(track.time_s[i])});
+        }
+    }
+}
+
+/// The least ones, rising, without those that recur.
+void keep_least(std::vector<FlightMark>& marks, std::size_t most) {
+    std::ranges::sort(marks, {}, [](const FlightMark& mark) { return std::pair(mark.fingerprint, mark.time_s); });
+    std::size_t kept = 0;
+    for (std::size_t begin = 0, end = 0; begin < marks.size() && kept < most; begin = end) {
+        while (end < marks.size() && marks[end].fingerprint == marks[begin].fingerprint) ++end;
+        if (end == begin + 1) marks[kept++] = marks[begin];
+    }
+    marks.resize(kept);
+}
+
+std::uint64_t highest_fingerprint(std::size_t parts) { return std::numeric_limits<std::uint64_t>::max() / parts; }
+
+/// The marks that can be in the other too: beyond what was looked at, and the last of a full sketch, nothing is known.
+std::span<const FlightMark> comparable(const FlightContent& one, const FlightContent& other, std::size_t precision) {
+    const auto& marks = one.marks[precision];
+    const auto& others = other.marks[precision];
+    auto highest = highest_fingerprint(other.parts);
+    if (others.size() >= most_marks[precision]) highest = std::min(highest, others.back().fingerprint);
+    return {marks.begin(), std::ranges::upper_bound(marks, highest, {}, &FlightMark::fingerprint)};
+}
+
+/// Of marks in both: when, by the clock of the first, and how much later than by that of the second.
+struct SharedMark {
+    std::uint64_t fingerprint;
+    double time_s;
+    double offset_s;
+};
+
+/// Those that one offset of the clocks explains, as far as clocks drift: the offset with the most.
+std::vector<SharedMark> at_one_offset(std::vector<SharedMark> shared, double slack_s) {
+    std::ranges::sort(shared, {}, &SharedMark::offset_s);
+    std::size_t best = 0;
+    std::size_t most = 0;
+    for (std::size_t begin = 0, end = 0; begin < shared.size(); ++begin) {
+        while (end < shared.size() && shared[end].offset_s <= shared[begin].offset_s + slack_s) ++end;
+        if (end - begin <= most) continue;
+        best = begin;
+        most = end - begin;
+    }
+    return {shared.begin() + static_cast<std::ptrdiff_t>(best),
+            shared.begin() + static_cast<std::ptrdiff_t>(best + most)};
+}
+
+template <typename Marks>
+std::size_t blocks_of(const Marks& marks, double block_s) {
+    std::set<long> blocks;
+    for (const auto& mark : marks) blocks.insert(std::lround(mark.time_s / block_s));
+    return blocks.size();
+}
+
+/// Whether altitude, and what is electrical, both agree as far as both logs tell of them: one of two may follow from a plan.
+bool agree_in_kind(std::span<const FlightMark> marks, std::span<const FlightMark> with,
+                   const std::vector<SharedMark>& shared) {
+    for (const bool is_altitude : {false, true}) {
+        const auto count = [&](const auto& all) {
+            return static_cast<std::size_t>(
+                std::ranges::count_if(all, [&](const auto& mark) { return (mark.fingerprint & 1U) == is_altitude; }));
+        };
+        const auto told = std::min(count(marks), count(with));
+        if (told < least_told) continue;
+        if (static_cast<double>(count(shared)) < least_shared_part * static_cast<double>(told)) return false;
+    }
+    return true;
+}
+
+Likeness compare_at(const FlightContent& one, const FlightContent& other, std::size_t precision) {
+    auto marks = comparable(one, other, precision);
+    auto with = comparable(other, one, precision);
+    if (with.size() < marks.size()) std::swap(marks, with);
+    if (marks.empty()) return {};
+    std::vector<SharedMark> shared;
+    for (const auto& mark : marks) {
+        const auto found = std::ranges::lower_bound(with, mark.fingerprint, {}, &FlightMark::fingerprint);
+        if (found == with.end() || found->fingerprint != mark.fingerprint) continue;
+        shared.push_back({mark.fingerprint, mark.time_s, mark.time_s - found->time_s});
+    }
+    const auto [first, last] = std::ranges::minmax_element(marks, {}, &FlightMark::time_s);
+    const double span_s = last->time_s - first->time_s;
+    shared = at_one_offset(std::move(shared), clock_slack_s + clock_drift * span_s);
+    if (shared.size() < least_shared || !agree_in_kind(marks, with, shared)) return {};
+    const double block_s = std::max(least_block_s, span_s / most_blocks);
+    const auto agreeing = blocks_of(shared, block_s);
+    if (precision != exact && agreeing < least_rounded_blocks) return {};
+    const double part = static_cast<double>(agreeing) / static_cast<double>(blocks_of(marks, block_s));
+    return {part >= least_agreeing, static_cast<double>(agreeing) * block_s};
 }
 
 }  // namespace
 
 FlightContent content_of(const FlightSeries& series) {
     constexpr std::array<std::string_view, 4> names{"altitude_m", "voltage_v", "current_a", "power_w"};
-    std::vector<std::uint64_t> stretches;
+    FlightContent content;
+    content.has_definitions = !series.lacks_log;
+    content.samples = power_track(series).time_s.size();
+    if (content.samples == 0) content.samples = chosen_track(series, "altitude_m").time_s.size();
+    std::vector<const Track*> tracks;
+    std::size_t values = 0;
     for (const auto& track : series.tracks) {
-        const auto* name = std::ranges::find(names, track.name);
-        if (name == names.end()) continue;
-        add_stretches(track, mixed(0, static_cast<std::uint64_t>(name - names.begin()) + 1), stretches);
+        if (std::ranges::find(names, track.name) == names.end() || is_constant(track)) continue;
+        tracks.push_back(&track);
+        values += track.value.size();
+        if (track.name == "altitude_m" || track.name == "power_w")
+            content.decimals = std::min(content.decimals, decimals_of(track));
     }
-    std::ranges::sort(stretches);
-    stretches.erase(std::unique(stretches.begin(), stretches.end()), stretches.end());
-    FlightContent content{stretches.size(), std::move(stretches)};
-    content.sketch.resize(std::min(content.sketch.size(), sketch_size));
+    content.parts = farthest_sample * values / most_candidate_marks + 1;
+    for (std::size_t precision = 0; precision < precisions; ++precision) {
+        auto& marks = content.marks[precision];
+        for (const auto* track : tracks) add_marks(*track, precision, highest_fingerprint(content.parts), marks);
+        keep_least(marks, most_marks[precision]);
+    }
     return content;
 }
 
-bool is_same_flight(const FlightContent& one, const FlightContent& other) {
-    // The least of the union are a random sample of it; those in both tell which part of it is shared (Broder, "On the
-    // resemblance and containment of documents", 1997).
-    std::vector<std::uint64_t> all;
-    std::ranges::set_union(one.sketch, other.sketch, std::back_inserter(all));
-    all.resize(std::min(all.size(), sketch_size));
-    const auto shared = std::ranges::count_if(all, [&](std::uint64_t stretch) {
-        return std::ranges::binary_search(one.sketch, stretch) && std::ranges::binary_search(other.sketch, stretch);
-    });
-    if (static_cast<std::size_t>(shared) < std::min({least_shared, one.sketch.size(), other.sketch.size()}) ||
-        shared == 0)
-        return false;
-    const double resemblance = static_cast<double>(shared) / static_cast<double>(all.size());
-    const auto both = static_cast<double>(one.stretches + other.stretches);
-    const auto shorter = static_cast<double>(std::min(one.stretches, other.stretches));
-    return resemblance * both / (1.0 + resemblance) >= least_part * shorter;
+Likeness likeness_of(const FlightContent& one, const FlightContent& other) {
+    Likeness best;
+    for (auto precision = precisions; precision-- > std::min(one.decimals, other.decimals);) {
+        const auto likeness = compare_at(one, other, precision);
+        if (likeness.is_same) return likeness;
+        best.shared_s = std::max(best.shared_s, precision == exact ? likeness.shared_s : 0.0);
+    }
+    return best;
 }
 
-std::optional<std::size_t> KnownFlights::find(const FlightContent& content) const {
-    std::set<std::size_t> sharing;
-    for (const auto stretch : content.sketch) {
-        const auto known = with_stretch_.find(stretch);
-        if (known != with_stretch_.end()) sharing.insert(known->second.begin(), known->second.end());
+bool is_better_copy(const FlightContent& one, const FlightContent& other) {
+    return std::tuple(one.has_definitions, one.samples, one.decimals) >
+           std::tuple(other.has_definitions, other.samples, other.decimals);
+}
+
+std::string describe_overlap(const std::string& one, const std::string& other, const Likeness& likeness) {
+    return fmt::format(
+        "{} and {} recorded about {:.0f} s of one flight both, less than half of either: it counts twice "
+        "unless one of them is excluded",
+        one, other, likeness.shared_s);
+}
+
+std::vector<KnownFlights::Like> KnownFlights::find(const FlightContent& content) const {
+    std::map<std::size_t, std::size_t> sharing;  // marks with each
+    for (std::size_t precision = 0; precision < precisions; ++precision) {
+        for (const auto& mark : content.marks[precision]) {
+            const auto [first, last] = with_mark_.equal_range(mark.fingerprint);
+            if (static_cast<std::size_t>(std::distance(first, last)) >= most_sharing) continue;
+            for (auto known = first; known != last; ++known) {
+                const auto& other = contents_[known->second];
+                if (precision >= std::min(content.decimals, other.decimals)) ++sharing[known->second];
+            }
+        }
     }
-    const auto same =
-        std::ranges::find_if(sharing, [&](std::size_t known) { return is_same_flight(content, contents_[known]); });
-    return same == sharing.end() ? std::nullopt : std::optional(*same);
+    std::vector<Like> alike;
+    for (const auto& [known, marks] : sharing) {
+        if (marks < least_indexed) continue;
+        const auto likeness = likeness_of(content, contents_[known]);
+        if (likeness.shared_s > 0.0) alike.push_back({known, likeness});
+    }
+    return alike;
 }
 
 void KnownFlights::add(FlightContent content) {
-    for (const auto stretch : content.sketch) with_stretch_[stretch].push_back(contents_.size());
+    for (std::size_t precision = 0; precision < precisions; ++precision) {
+        const auto& marks = content.marks[precision];
+        for (const auto& mark : std::span(marks).first(std::min(marks.size(), indexed_marks[precision])))
+            if (with_mark_.count(mark.fingerprint) < most_sharing)
+                with_mark_.emplace(mark.fingerprint, contents_.size());
+    }
     contents_.push_back(std::move(content));
 }
 

@@ -2,9 +2,9 @@
 
 #include "flight/flight_series.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -13,31 +13,63 @@
 /// Which flight of which aircraft a series is of, by what it holds rather than by its name.
 namespace flightwatt::flight {
 
-/// What its samples are, in short: a sketch of the stretches of values in its altitude, voltage, current and power. Times
-/// are no part of it, as a replayed or resumed recording has others.
+/// Two values of one field, some samples apart, and when: one of many by which a flight is known again.
+struct FlightMark {
+    std::uint64_t fingerprint = 0;  ///< of the two values and the time between them; odd: of an altitude
+    double time_s = 0.0;            ///< the log's own seconds
+    bool operator==(const FlightMark&) const = default;
+};
+
+/// In how many ways values are compared: rounded to 0, 1 and 2 decimals, and exactly.
+inline constexpr std::size_t precisions = 4;
+inline constexpr std::size_t most_decimals = 2;
+
+/// What its samples are, in short: marks of its altitude, voltage, current and power.
 struct FlightContent {
-    std::size_t stretches = 0;          ///< that differ
-    std::vector<std::uint64_t> sketch;  ///< the least of their fingerprints, rising
+    std::array<std::vector<FlightMark>, precisions> marks;  ///< of each precision those with the least fingerprints
+    std::size_t decimals = most_decimals;                   ///< of what was logged in the fewest, if less
+    bool has_definitions = true;                            ///< its .log is beside it
+    std::size_t samples = 0;                                ///< of power, or else of altitude
+    std::size_t parts = 1;  ///< of the fingerprints that can be, only the lowest one of so many parts was looked at
 
     bool operator==(const FlightContent&) const = default;
 };
 
 FlightContent content_of(const FlightSeries& series);
 
-/// Whether two are recordings of one flight: at least half of what the shorter one holds is in the other too. True for
-/// copies, for logs that begin or end elsewhere, and for several flights in one log. Two of which nothing varies are not.
-bool is_same_flight(const FlightContent& one, const FlightContent& other);
+/// What two recordings have in common.
+struct Likeness {
+    bool is_same = false;   ///< at least half of the time that the shorter one tells of is in the other too
+    double shared_s = 0.0;  ///< how long, about; 0 if they have nothing in common
+};
 
-/// Flights, to be asked for the one that another is the same as, without comparing it with all.
+/// Whether two are recordings of one flight: marks of both at one offset of their clocks (docs/guide.md). So are copies
+/// that lost other lines, were rounded, have another clock, begin or end elsewhere, or hold several flights. Two of which
+/// nothing varies are not, nor two that sampled the flight at other moments.
+Likeness likeness_of(const FlightContent& one, const FlightContent& other);
+
+/// Which of two recordings of one flight is used: one with definitions, then one with more samples, then one with more
+/// decimals.
+bool is_better_copy(const FlightContent& one, const FlightContent& other);
+
+/// A warning that two flights, which both are used, share a part.
+std::string describe_overlap(const std::string& one, const std::string& other, const Likeness& likeness);
+
+/// Flights, to be asked for those that another is like, without comparing it with all.
 class KnownFlights {
   public:
-    /// The number of the first that is the same, in the order in which they were added.
-    std::optional<std::size_t> find(const FlightContent& content) const;
+    struct Like {
+        std::size_t number = 0;  ///< in the order in which they were added
+        Likeness likeness = {};
+    };
+
+    std::vector<Like> find(const FlightContent& content) const;
     void add(FlightContent content);
+    const FlightContent& operator[](std::size_t number) const { return contents_[number]; }
 
   private:
     std::vector<FlightContent> contents_;
-    std::unordered_map<std::uint64_t, std::vector<std::size_t>> with_stretch_;
+    std::unordered_multimap<std::uint64_t, std::size_t> with_mark_;
 };
 
 /// A flight and the aircraft that flew it, as far as its file tells.

@@ -61,17 +61,20 @@ std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, doubl
     return sum / static_cast<double>(count);
 }
 
-PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s) {
+PowerStatistics::PowerStatistics(const FlightSeries& series)
+    : power_(power_track(series)),
+      counter_wh_(chosen_at(series, "energy_wh", power_.time_s)),
+      gap_s_(gap_threshold_s(power_.time_s)) {}
+
+PhaseStatistics PowerStatistics::between(double start_s, double end_s) const {
     PhaseStatistics statistics;
-    const auto power = power_track(series);
-    if (power.empty()) return statistics;
-    const auto& time_s = power.time_s;
-    const double gap_s = gap_threshold_s(time_s);
+    if (power_.empty()) return statistics;
+    const auto& time_s = power_.time_s;
     double last_s = start_s;
     const auto count_gap = [&](double until_s) {
         const double interval_s = until_s - last_s;
         statistics.longest_gap_s = std::max(statistics.longest_gap_s, interval_s);
-        if (interval_s > gap_s) ++statistics.gaps;
+        if (interval_s > gap_s_) ++statistics.gaps;
         last_s = until_s;
     };
     for (auto i = first_at_or_after(time_s, start_s); i < time_s.size() && time_s[i] <= end_s; ++i) {
@@ -79,14 +82,18 @@ PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, dou
         ++statistics.samples;
     }
     count_gap(end_s);
-    const double energy_j = integrated(time_s, power.value, start_s, end_s);
+    const double energy_j = integrated(time_s, power_.value, start_s, end_s);
     statistics.energy_wh = units::wh_from_joule(energy_j);
     if (end_s > start_s) statistics.mean_power_w = energy_j / (end_s - start_s);
-    if (const auto counter = chosen_at(series, "energy_wh", time_s); !counter.empty()) {
+    if (!counter_wh_.empty()) {
         statistics.counter_energy_wh =
-            interpolate_clamped(time_s, counter, end_s) - interpolate_clamped(time_s, counter, start_s);
+            interpolate_clamped(time_s, counter_wh_, end_s) - interpolate_clamped(time_s, counter_wh_, start_s);
     }
     return statistics;
+}
+
+PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s) {
+    return PowerStatistics(series).between(start_s, end_s);
 }
 
 }  // namespace flightwatt::flight

@@ -18,7 +18,22 @@ struct PhaseStatistics {
     double longest_gap_s = 0.0;
 };
 
-/// Statistics of [start_s, end_s]; of a series without power none.
+/// The power of a series, made once to be asked for many phases.
+class PowerStatistics {
+  public:
+    explicit PowerStatistics(const FlightSeries& series);
+
+    bool has_power() const { return !power_.empty(); }
+    /// Statistics of [start_s, end_s]; of a series without power none.
+    PhaseStatistics between(double start_s, double end_s) const;
+
+  private:
+    Track power_;
+    std::vector<double> counter_wh_;  ///< at the times of the power samples
+    double gap_s_ = 0.0;
+};
+
+/// PowerStatistics of one phase alone.
 PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, double end_s);
 
 /// Energy [Wh] of the series' power between two times: trapezoids, the ends interpolated.

@@ -81,12 +81,12 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
                    "end_block",
                    "end_to_takeoff_message_s"});
     const auto altitude = [](const PhaseEdge& edge) { return fmt::format("{:.2f}", edge.altitude_m); };
-    const bool has_power = !power_track(series).empty();
+    const PowerStatistics power(series);
     for (const auto& sortie : phases.sorties) {
         for (const auto& span : sortie.phases) {
             const auto& [phase, start, end, complete] = span;
-            const auto statistics = phase_statistics(series, start.time_s, end.time_s);
-            const auto known = [&](auto value) { return has_power ? std::optional(value) : std::nullopt; };
+            const auto statistics = power.between(start.time_s, end.time_s);
+            const auto known = [&](auto value) { return power.has_power() ? std::optional(value) : std::nullopt; };
             csv.add(sortie.number, to_string(phase), start.time_s, end.time_s, span.duration_s(),
                     known(statistics.samples), known(statistics.mean_power_w), known(statistics.energy_wh),
                     statistics.counter_energy_wh, known(statistics.gaps), known(statistics.longest_gap_s), complete,

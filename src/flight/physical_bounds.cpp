@@ -11,8 +11,8 @@ struct NamedBounds {
     PhysicalBounds bounds;
 };
 
-constexpr std::array bounds_by_name{NamedBounds{"altitude_m", {-1e3, 5e4}},
-                                    NamedBounds{"throttle_percent", {-110.0, 110.0}},
+constexpr std::array bounds_by_name{NamedBounds{"altitude_m", {-500.0, 2e4}},
+                                    NamedBounds{"throttle_percent", {-5.0, 105.0}},
                                     NamedBounds{"voltage_v", {0.0, 500.0}},
                                     NamedBounds{"current_a", {-2e3, 2e3}},
                                     NamedBounds{"power_w", {-1e5, 1e5}},

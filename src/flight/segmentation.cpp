@@ -25,15 +25,8 @@ double gap_around_s(const std::vector<double>& sample_s, double time_s) {
 
 constexpr double long_gap_s = 10.0;  // for an edge between altitudes
 
-/// What is noted beside an edge.
-struct Witnesses {
-    Track altitude;
-    Track mode;
-    Track block;
-    Track takeoff;
-};
-
-PhaseEdge describe_edge(const Witnesses& witnesses, const FlightGrid& grid, double exact_s) {
+/// With what is noted beside an edge.
+PhaseEdge describe_edge(const ChosenTracks& tracks, const FlightGrid& grid, double exact_s) {
     PhaseEdge edge;
     const double time_s = to_millisecond(exact_s);
     edge.time_s = time_s;
@@ -42,18 +35,18 @@ PhaseEdge describe_edge(const Witnesses& witnesses, const FlightGrid& grid, doub
         return channel[std::min(static_cast<std::size_t>(std::max(index, 0L)), channel.size() - 1)];
     };
     edge.altitude_m = nearest(grid.altitude_m);
-    edge.gap_s = gap_around_s(witnesses.altitude.time_s, time_s);
+    edge.gap_s = gap_around_s(tracks["altitude_m"].time_s, time_s);
     if (!grid.throttle_percent.empty()) edge.throttle_percent = nearest(grid.throttle_percent);
-    if (!witnesses.mode.empty()) edge.mode = static_cast<int>(state_at(witnesses.mode, time_s));
-    if (!witnesses.block.empty()) edge.block = static_cast<int>(state_at(witnesses.block, time_s));
-    for (const double takeoff : witnesses.takeoff.time_s) {
+    if (const auto& mode = tracks["mode"]; !mode.empty()) edge.mode = static_cast<int>(state_at(mode, time_s));
+    if (const auto& block = tracks["block"]; !block.empty()) edge.block = static_cast<int>(state_at(block, time_s));
+    for (const double takeoff : tracks["takeoff"].time_s) {
         const double after = takeoff - time_s;
         if (!edge.takeoff_after_s || std::abs(after) < std::abs(*edge.takeoff_after_s)) edge.takeoff_after_s = after;
     }
     return edge;
 }
 
-Sortie make_sortie(const Witnesses& witnesses, const FlightGrid& grid, const Activity& activity, const Heights& heights,
+Sortie make_sortie(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity, const Heights& heights,
                    const SegmentationOptions& options) {
     const auto edges = find_edges(grid, activity, heights, options);
     const double first_s = edges.lift_off_s.value_or(grid.time_s(activity.span.begin));
@@ -67,7 +60,7 @@ Sortie make_sortie(const Witnesses& witnesses, const FlightGrid& grid, const Act
     const auto add = [&](Phase phase, double start_s, double end_s, bool complete) {
         if (end_s <= start_s) return;
         sortie.phases.push_back(
-            {phase, describe_edge(witnesses, grid, start_s), describe_edge(witnesses, grid, end_s), complete});
+            {phase, describe_edge(tracks, grid, start_s), describe_edge(tracks, grid, end_s), complete});
     };
     if (edges.takeoff_end_s) add(Phase::takeoff, first_s, cruise_from, edges.lift_off_s.has_value());
     add(Phase::cruise, cruise_from, cruise_to, edges.takeoff_end_s.has_value() && edges.landing_start_s.has_value());
@@ -116,13 +109,12 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
     }
     phases.warnings = grid.warnings;
     if (auto doubt = unit_doubt(series, grid); !doubt.empty()) phases.warnings.push_back(std::move(doubt));
-    const Witnesses witnesses{chosen_track(series, "altitude_m"), chosen_track(series, "mode"),
-                              chosen_track(series, "block"), chosen_track(series, "takeoff")};
+    const ChosenTracks tracks(series);
     const auto ground_m = ground_altitude_m(series);
     for (const auto& activity : find_activities(grid, find_rests(grid, options), options)) {
         const auto grounds = grounds_of(grid, activity, ground_m);
         const auto heights = heights_of(grid, activity, grounds);
-        auto why = why_no_flight(series, grid, activity, heights, options);
+        auto why = why_no_flight(tracks, grid, activity, heights, options);
         if (!why.empty()) {
             phases.ground_events.push_back(
                 {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1), std::move(why)});
@@ -134,7 +126,7 @@ FlightPhases segment(const FlightSeries& series, const SegmentationOptions& opti
                 "latter counts",
                 grid.time_s(activity.moving.begin), *activity.ground_before_m, *activity.ground_after_m));
         }
-        phases.sorties.push_back(make_sortie(witnesses, grid, activity, heights, options));
+        phases.sorties.push_back(make_sortie(tracks, grid, activity, heights, options));
         phases.sorties.back().number = phases.sorties.size();
         warn_of_gaps(phases.sorties.back(), phases.warnings);
     }

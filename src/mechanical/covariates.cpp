@@ -20,25 +20,26 @@ constexpr std::array<std::string_view, covariate_count> covariate_texts{
 /// The mean of the track's values from `start_s` on, for early_s; std::nullopt without any.
 std::optional<double> early_mean(const flight::Track& track, double start_s) {
     std::vector<double> values;
-    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
-        if (track.time_s[i] < start_s || track.time_s[i] > start_s + early_s) continue;
+    const auto first = std::ranges::lower_bound(track.time_s, start_s) - track.time_s.begin();
+    for (auto i = static_cast<std::size_t>(first); i < track.time_s.size(); ++i) {
+        if (track.time_s[i] > start_s + early_s) break;
         values.push_back(track.value[i]);
     }
     if (values.empty()) return std::nullopt;
     return mean(values);
 }
 
-std::optional<double> resting_voltage_v(const flight::FlightSeries& series, double lift_off_s) {
+std::optional<double> resting_voltage_v(const flight::ChosenTracks& tracks, double lift_off_s) {
     constexpr double watched_s = 120.0;
-    const auto time_s = power_track(series).time_s;
-    const auto voltage_v = chosen_at(series, "voltage_v", time_s);
-    const auto throttle_percent = chosen_at(series, "throttle_percent", time_s);
-    if (voltage_v.empty() || throttle_percent.empty()) return std::nullopt;
+    const auto& time_s = tracks["power_w"].time_s;
+    const auto& voltage = tracks["voltage_v"];
+    const auto& throttle = tracks["throttle_percent"];
+    if (voltage.empty() || throttle.empty()) return std::nullopt;
     const double idle_percent = flight::SegmentationOptions{}.idle_throttle_percent;
     std::vector<double> voltages;
-    for (std::size_t i = 0; i < time_s.size() && time_s[i] < lift_off_s; ++i) {
-        if (time_s[i] < lift_off_s - watched_s || throttle_percent[i] > idle_percent) continue;
-        voltages.push_back(voltage_v[i]);
+    const auto first = std::ranges::lower_bound(time_s, lift_off_s - watched_s) - time_s.begin();
+    for (auto i = static_cast<std::size_t>(first); i < time_s.size() && time_s[i] < lift_off_s; ++i) {
+        if (value_at(throttle, time_s[i]) <= idle_percent) voltages.push_back(value_at(voltage, time_s[i]));
     }
     if (voltages.empty()) return std::nullopt;
     // Of an even number the higher of the middle two: a voltage that was measured.
@@ -62,22 +63,22 @@ std::string_view covariate_names() {
     return text;
 }
 
-Covariates covariates_of(const flight::FlightSeries& series, const flight::Sortie& sortie) {
+Covariates covariates_of(const flight::ChosenTracks& tracks, const flight::Sortie& sortie) {
     Covariates found;
-    const auto airspeed = chosen_track(series, "airspeed_m_per_s");
+    const auto& airspeed = tracks["airspeed_m_per_s"];
     found[Covariate::height] = sortie.height_m;
     for (const auto& span : sortie.phases) {
         if (span.phase == flight::Phase::takeoff && span.complete) {
-            found[Covariate::initial_voltage] = resting_voltage_v(series, span.start.time_s);
+            found[Covariate::initial_voltage] = resting_voltage_v(tracks, span.start.time_s);
         }
         if (span.phase != flight::Phase::cruise) continue;
         const double start_s = span.start.time_s;
         if (const auto& first = sortie.phases.front(); first.phase == flight::Phase::takeoff && first.complete) {
             found[Covariate::time_to_cruise] = start_s - first.start.time_s;
         }
-        found[Covariate::wind] = early_mean(chosen_track(series, "wind_speed_m_per_s"), start_s);
+        found[Covariate::wind] = early_mean(tracks["wind_speed_m_per_s"], start_s);
         found[Covariate::airspeed] = early_mean(airspeed, start_s);
-        found[Covariate::ground_speed] = early_mean(chosen_track(series, "ground_speed_m_per_s"), start_s);
+        found[Covariate::ground_speed] = early_mean(tracks["ground_speed_m_per_s"], start_s);
         found[Covariate::airspeed_cubed] = mean_cubed_airspeed_m3_per_s3(airspeed, start_s, start_s + early_s);
     }
     return found;

@@ -29,9 +29,10 @@ std::string why_too_few(const PhaseSamples& samples, std::size_t needed) {
 
 PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& span, const std::string& flight) {
     PhaseSamples samples{flight, span.duration_s(), {}, {}, span.start.time_s};
-    for (std::size_t i = 0; i < power.time_s.size(); ++i) {
+    const auto first = std::ranges::lower_bound(power.time_s, span.start.time_s) - power.time_s.begin();
+    for (auto i = static_cast<std::size_t>(first); i < power.time_s.size(); ++i) {
         const double time_s = power.time_s[i];
-        if (time_s < span.start.time_s || time_s > span.end.time_s) continue;
+        if (time_s > span.end.time_s) break;
         samples.tau.push_back((time_s - span.start.time_s) / samples.duration_s);
         samples.power_w.push_back(power.value[i]);
     }
@@ -56,23 +57,24 @@ std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie)
 MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight::FlightPhases& phases,
                                 std::size_t needed_samples) {
     MeasuredFlights measured;
-    const auto power = power_track(series);
-    const auto airspeed = chosen_track(series, "airspeed_m_per_s");
+    const flight::ChosenTracks tracks(series);
+    const flight::PowerStatistics statistics_of_power(series);
     for (const auto& sortie : phases.sorties) {
         MeasuredFlight flight;
         flight.samples.flight = flight_name_of_sortie(series.flight, sortie.number);
         for (const auto& span : sortie.phases) {
             const double start_s = span.start.time_s;
-            auto samples = samples_of(power, span, flight.samples.flight);
+            auto samples = samples_of(tracks["power_w"], span, flight.samples.flight);
             auto why = why_excluded(span);
             if (why.empty()) why = why_too_few(samples, needed_samples);
             if (!why.empty()) {
                 measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(why)});
                 continue;
             }
-            samples.airspeed_cubed_m3_per_s3 = mean_cubed_airspeed_m3_per_s3(airspeed, start_s, span.end.time_s);
-            if (span.phase == flight::Phase::cruise) samples.covariates = covariates_of(series, sortie);
-            const auto statistics = phase_statistics(series, start_s, span.end.time_s);
+            samples.airspeed_cubed_m3_per_s3 =
+                mean_cubed_airspeed_m3_per_s3(tracks["airspeed_m_per_s"], start_s, span.end.time_s);
+            if (span.phase == flight::Phase::cruise) samples.covariates = covariates_of(tracks, sortie);
+            const auto statistics = statistics_of_power.between(start_s, span.end.time_s);
             flight.energy_wh[span.phase] = statistics.energy_wh;
             flight.counter_energy_wh[span.phase] = statistics.counter_energy_wh;
             flight.samples.phases[span.phase] = std::move(samples);

@@ -22,15 +22,15 @@ struct SortieSums {
     std::optional<std::size_t> gaps = 0;
 };
 
-SortieSums sums_of(const flight::FlightSeries& series, const flight::Sortie& sortie) {
+SortieSums sums_of(const flight::PowerStatistics& power, const flight::Sortie& sortie) {
     SortieSums sums;
-    const bool has_power = !power_track(series).empty();
+    const bool has_power = power.has_power();
     if (!has_power) {
         sums.energy_wh.reset();
         sums.gaps.reset();
     }
     for (const auto& span : sortie.phases) {
-        const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
+        const auto statistics = power.between(span.start.time_s, span.end.time_s);
         sums.duration_s[span.phase] = span.duration_s();
         if (has_power) {
             sums.mean_w[span.phase] = statistics.mean_power_w;
@@ -52,7 +52,7 @@ std::string closure_percent(const SortieSums& sums) {
 }
 
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
-    const auto sums = sums_of(flight.series, flight.phases.sorties[sortie]);
+    const auto sums = sums_of(flight::PowerStatistics(flight.series), flight.phases.sorties[sortie]);
     std::vector<std::string> cells{flight.name,
                                    flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
                                    fmt::format("{}", sortie + 1)};

@@ -1,6 +1,7 @@
 #include "batch/batch_run.h"
 
 #include "base/error.h"
+#include "helpers/cut_logs.h"
 #include "helpers/rejected.h"
 #include "helpers/sample_logs.h"
 
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -335,6 +337,42 @@ TEST(Batch, UsesAFlightOnceUnderWhateverName) {
     std::filesystem::remove(folder / "in" / "a.data");
     flights = batch(folder / "in", folder / "out");
     EXPECT_THAT(exclude_copies(flights), testing::UnorderedElementsAre(testing::Pair("a", "b")));
+}
+
+/// What another receiver made of a log: it lost every nth line.
+void lose_lines(const std::filesystem::path& log, std::size_t every) {
+    std::string text;
+    std::size_t number = 0;
+    for (const auto& line : test::lines_of(read_file(log)))
+        if (++number < 3 || number % every != 0) text += line;
+    write_file_atomically(log, text);
+}
+
+TEST(Batch, UsesTheBetterOfTwoRecordingsOfAFlight) {
+    const auto folder = test::scratch_dir();
+    lose_lines(copy_sample(1, folder / "in", "a"), 4);
+    lose_lines(copy_sample(1, folder / "in", "b"), 9);
+    auto flights = batch(folder / "in", folder / "out");
+    EXPECT_THAT(exclude_copies(flights), testing::UnorderedElementsAre(testing::Pair("a", "b")));
+    // What has its definitions is used, however few its lines.
+    std::filesystem::remove(folder / "in" / "b.log");
+    flights = batch(folder / "in", folder / "out");
+    EXPECT_THAT(exclude_copies(flights), testing::UnorderedElementsAre(testing::Pair("b", "a")));
+}
+
+TEST(Batch, WarnsOfTwoRecordingsThatShareLittle) {
+    const auto folder = test::scratch_dir();
+    const auto text = read_file(test::sample(1));
+    for (const auto* name : {"a", "b"}) copy_sample(1, folder / "in", name);
+    const auto first = test::cut_log(text, 480.0);
+    write_file_atomically(folder / "in" / "a.data", first.before);
+    const auto rest = test::cut_log(text, 350.0);
+    write_file_atomically(folder / "in" / "b.data",
+                          text.substr(0, text.find('\n') + 1) + fmt::format("{}", fmt::join(rest.after, "")));
+    auto flights = batch(folder / "in", folder / "out");
+    EXPECT_THAT(exclude_copies(flights), IsEmpty());
+    EXPECT_THAT(flights[0].record.warnings.back() + flights[1].record.warnings.back(),
+                HasSubstr("of one flight both, less than half of either: it counts twice"));
 }
 
 TEST(Batch, KnowsThatFlightsAreOfSeveralAircraft) {

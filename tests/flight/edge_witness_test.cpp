@@ -30,7 +30,7 @@ Track takeoff_at(std::vector<double> time_s) {
 
 std::vector<std::string> verdicts(const FlightSeries& series, const Sortie& sortie) {
     std::vector<std::string> texts;
-    for (const auto& edge : explain_edges(series, sortie)) texts.push_back(edge.verdict);
+    for (const auto& edge : explain_edges(ChosenTracks(series), sortie)) texts.push_back(edge.verdict);
     return texts;
 }
 
@@ -42,7 +42,7 @@ TEST(EdgeWitness, GivesAVerdictOnEveryEdge) {
     series.block_names = {{3, "Take-off"}, {4, "Standby"}, {6, "Land Right"}};
     const auto sortie = sortie_at(100, 130, 702, 760);
     EXPECT_THAT(verdicts(series, sortie), testing::ElementsAre("agrees", "no witness", "agrees", "no witness"));
-    const auto edges = explain_edges(series, sortie);
+    const auto edges = explain_edges(ChosenTracks(series), sortie);
     EXPECT_EQ(edges[0].witnesses.size(), 1u);
     EXPECT_EQ(edges[0].witnesses[0].after_s, -2.0);
     EXPECT_EQ(edges[1].nearby[0].what, "block Take-off -> Standby");
@@ -64,7 +64,7 @@ TEST(EdgeWitness, HasNoneInASeriesWithoutMessagesAndNoEdgeThatTheLogCuts) {
     EXPECT_THAT(verdicts({}, sortie), testing::Each("no witness"));
     sortie.phases.erase(sortie.phases.begin());
     sortie.phases.back().complete = false;
-    const auto edges = explain_edges({}, sortie);
+    const auto edges = explain_edges(ChosenTracks(FlightSeries{}), sortie);
     ASSERT_EQ(edges.size(), 1u);
     EXPECT_EQ(edges[0].kind, EdgeKind::landing_start);
 }
@@ -74,7 +74,7 @@ TEST(EdgeWitness, AgreesWithTakeoffMessagesOfTheRealFlights) {
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
         SCOPED_TRACE(name);
         const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
-        const auto edges = explain_edges(series, segment(series).sorties.at(0));
+        const auto edges = explain_edges(ChosenTracks(series), segment(series).sorties.at(0));
         ASSERT_EQ(edges.size(), 4u);
         ASSERT_EQ(edges[0].witnesses.size(), 1u);
         EXPECT_LT(std::abs(edges[0].witnesses[0].after_s), 3.0);

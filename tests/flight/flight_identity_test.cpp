@@ -1,11 +1,15 @@
 #include "flight/flight_identity.h"
 
 #include "base/atomic_file.h"
+#include "flight/chosen_track.h"
 #include "flight/load_flight.h"
 #include "flight/series_file.h"
 #include "helpers/test_paths.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -21,74 +25,181 @@ FlightSeries sample(int number) {
     return read_flight(test::source_dir() / "logs" / ("opterra_synthetic_0" + std::to_string(number) + ".data"));
 }
 
-/// The series as it was recorded by a clock that began later.
-FlightSeries shifted(FlightSeries series, double by_s) {
+FlightContent content_of_sample(int number) { return content_of(sample(number)); }
+
+/// The series as it was recorded by a clock that began later and runs slower.
+FlightSeries with_clock(FlightSeries series, double later_s, double slower = 0.0) {
     for (auto& track : series.tracks)
-        for (auto& time_s : track.time_s) time_s -= by_s;
+        for (auto& time_s : track.time_s) time_s = time_s * (1.0 - slower) - later_s;
     return series;
+}
+
+/// The series without a random part of its samples.
+FlightSeries with_losses(FlightSeries series, double part, unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::bernoulli_distribution is_lost(part);
+    for (auto& track : series.tracks) {
+        Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
+        for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+            if (is_lost(random)) continue;
+            kept.time_s.push_back(track.time_s[i]);
+            kept.value.push_back(track.value[i]);
+        }
+        track = kept;
+    }
+    return series;
+}
+
+FlightSeries with_decimals(FlightSeries series, int decimals) {
+    for (auto& track : series.tracks)
+        for (auto& value : track.value) value = std::round(value * std::pow(10.0, decimals)) / std::pow(10.0, decimals);
+    return series;
+}
+
+FlightSeries with_jitter(FlightSeries series, double most_s) {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> jitter(-most_s, most_s);
+    for (auto& track : series.tracks)
+        for (auto& time_s : track.time_s) time_s += jitter(random);
+    return series;
+}
+
+FlightSeries without_begin(FlightSeries series, double until_s) {
+    for (auto& track : series.tracks) {
+        const auto first = std::ranges::lower_bound(track.time_s, until_s) - track.time_s.begin();
+        track.time_s.erase(track.time_s.begin(), track.time_s.begin() + first);
+        track.value.erase(track.value.begin(), track.value.begin() + first);
+    }
+    return series;
+}
+
+bool is_same(const FlightSeries& one, const FlightSeries& other) {
+    const auto there = likeness_of(content_of(one), content_of(other)).is_same;
+    EXPECT_EQ(likeness_of(content_of(other), content_of(one)).is_same, there);
+    return there;
+}
+
+/// The sample logs and real flights, each once.
+std::vector<FlightSeries> different_flights() {
+    std::vector<FlightSeries> flights;
+    for (int number = 1; number <= 6; ++number) flights.push_back(sample(number));
+    if (test::shared_dir().empty()) return flights;
+    for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"})
+        flights.push_back(read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data")));
+    return flights;
 }
 
 TEST(FlightIdentity, IsThatOfTheSamples) {
     const auto series = sample(1);
-    const auto content = content_of(series);
-    EXPECT_GT(content.stretches, 1000U);
-    EXPECT_TRUE(is_same_flight(content, content_of(shifted(series, 84.264))));
-    EXPECT_TRUE(is_same_flight(content, content_of(parse_series_csv(to_csv(series), "other.csv"))));
+    EXPECT_TRUE(is_same(series, with_clock(series, 84.264)));
+    EXPECT_TRUE(is_same(series, parse_series_csv(to_csv(series), "other.csv")));
     for (const double until_s : {100.0, 150.0, 400.0, 750.0}) {
-        const auto cut = content_of(cut_series(series, until_s));
-        EXPECT_TRUE(is_same_flight(content, cut)) << until_s;
-        EXPECT_TRUE(is_same_flight(cut, content)) << until_s;
+        EXPECT_TRUE(is_same(series, cut_series(series, until_s))) << until_s;
     }
     auto more = series;
     for (auto& track : more.tracks) {
         track.time_s.push_back(track.time_s.back() + 1.0);
         track.value.push_back(17.0);
     }
-    EXPECT_TRUE(is_same_flight(content, content_of(more)));
+    EXPECT_TRUE(is_same(series, more));
+}
+
+TEST(FlightIdentity, OutlivesLossesRoundingAndAnotherClock) {
+    auto flights = different_flights();
+    flights.erase(flights.begin() + 1, flights.begin() + 6);
+    for (const auto& series : flights) {
+        SCOPED_TRACE(series.flight);
+        for (const double part : {0.03, 0.1, 0.3, 0.6}) {
+            EXPECT_TRUE(is_same(series, with_losses(series, part, 1))) << part;
+            EXPECT_TRUE(is_same(with_losses(series, part, 1), with_losses(series, part, 2))) << part;
+        }
+        EXPECT_TRUE(is_same(with_clock(series, 5000.0, 5e-4), series));
+        EXPECT_TRUE(is_same(with_jitter(series, 0.05), series));
+        for (const int decimals : {1, 2, 3}) {
+            EXPECT_TRUE(is_same(with_decimals(series, decimals), series)) << decimals;
+            EXPECT_TRUE(is_same(with_decimals(with_losses(series, 0.3, 1), decimals),
+                                with_clock(with_losses(series, 0.3, 2), 1e6, 5e-4)))
+                << decimals;
+        }
+    }
 }
 
 TEST(FlightIdentity, IsAnotherOfEveryOtherFlight) {
-    std::vector<FlightContent> contents;
-    for (int number = 1; number <= 6; ++number) contents.push_back(content_of(sample(number)));
-    if (!test::shared_dir().empty()) {
-        for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
-            contents.push_back(content_of(read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"))));
-        }
+    for (const int decimals : {0, 1, 2, 15}) {
+        std::vector<FlightContent> contents;
+        for (const auto& flight : different_flights()) contents.push_back(content_of(with_decimals(flight, decimals)));
+        for (std::size_t i = 0; i < contents.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                EXPECT_FALSE(likeness_of(contents[i], contents[j]).is_same) << i << " " << j << " " << decimals;
     }
-    for (std::size_t i = 0; i < contents.size(); ++i)
-        for (std::size_t j = 0; j < contents.size(); ++j)
-            EXPECT_EQ(is_same_flight(contents[i], contents[j]), i == j) << i << " " << j;
+}
+
+/// Sensors without noise, and the same power at the same time: the plan, not the flight.
+TEST(FlightIdentity, IsNotThatOfAnotherWithTheSamePower) {
+    const auto series = sample(1);
+    auto other = sample(2);
+    for (const auto* name : {"power_w", "current_a", "voltage_v"}) replace_track(other, chosen_track(series, name));
+    EXPECT_FALSE(is_same(series, other));
+}
+
+TEST(FlightIdentity, OfLessThanHalfIsNotThatOfTheFlight) {
+    const auto series = sample(1);
+    const auto first = content_of(cut_series(series, 450.0));
+    const auto rest = content_of(without_begin(series, 350.0));
+    const auto likeness = likeness_of(first, rest);
+    EXPECT_FALSE(likeness.is_same);
+    EXPECT_NEAR(likeness.shared_s, 100.0, 40.0);
+    EXPECT_TRUE(likeness_of(first, content_of(without_begin(series, 150.0))).is_same);
+    EXPECT_EQ(likeness_of(first, content_of(without_begin(series, 460.0))).shared_s, 0.0);
 }
 
 TEST(FlightIdentity, IsFoundAmongMany) {
     KnownFlights known;
-    for (int number = 1; number <= 5; ++number) known.add(content_of(sample(number)));
-    EXPECT_EQ(known.find(content_of(cut_series(sample(3), 400.0))), 2U);
-    EXPECT_EQ(known.find(content_of(sample(6))), std::nullopt);
-    EXPECT_EQ(known.find({}), std::nullopt);
+    for (int number = 1; number <= 5; ++number) known.add(content_of_sample(number));
+    const auto found = known.find(content_of(cut_series(sample(3), 400.0)));
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].number, 2U);
+    EXPECT_TRUE(found[0].likeness.is_same);
+    EXPECT_TRUE(known.find(content_of_sample(6)).empty());
+    EXPECT_TRUE(known.find({}).empty());
+}
+
+TEST(FlightIdentity, PrefersTheCopyWithDefinitionsAndSamples) {
+    const FlightContent without{{}, 2, false, 900, 1};
+    const FlightContent with{{}, 2, true, 500, 1};
+    const FlightContent with_more{{}, 2, true, 600, 1};
+    EXPECT_TRUE(is_better_copy(with, without));
+    EXPECT_TRUE(is_better_copy(with_more, with));
+    EXPECT_FALSE(is_better_copy(with, with));
+    EXPECT_FALSE(is_better_copy(without, with));
+    EXPECT_EQ(content_of_sample(1).samples, power_track(sample(1)).time_s.size());
 }
 
 TEST(FlightIdentity, OfWhatDoesNotVaryIsUnknown) {
     FlightSeries series;
     Track altitude{.name = "altitude_m"};
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         altitude.time_s.push_back(i);
         altitude.value.push_back(i % 5);
     }
     series.tracks = {altitude};
-    EXPECT_EQ(content_of(series).stretches, 0U);
-    EXPECT_FALSE(is_same_flight(content_of(series), content_of(series)));
+    for (const auto& marks : content_of(series).marks) EXPECT_TRUE(marks.empty());
+    EXPECT_FALSE(is_same(series, series));
 }
 
 TEST(FlightIdentity, OfALogThatWasRecordedTwice) {
     const auto folder = test::shared_dir() / "archives" / "no-power";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/archives is not here";
-    std::vector<FlightContent> contents;
-    for (const auto* name : {"12_05_21__07_04_51.data", "12_05_21__07_06_15.data", "12_05_17__07_18_57.data"}) {
-        contents.push_back(content_of(read_candidates(FlightFile(folder / name), "1").front()));
+    std::vector<FlightSeries> flights;
+    for (const auto* name :
+         {"12_05_21__07_04_51.data", "12_05_21__07_06_15.data", "12_05_17__07_18_57.data", "12_05_16__07_20_45.data"}) {
+        flights.push_back(read_candidates(FlightFile(folder / name), "1").front());
     }
-    EXPECT_TRUE(is_same_flight(contents[0], contents[1]));
-    EXPECT_FALSE(is_same_flight(contents[0], contents[2]));
+    EXPECT_TRUE(is_same(flights[0], flights[1]));
+    EXPECT_TRUE(is_same(with_losses(flights[0], 0.5, 1), with_losses(flights[1], 0.5, 2)));
+    EXPECT_FALSE(is_same(flights[0], flights[2]));
+    EXPECT_FALSE(is_same(flights[3], flights[2]));
+    EXPECT_FALSE(is_same(flights[3], flights[0]));
 }
 
 TEST(Aircraft, AreOneUnlessIdNameOrTheirBeingRealTellsThemApart) {

@@ -29,6 +29,12 @@ TEST(PhysicalBounds, LeaveOutFewSamplesAndBelieveNothingOfATrackOfMany) {
     EXPECT_EQ(within_bounds(altitude({1.0, 2.0})), altitude({1.0, 2.0}));
 }
 
+TEST(PhysicalBounds, AreTheSameForAltitudeAndThrottleEverywhere) {
+    EXPECT_EQ(physical_bounds("altitude_m")->low, -500.0);
+    EXPECT_EQ(physical_bounds("altitude_m")->high, 20e3);
+    EXPECT_EQ(physical_bounds("throttle_percent")->high, 105.0);
+}
+
 TEST(PhysicalBounds, AreKeptByTheChosenTrack) {
     FlightSeries series;
     std::vector<double> heights;

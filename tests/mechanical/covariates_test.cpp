@@ -1,5 +1,6 @@
 #include "mechanical/covariates.h"
 
+#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
 #include "helpers/sample_columns.h"
 
@@ -23,7 +24,8 @@ TEST(CovariatesOf, TakesWhatWasKnownBeforeTheCruiseAndEarlyInIt) {
     sortie.phases[0].start.time_s = 100.0;
     sortie.phases[1].phase = flight::Phase::cruise;
     sortie.phases[1].start.time_s = 130.0;
-    const auto covariates = covariates_of(test::series_of(series), sortie);
+    const auto flown = test::series_of(series);
+    const auto covariates = covariates_of(flight::ChosenTracks(flown), sortie);
     EXPECT_EQ(covariates[Covariate::height], 85.0);
     EXPECT_EQ(covariates[Covariate::initial_voltage], 12.5);
     EXPECT_EQ(covariates[Covariate::wind], 3.0);

@@ -33,6 +33,69 @@ void refuse_unknown(const std::set<std::string>& names, const std::string& optio
     }
 }
 
+/// The flights of one result, each once.
+class UsedFlights {
+  public:
+    explicit UsedFlights(const StageCall& call) : call_(call) {}
+
+    /// Whether it is to be read: false for a copy of one that is as good.
+    bool take(const flight::LoadedFlight& loaded) {
+        const auto& series = loaded.series;
+        auto content = content_of(series);
+        auto alike = known_.find(content);
+        std::erase_if(alike, [&](const auto& like) { return !is_used_[places_[like.number]]; });
+        const auto name_of = [&](const auto& like) { return flown_[places_[like.number]].flight; };
+        for (const auto& like : alike) {
+            if (!like.likeness.is_same || is_better_copy(content, known_[like.number])) continue;
+            exclude(series.flight, name_of(like));
+            return false;
+        }
+        flown_.push_back({series.flight, series.aircraft_id, series.aircraft_name});
+        is_used_.push_back(true);
+        is_sound_.push_back(loaded.exclusion.empty());
+        if (!loaded.exclusion.empty()) return true;
+        for (const auto& like : alike) {
+            if (like.likeness.is_same) {
+                is_used_[places_[like.number]] = false;
+                exclude(name_of(like), series.flight);
+            } else {
+                warn(call_, flight::describe_overlap(name_of(like), series.flight, like.likeness));
+            }
+        }
+        places_.push_back(flown_.size() - 1);
+        known_.add(std::move(content));
+        return true;
+    }
+
+    /// The numbers of those that count, among those to be read.
+    std::vector<std::size_t> counting() const {
+        std::vector<std::size_t> numbers;
+        for (std::size_t i = 0; i < flown_.size(); ++i)
+            if (is_used_[i]) numbers.push_back(i);
+        return numbers;
+    }
+
+    /// Those whose power is sound.
+    std::vector<flight::FlownBy> flown() const {
+        std::vector<flight::FlownBy> flown;
+        for (const auto i : counting())
+            if (is_sound_[i]) flown.push_back(flown_[i]);
+        return flown;
+    }
+
+  private:
+    void exclude(const std::string& flight, const std::string& other) const {
+        warn(call_, fmt::format("{} is excluded: it is the same flight as {}, which is used", flight, other));
+    }
+
+    const StageCall& call_;
+    flight::KnownFlights known_;
+    std::vector<std::size_t> places_;  ///< of the known ones in what follows
+    std::vector<flight::FlownBy> flown_;
+    std::vector<bool> is_used_;
+    std::vector<bool> is_sound_;
+};
+
 }  // namespace
 
 void add_flight_options(po::options_description& options) {
@@ -103,11 +166,10 @@ void add_mix_option(po::options_description& options) {
                           "use flights of several aircraft as if they were of one, also synthetic ones");
 }
 
-void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
-                     const std::function<void(const std::string&, flight::LoadedFlight&)>& use) {
+std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::LoadOptions& options,
+                                         const std::function<void(const std::string&, flight::LoadedFlight&)>& read) {
     std::vector<std::string> flights;
-    std::vector<flight::FlownBy> used;
-    flight::KnownFlights known;
+    UsedFlights used(call);
     for (const auto& file : call.inputs) {
         auto loaded = flight::load_flight(std::filesystem::path(file), options);
         const auto name = loaded.series.flight;
@@ -116,24 +178,15 @@ void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
         }
         flights.push_back(name);
         warn_of(call, file, loaded);
-        auto content = content_of(loaded.series);
-        if (const auto same = known.find(content)) {
-            const auto& other = used[*same].flight;
-            warn(call, fmt::format("{} is excluded: it is the same flight as {}, which is used", name, other));
-            continue;
-        }
-        if (loaded.exclusion.empty()) {
-            known.add(std::move(content));
-            used.push_back({name, loaded.series.aircraft_id, loaded.series.aircraft_name});
-        }
-        use(file, loaded);
+        if (used.take(loaded)) read(file, loaded);
     }
     refuse_unknown_flights(options, flights);
-    if (call.has("mix-aircraft")) return;
-    if (const auto mix = describe_mix(used); !mix.empty()) {
+    if (call.has("mix-aircraft")) return used.counting();
+    if (const auto mix = describe_mix(used.flown()); !mix.empty()) {
         throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),
                          "use one aircraft's alone, or all as if they were of one with --mix-aircraft");
     }
+    return used.counting();
 }
 
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights) {

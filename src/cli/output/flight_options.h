@@ -3,8 +3,12 @@
 #include "cli/stage.h"
 #include "flight/load_flight.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <functional>
+#include <iterator>
 #include <string>
+#include <vector>
 
 namespace flightwatt::cli {
 
@@ -24,12 +28,25 @@ flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
 /// --mix-aircraft, of every stage that makes one result of several flights.
 void add_mix_option(boost::program_options::options_description& options);
 
-/// Loads the flights of all inputs, one at a time, to make one result of them. A flight that is there under two names is
-/// used once, by the first one, with a warning: it would be counted twice, and predict itself. Throws UsageError for two
-/// of one name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those
-/// of several aircraft, or synthetic ones beside real ones, unless --mix-aircraft is given.
-void for_each_flight(const StageCall& call, const flight::LoadOptions& options,
-                     const std::function<void(const std::string& file, flight::LoadedFlight& flight)>& use);
+/// Loads the flights of all inputs, one at a time, to make one result of them; returns which of the calls of `read`
+/// count. A flight that is there under two names counts once, with a warning: it would be counted twice, and predict
+/// itself. The one with its .log counts, then the one with more samples, then the first. Throws UsageError for two of one
+/// name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those of
+/// several aircraft, or synthetic ones beside real ones, unless --mix-aircraft is given.
+std::vector<std::size_t> for_each_flight(
+    const StageCall& call, const flight::LoadOptions& options,
+    const std::function<void(const std::string& file, flight::LoadedFlight& flight)>& read);
+
+/// What `read` makes of each flight that counts, a vector of T each, in one.
+template <typename T, typename Read>
+std::vector<T> from_flights(const StageCall& call, const flight::LoadOptions& options, const Read& read) {
+    std::vector<std::vector<T>> of_each;
+    const auto counting = for_each_flight(
+        call, options, [&](const std::string& file, auto& flight) { of_each.push_back(read(file, flight)); });
+    std::vector<T> all;
+    for (const auto number : counting) std::ranges::move(of_each[number], std::back_inserter(all));
+    return all;
+}
 
 /// Throws UsageError for --exclude and --keep of a flight that is none of `flights`.
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights);

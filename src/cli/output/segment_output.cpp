@@ -23,10 +23,9 @@ Json to_json(const flight::PhaseEdge& edge) {
             {"takeoff_message_after_s", optional_json(edge.takeoff_after_s)}};
 }
 
-Json to_json(const flight::FlightSeries& series, const flight::PhaseSpan& span) {
-    const auto statistics = phase_statistics(series, span.start.time_s, span.end.time_s);
-    const bool has_power = !power_track(series).empty();
-    const auto known = [&](auto value) { return has_power ? Json(value) : Json(); };
+Json to_json(const flight::PowerStatistics& power, const flight::PhaseSpan& span) {
+    const auto statistics = power.between(span.start.time_s, span.end.time_s);
+    const auto known = [&](auto value) { return power.has_power() ? Json(value) : Json(); };
     return {{"phase", to_string(span.phase)},
             {"start_s", span.start.time_s},
             {"end_s", span.end.time_s},
@@ -54,11 +53,11 @@ Json to_json(const flight::ExplainedEdge& explained) {
             {"nearby", events_json(explained.nearby)},    {"verdict", explained.verdict}};
 }
 
-Json to_json(const flight::FlightSeries& series, const flight::Sortie& sortie) {
+Json to_json(const flight::ChosenTracks& tracks, const flight::PowerStatistics& power, const flight::Sortie& sortie) {
     Json phases = Json::array();
-    for (const auto& span : sortie.phases) phases.push_back(to_json(series, span));
+    for (const auto& span : sortie.phases) phases.push_back(to_json(power, span));
     Json edges = Json::array();
-    for (const auto& edge : explain_edges(series, sortie)) edges.push_back(to_json(edge));
+    for (const auto& edge : explain_edges(tracks, sortie)) edges.push_back(to_json(edge));
     Json held = Json::array();
     for (const auto& hold : sortie.held) {
         held.push_back({{"height_m", hold.height_m},
@@ -143,8 +142,9 @@ std::string witness_text(const flight::ExplainedEdge& edge) {
 TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
     TextTable table{
         {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "verdict", "witnesses"}, {}};
+    const flight::ChosenTracks tracks(series);
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
-        for (const auto& explained : explain_edges(series, phases.sorties[s])) {
+        for (const auto& explained : explain_edges(tracks, phases.sorties[s])) {
             const auto& edge = explained.edge;
             table.rows.push_back({fmt::format("{}", s + 1), std::string(to_string(explained.kind)),
                                   fixed(edge.time_s, 1), fixed(edge.altitude_m, 1), fixed(explained.height_percent, 1),
@@ -169,7 +169,9 @@ std::string explanation(const flight::FlightSeries& series, const flight::Flight
 Json to_json(const flight::FlightSeries& series, const flight::FlightPhases& phases, const flight::PowerReport& power,
              const std::vector<std::string>& warnings) {
     Json sorties = Json::array();
-    for (const auto& sortie : phases.sorties) sorties.push_back(to_json(series, sortie));
+    const flight::ChosenTracks tracks(series);
+    const flight::PowerStatistics statistics(series);
+    for (const auto& sortie : phases.sorties) sorties.push_back(to_json(tracks, statistics, sortie));
     Json others = Json::array();
     for (const auto& other : phases.ground_events) {
         others.push_back({{"start_s", other.start_s}, {"end_s", other.end_s}, {"what", other.what}});

@@ -25,11 +25,11 @@ void take_out_spikes(std::vector<double>& values) {
     }
 }
 
-template <typename Keep>
-std::size_t keep_samples(Track& track, Keep&& keep) {
+/// Leaves out the samples that are marked. Returns how many.
+std::size_t leave_out(Track& track, const std::vector<bool>& out) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < track.time_s.size(); ++i) {
-        if (!keep(i)) continue;
+        if (out[i]) continue;
         track.time_s[kept] = track.time_s[i];
         track.value[kept++] = track.value[i];
     }
@@ -63,11 +63,6 @@ std::vector<std::size_t> jumps_of(const Track& track) {
         if (without_fix || is_beyond(track, i, i + 1, jump_m, jump_m_per_s)) jumps.push_back(i + 1);
     }
     return jumps;
-}
-
-/// Leaves out the samples that are marked, which `out` says.
-std::size_t leave_out(Track& track, const std::vector<bool>& out) {
-    return keep_samples(track, [&](std::size_t i) { return !out[i]; });
 }
 
 void mark(std::vector<bool>& out, std::size_t begin, std::size_t end) {
@@ -141,9 +136,6 @@ AltitudeRecord clean_altitude(Track altitude) {
     const auto [low, high] = std::minmax_element(altitude.value.begin(), altitude.value.end());
     const double lowest_m = all > 0 ? *low : 0.0;
     const double highest_m = all > 0 ? *high : 0.0;
-    const auto beyond = keep_samples(altitude, [&](std::size_t i) {
-        return altitude.value[i] >= lowest_altitude_m && altitude.value[i] <= highest_altitude_m;
-    });
     take_out_spikes(altitude.value);
     const auto before = jumps_of(altitude);
     const double first_jump_s = before.empty() ? 0.0 : altitude.time_s[before.front()];
@@ -161,16 +153,12 @@ AltitudeRecord clean_altitude(Track altitude) {
     record.altitude = std::move(altitude);
     const auto& left = record.altitude;
     for (const auto i : jumps) record.jumps_s.push_back(left.time_s[i]);
-    const bool runs_away = 2 * (beyond + left_out) > all || left.time_s.size() < 2 || jumps_too_far(left);
+    const bool runs_away = 2 * left_out > all || left.time_s.size() < 2 || jumps_too_far(left);
     if (runs_away || lasting > most_jumps) {
         record.unusable = fmt::format(
             "its altitude runs from {:.6g} to {:.6g} m{}: an estimator that ran away, or another "
             "unit than m",
             lowest_m, highest_m, lasting > 0 ? fmt::format(" with {} jumps", lasting) : "");
-    }
-    if (beyond > 0) {
-        record.warnings.push_back(fmt::format("{} of {} altitudes were left out: they are beyond {:.0f} to {:.0f} m",
-                                              beyond, all, lowest_altitude_m, highest_altitude_m));
     }
     if (left_out > 0) {
         record.warnings.push_back(

@@ -7,9 +7,6 @@
 
 namespace flightwatt::flight {
 
-/// No land lies lower, and no small electric aircraft has flown higher [m].
-inline constexpr double lowest_altitude_m = -500.0;
-inline constexpr double highest_altitude_m = 20000.0;
 /// From one sample to the next an altitude changes by no more than this, or it has jumped: 60 m/s is more than a small
 /// aircraft climbs or dives, and an estimator may correct itself by 10 m.
 inline constexpr double jump_m = 10.0;
@@ -24,7 +21,7 @@ inline constexpr double fix_loss_s = 120.0;
 /// With more jumps than this nothing can be concluded from an altitude.
 inline constexpr std::size_t most_jumps = 10;
 
-/// The altitude that phases are found by: without single spikes, values that no altitude has, and excursions.
+/// The altitude that phases are found by: without single spikes and excursions.
 struct AltitudeRecord {
     Track altitude;
     std::vector<double> jumps_s;        ///< the first times after jumps: from there on its ground is another one

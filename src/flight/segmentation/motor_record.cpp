@@ -45,29 +45,13 @@ std::optional<PowerLevels> power_levels(const Track& power, const Track& altitud
     return apart ? std::optional(levels) : std::nullopt;
 }
 
-/// The throttle on the clock of the power samples, on which it is asked for everywhere, or on its own. Values that
-/// are none are left out; of a throttle that is mostly made of such, nothing is left.
-Track usable_throttle(const FlightSeries& series, const Track& power, std::vector<std::string>& warnings) {
+/// The throttle on the clock of the power samples, on which it is asked for everywhere, or on its own.
+Track throttle_of(const FlightSeries& series, const Track& power) {
     auto throttle = chosen_track(series, "throttle_percent");
-    const auto all = throttle.time_s.size();
-    const auto is_none = [](double percent) { return percent < -5.0 || percent > 105.0; };
-    Track kept{.name = throttle.name, .source = throttle.source};
-    for (std::size_t i = 0; i < all; ++i) {
-        if (is_none(throttle.value[i])) continue;
-        kept.time_s.push_back(throttle.time_s[i]);
-        kept.value.push_back(throttle.value[i]);
-    }
-    const auto left_out = all - kept.time_s.size();
-    if (left_out > 0) {
-        const bool useless = 2 * left_out > all;
-        warnings.push_back(fmt::format("{} of {} throttles are not between 0 and 100 %: {} left out", left_out, all,
-                                       useless ? "the throttle is" : "they were"));
-        if (useless) return {};
-    }
-    if (kept.empty() || power.empty()) return kept;
-    kept.value = resample(kept, power.time_s);
-    kept.time_s = power.time_s;
-    return kept;
+    if (throttle.empty() || power.empty()) return throttle;
+    throttle.value = resample(throttle, power.time_s);
+    throttle.time_s = power.time_s;
+    return throttle;
 }
 
 /// A throttle that opens for less than ten seconds while the power stays at its idle: 0 again. Returns how many.
@@ -93,7 +77,7 @@ std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLe
 MotorRecord motor_record(const FlightSeries& series, const Track& altitude_m) {
     MotorRecord record;
     const auto power = power_track(series);
-    auto throttle = usable_throttle(series, power, record.warnings);
+    auto throttle = throttle_of(series, power);
     const auto levels = altitude_m.empty() ? std::nullopt : power_levels(power, altitude_m);
     const bool stands_still = is_constant(throttle);  // as that of a log which has none
     if (!throttle.empty() && !(stands_still && levels)) {

@@ -1,8 +1,9 @@
 #include "flight/segmentation/no_flight.h"
 
 #include "base/statistics.h"
+#include "base/units.h"
 #include "flight/chosen_track.h"
-#include "flight/segmentation/altitude_record.h"
+#include "flight/physical_bounds.h"
 #include "flight/series_file.h"
 
 #include <algorithm>
@@ -57,11 +58,11 @@ double spread_of(std::vector<double> values) {
 
 /// The values of a track within a time, as far as they are altitudes.
 std::vector<double> altitudes_within(const Track& track, double start_s, double end_s) {
+    const auto bounds = physical_bounds("altitude_m").value();
     std::vector<double> values;
-    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
-        const double value = track.value[i];
-        const bool is_altitude = value >= lowest_altitude_m && value <= highest_altitude_m;
-        if (track.time_s[i] >= start_s && track.time_s[i] <= end_s && is_altitude) values.push_back(value);
+    const auto first = std::ranges::lower_bound(track.time_s, start_s) - track.time_s.begin();
+    for (auto i = static_cast<std::size_t>(first); i < track.time_s.size() && track.time_s[i] <= end_s; ++i) {
+        if (track.value[i] >= bounds.low && track.value[i] <= bounds.high) values.push_back(track.value[i]);
     }
     return values;
 }
@@ -76,16 +77,16 @@ bool is_alive(const std::vector<double>& values) {
 
 /// A GPS that says that nothing moved, where no other altitude of the log does: "ESTIMATOR.z moves by 40 m, GPS.alt by
 /// 2.0 m"; empty if there is none.
-std::string contradiction(const FlightSeries& series, const FlightGrid& grid, const Activity& activity,
+std::string contradiction(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
                           const SegmentationOptions& options) {
     const double start_s = grid.time_s(activity.moving.begin);
     const double end_s = grid.time_s(activity.moving.end - 1);
-    const auto chosen = chosen_track(series, "altitude_m");
+    const auto& chosen = tracks["altitude_m"];
     const auto own = altitudes_within(chosen, start_s, end_s);
     const double own_m = own.empty() ? 0.0 : spread_of(own);
     if (own_m < options.flight_height_m) return "";
     std::string contradicts;
-    for (const auto& track : series.tracks) {
+    for (const auto& track : tracks.series().tracks) {
         if (track.name != "altitude_m" || track.source == chosen.source) continue;
         const auto other = altitudes_within(track, start_s, end_s);
         const double other_m = other.empty() ? 0.0 : spread_of(other);
@@ -101,11 +102,11 @@ std::string contradiction(const FlightSeries& series, const FlightGrid& grid, co
 }
 
 /// Whether an activity that shows no ground, and no climb, is as slow as what drives.
-std::string why_only_driven(const FlightSeries& series, const FlightGrid& grid, const Activity& activity,
+std::string why_only_driven(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
                             const SegmentationOptions& options) {
     if (activity.ground_before_m || activity.ground_after_m || grid.ground_speed_m_per_s.empty()) return "";
     // A rotorcraft hovers, its altitude is that above the ground; and who writes a CSV knows what it is of.
-    const auto source = chosen_track(series, "altitude_m").source;
+    const auto& source = tracks["altitude_m"].source;
     if (source.starts_with("ROTORCRAFT_FP") || source == plain_source) return "";
     const auto part = [&](const std::vector<double>& all) {
         const auto [begin, end] = activity.moving;
@@ -122,6 +123,52 @@ std::string why_only_driven(const FlightSeries& series, const FlightGrid& grid, 
         "altitude moves by no more than {:.1f} m and the ground is not seen, at {:.1f} m/s over ground: "
         "driven or carried",
         moved_m, speed);
+}
+
+/// Whether what only an altitude shows is as short, low or slow as an estimator that settles.
+std::string why_only_settling(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
+                              const Heights& heights, const SegmentationOptions& options) {
+    if (grid.motor_sign != MotorSign::unknown) return "";
+    const auto first = grid.ground_speed_m_per_s.begin() + static_cast<std::ptrdiff_t>(activity.span.begin);
+    std::vector<double> speeds;
+    std::size_t high = 0;
+    for (std::size_t i = 0; i < heights.height_m.size(); ++i) {
+        if (heights.height_m[i] <= 0.5 * heights.highest_m) continue;
+        ++high;
+        if (!grid.ground_speed_m_per_s.empty()) speeds.push_back(first[static_cast<std::ptrdiff_t>(i)]);
+    }
+    const auto seen = fmt::format("altitude alone shows a height of {:.0f} m", heights.highest_m);
+    const double high_s = static_cast<double>(high) * grid.step_s;
+    if (high_s < least_high_s) return fmt::format("{}, for {:.0f} s: an estimator that settles", seen, high_s);
+    if (speeds.empty())
+        return heights.highest_m < least_heights * options.flight_height_m ? seen + ": an estimator that settles" : "";
+    std::ranges::sort(speeds);
+    const double speed = quantile(speeds, 0.9);
+    if (tracks["altitude_m"].source.starts_with("ROTORCRAFT_FP") || speed >= slowest_flight_m_per_s) return "";
+    return fmt::format("{}, at {:.1f} m/s over ground: an estimator that settles", seen, speed);
+}
+
+/// Whether an activity from ground to ground, faster than what is carried, goes up and down as roads do.
+std::string why_on_a_road(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity) {
+    if (!activity.ground_before_m || !activity.ground_after_m || grid.ground_speed_m_per_s.empty()) return "";
+    constexpr double often_s = 5.0;  // of what is seen more seldom no slope is known
+    const double start_s = grid.time_s(activity.span.begin);
+    const double end_s = grid.time_s(activity.span.end - 1);
+    const auto seen = altitudes_within(tracks["altitude_m"], start_s, end_s).size();
+    if (static_cast<double>(seen) * often_s < end_s - start_s) return "";
+    std::vector<double> way_m{0.0};
+    for (auto i = activity.span.begin; i < activity.span.end; ++i)
+        way_m.push_back(way_m.back() + grid.ground_speed_m_per_s[i] * grid.step_s);
+    for (const double over_s : {5.0, 10.0, 30.0}) {
+        const auto steps = grid.steps(over_s);
+        for (auto i = activity.span.begin; i + steps < activity.span.end; ++i) {
+            const auto k = i - activity.span.begin;
+            const double climbed_m = std::abs(grid.altitude_m[i + steps] - grid.altitude_m[i]);
+            if (climbed_m > road_slope * (way_m[k + steps] - way_m[k]) + road_slack_m) return "";
+        }
+    }
+    return fmt::format("altitude never moves by more than {:.0f} % of the way, from ground to ground: driven",
+                       units::percent_of(road_slope, 1.0));
 }
 
 /// How many times as much `b` moves as `a` (as long), where one of them moves; std::nullopt where they hardly do, or have
@@ -161,7 +208,7 @@ std::vector<double> changes_seen(const FlightGrid& grid, double window_s) {
 std::vector<double> changes_said(const FlightGrid& grid, const Track& track, double window_s) {
     std::vector<double> changes_m;
     const auto steps = grid.steps(window_s);
-    const double most_m = highest_altitude_m;
+    const double most_m = physical_bounds("altitude_m").value().high;
     for (const auto& piece : grid.pieces) {
         for (auto i = piece.begin; i + steps < piece.end; i += steps) {
             double change_m = 0.0;
@@ -191,7 +238,7 @@ std::string why_ground_vehicle(const FlightSeries& series) {
     return "";
 }
 
-std::string why_no_flight(const FlightSeries& series, const FlightGrid& grid, const Activity& activity,
+std::string why_no_flight(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
                           const Heights& heights, const SegmentationOptions& options) {
     const double motor_percent = highest_motor_percent(grid, activity.span);
     if (heights.highest_m < options.flight_height_m) return low_text(grid, motor_percent, heights.highest_m, options);
@@ -208,8 +255,10 @@ std::string why_no_flight(const FlightSeries& series, const FlightGrid& grid, co
                 fastest, over_s);
         }
     }
-    if (auto why = contradiction(series, grid, activity, options); !why.empty()) return why;
-    return why_only_driven(series, grid, activity, options);
+    if (auto why = contradiction(tracks, grid, activity, options); !why.empty()) return why;
+    if (auto why = why_only_settling(tracks, grid, activity, heights, options); !why.empty()) return why;
+    if (auto why = why_on_a_road(tracks, grid, activity); !why.empty()) return why;
+    return why_only_driven(tracks, grid, activity, options);
 }
 
 std::string unit_doubt(const FlightSeries& series, const FlightGrid& grid) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
 #include "flight/segmentation/activity.h"
@@ -18,12 +19,19 @@ inline constexpr double contradicting_part = 0.25;
 inline constexpr double confirming_part = 0.5;
 /// Without ground in sight and at one height, what never gets faster than this is no fixed wing [m/s].
 inline constexpr double slowest_flight_m_per_s = 5.0;
+/// What altitude alone shows to be flown, with nothing that tells of the motor, stays above half of its height for so
+/// long [s], and (where no speed is known either) rises to so many times the least height of a flight.
+inline constexpr double least_high_s = 15.0;
+inline constexpr double least_heights = 2.0;
+/// From ground to ground no aircraft stays below this slope (and so many metres that its altitude may be off).
+inline constexpr double road_slope = 0.03;
+inline constexpr double road_slack_m = 2.0;
 
 /// Why the vehicle is none that flies; empty if that is not said: "a ground vehicle: it sends ROVER_STATUS".
 std::string why_ground_vehicle(const FlightSeries& series);
 
 /// Why an activity is no flight; empty if it is one.
-std::string why_no_flight(const FlightSeries& series, const FlightGrid& grid, const Activity& activity,
+std::string why_no_flight(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
                           const Heights& heights, const SegmentationOptions& options);
 
 /// Whether the altitude moves, all in all, much more or less than the climb rate or another altitude of the log says:

@@ -102,7 +102,7 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
     flown.energy_wh = integrated_energy_wh(known, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
     flown.airspeed_cubed_m3_per_s3 =
         mean_cubed_airspeed_m3_per_s3(chosen_track(known, "airspeed_m_per_s"), flown.cruise_start_s, until_s);
-    flown.covariates = covariates_of(known, *sortie);
+    flown.covariates = covariates_of(flight::ChosenTracks(known), *sortie);
     return flown;
 }
 

@@ -158,11 +158,12 @@ VegaJson power_layer(const FigureData& data) {
 
 std::string description_of(const ReportFlight& flight) {
     std::string text = fmt::format("Altitude, throttle and power of flight {} over time.", flight.name);
+    const flight::PowerStatistics power(flight.series);
     std::size_t number = 0;
     for (const auto& sortie : flight.phases.sorties) {
         ++number;
         for (const auto& span : sortie.phases) {
-            const auto statistics = phase_statistics(flight.series, span.start.time_s, span.end.time_s);
+            const auto statistics = power.between(span.start.time_s, span.end.time_s);
             text += fmt::format(" Sortie {}, {}: {:.0f} s from {:.1f} s on, {:.1f} W on average.", number,
                                 phase_word(span.phase), span.duration_s(), span.start.time_s, statistics.mean_power_w);
         }

@@ -57,6 +57,23 @@ class FlightOptions : public testing::Test {
     std::filesystem::path folder_ = test::scratch_dir();
 };
 
+/// The copy that is used need not be the first.
+TEST_F(FlightOptions, UseTheRecordingOfAFlightThatHasItsLog) {
+    const auto log = test::source_dir() / "logs" / "opterra_synthetic_01.data";
+    std::string text;
+    std::size_t number = 0;
+    for (const auto& line : test::lines_of(telemetry::DataFile(log).text()))
+        if (++number < 3 || number % 3 != 0) text += line;
+    write_file_atomically(folder_ / "first.data", text);
+    for (const std::string stage : {"fit --order 1", "validate --order 1", "battery"}) {
+        const auto once = run(stage + sample(1) + sample(2) + sample(3));
+        const auto twice = run(stage + " first.data" + sample(1) + sample(2) + sample(3));
+        EXPECT_EQ(twice.code, 0) << twice.err;
+        EXPECT_THAT(twice.err, HasSubstr("warning: first is excluded: it is the same flight as opterra_synthetic_01"));
+        EXPECT_EQ(twice.out, once.out) << stage;
+    }
+}
+
 TEST_F(FlightOptions, OfSegmentationReachEveryStage) {
     const std::vector<std::string> options{"--cruise-fraction 0.7", "--ground-fraction 0.1", "--hold 3"};
     for (const auto& option : options) {

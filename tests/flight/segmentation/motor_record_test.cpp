@@ -1,5 +1,6 @@
 #include "flight/segmentation/motor_record.h"
 
+#include "flight/chosen_track.h"
 #include "flight/segmentation.h"
 #include "helpers/flown_points.h"
 
@@ -22,6 +23,16 @@ test::SampleColumns measured_flight() {
     auto columns = columns_of(points);
     for (auto& power_w : columns.power_w) power_w = 0.4 + 0.5 * power_w;
     return columns;
+}
+
+/// A hundred times what the series says.
+std::vector<double> columns_of_percent(const FlightSeries& series) {
+    std::vector<double> percent;
+    for (const auto& track : series.tracks) {
+        if (track.name != "throttle_percent") continue;
+        for (const double part : track.value) percent.push_back(part * 100.0);
+    }
+    return percent;
 }
 
 void expect_same_phases(const FlightPhases& phases, const FlightPhases& expected) {
@@ -78,6 +89,26 @@ TEST(MotorRecord, SaysThatNothingTellsOfTheMotor) {
     for (const auto& event : phases.ground_events) {
         EXPECT_THAT(event.what, testing::Not(HasSubstr("motor off"))) << "nobody measured that";
     }
+}
+
+TEST(MotorRecord, TakesAThrottleFromZeroToOneForAFraction) {
+    for (const double watts : {1.0, 0.0}) {
+        auto columns = measured_flight();
+        for (auto& power_w : columns.power_w) power_w *= watts;
+        const auto expected = segment(test::series_of(columns));
+        for (auto& throttle : columns.throttle_percent) throttle /= 100.0;
+        const auto series = test::series_of(columns);
+        expect_same_phases(segment(series), expected);
+        EXPECT_EQ(chosen_track(series, "throttle_percent").value, columns_of_percent(series));
+        EXPECT_THAT(warnings_of(series),
+                    testing::Contains(HasSubstr("runs from 0 to 0.9: it is taken for a fraction, 0 to 90 %")));
+    }
+    // On the ground, with the motor off, it is what it says.
+    auto columns = measured_flight();
+    for (auto& power_w : columns.power_w) power_w = 0.4;
+    for (auto& throttle : columns.throttle_percent) throttle = throttle > 0 ? 1.0 : 0.0;
+    EXPECT_THAT(warnings_of(test::series_of(columns)), testing::Not(testing::Contains(HasSubstr("fraction"))));
+    EXPECT_TRUE(segment(test::series_of(columns)).sorties.empty());
 }
 
 TEST(MotorRecord, BelievesNoThrottleBeyondFull) {

@@ -6,6 +6,7 @@
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -98,6 +99,71 @@ TEST(NoFlight, WhereItDrivesAtOneHeightAndTheGroundIsNotSeen) {
     EXPECT_EQ(why_none(hovering), "1 sorties");
     std::erase_if(series.tracks, [](const Track& track) { return track.name == "ground_speed_m_per_s"; });
     EXPECT_EQ(why_none(series), "1 sorties");
+}
+
+TEST(NoFlight, WhereAnAltitudeAloneIsThatOfAnEstimatorThatSettles) {
+    const auto alone = [](const std::vector<test::Point>& points, double speed_m_per_s) {
+        auto columns = columns_of(points);
+        columns.throttle_percent.clear();
+        columns.power_w.assign(columns.time_s.size(), 12.0);
+        if (speed_m_per_s >= 0.0) columns.ground_speed_m_per_s.assign(columns.time_s.size(), speed_m_per_s);
+        return test::series_of(columns);
+    };
+    // It begins at one height and runs to another, which it never held.
+    const std::vector<test::Point> begins_wrong{{0, 40, 0}, {2, 40, 0}, {9, 0, 0}, {300, 0, 0}};
+    EXPECT_THAT(why_none(alone(begins_wrong, -1.0)), HasSubstr("an estimator that settles"));
+    const std::vector<test::Point> wanders{{0, 0, 0}, {40, 0, 0}, {60, 14, 0}, {90, 14, 0}, {110, 0, 0}, {300, 0, 0}};
+    EXPECT_THAT(why_none(alone(wanders, -1.0)), HasSubstr("height of 14 m: an estimator that settles"));
+    EXPECT_EQ(why_none(alone(wanders, 9.0)), "1 sorties");
+    EXPECT_THAT(why_none(alone(sortie(100), 4.5)), HasSubstr("at 4.5 m/s over ground: an estimator that settles"));
+    EXPECT_EQ(why_none(alone(sortie(100), -1.0)), "1 sorties");
+    EXPECT_EQ(why_none(alone(sortie(100), 12.0)), "1 sorties");
+}
+
+TEST(NoFlight, OfWhatMovesAsRoadsDo) {
+    auto columns = columns_of({{0, 200, 0}, {50, 200, 0}, {51, 200, 40}, {750, 200, 40}, {751, 200, 0}, {800, 200, 0}});
+    columns.ground_speed_m_per_s.assign(columns.time_s.size(), 0.0);
+    for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
+        const double t = columns.time_s[i];
+        if (t < 50 || t > 750) continue;
+        columns.ground_speed_m_per_s[i] = 14.0;
+        columns.altitude_m[i] += 40.0 * std::abs(std::sin((t - 50.0) / 222.8));
+    }
+    EXPECT_THAT(why_none(test::series_of(columns)), HasSubstr("never moves by more than 3 % of the way"));
+    // What rises up from the ground flies, however slow or low it is.
+    for (const double speed_m_per_s : {0.5, 6.0, 14.0, 20.0}) {
+        for (const double height : {0.3, 0.4, 1.0}) {
+            auto flown = columns_of(sortie(100));
+            flown.ground_speed_m_per_s.assign(flown.time_s.size(), 0.0);
+            for (std::size_t i = 0; i < flown.time_s.size(); ++i) {
+                flown.altitude_m[i] *= height;
+                if (flown.time_s[i] > 99 && flown.time_s[i] < 470) flown.ground_speed_m_per_s[i] = speed_m_per_s;
+            }
+            EXPECT_EQ(why_none(test::series_of(flown)), "1 sorties") << speed_m_per_s << " " << height;
+        }
+    }
+}
+
+TEST(NoFlight, IsNoRealFlightOfWhichNothingTellsOfTheMotor) {
+    FLIGHTWATT_NEEDS_SHARED();
+    for (const auto* log : {"flights/20_07_03__12_17_45", "flights/20_07_05__10_26_44", "flights/20_07_10__06_53_03",
+                            "archives/no-power/12_05_16__07_20_45", "archives/no-power/12_05_17__07_18_57",
+                            "archives/no-power/12_05_21__07_04_51"}) {
+        SCOPED_TRACE(log);
+        auto series =
+            read_candidates(FlightFile(test::shared_dir() / (std::string(log) + ".data")), std::nullopt).at(0);
+        const auto expected = segment(series);
+        std::erase_if(series.tracks, [](const Track& track) {
+            return track.name == "throttle_percent" || track.name == "power_w" || track.name == "current_a";
+        });
+        const auto phases = segment(series);
+        EXPECT_EQ(phases.motor_evidence, "nothing");
+        ASSERT_EQ(phases.sorties.size(), expected.sorties.size());
+        for (std::size_t i = 0; i < phases.sorties.size(); ++i) {
+            EXPECT_NEAR(phases.sorties[i].start_s(), expected.sorties[i].start_s(), 3.0);
+            EXPECT_NEAR(phases.sorties[i].end_s(), expected.sorties[i].end_s(), 3.0);
+        }
+    }
 }
 
 TEST(NoFlight, OfNoRealRover) {
