@@ -232,7 +232,7 @@ std::vector<KnownFlights::Like> KnownFlights::find(const FlightContent& content)
     for (std::size_t precision = 0; precision < precisions; ++precision) {
         for (const auto& mark : content.marks[precision]) {
             const auto [first, last] = with_mark_.equal_range(mark.fingerprint);
-            if (static_cast<std::size_t>(std::distance(first, last)) > most_sharing) continue;
+            if (static_cast<std::size_t>(std::distance(first, last)) >= most_sharing) continue;
             for (auto known = first; known != last; ++known) {
                 const auto& other = contents_[known->second];
                 if (precision >= std::min(content.decimals, other.decimals)) ++sharing[known->second];
@@ -252,7 +252,8 @@ void KnownFlights::add(FlightContent content) {
     for (std::size_t precision = 0; precision < precisions; ++precision) {
         const auto& marks = content.marks[precision];
         for (const auto& mark : std::span(marks).first(std::min(marks.size(), indexed_marks[precision])))
-            with_mark_.emplace(mark.fingerprint, contents_.size());
+            if (with_mark_.count(mark.fingerprint) < most_sharing)
+                with_mark_.emplace(mark.fingerprint, contents_.size());
     }
     contents_.push_back(std::move(content));
 }

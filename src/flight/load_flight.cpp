@@ -77,7 +77,7 @@ void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::str
 
 std::string parenthesised(const std::string& text) { return text.empty() ? "" : fmt::format(" ({})", text); }
 
-/// What is told of each phase goes over all samples: a log of a day with twenty sorties at 10 Hz has 17 million.
+/// Nobody flies so often in one log: a log of a day with twenty sorties at 10 Hz has 17 million samples.
 void refuse_endless_work(const FlightSeries& series, const FlightPhases& phases) {
     constexpr std::size_t most_work = 100'000'000;
     const auto samples = power_track(series).time_s.size();
