@@ -281,6 +281,7 @@ std::string describe_mix(std::span<const FlownBy> flights) {
     const bool any_real = std::ranges::any_of(names, [](const auto& name) { return !is_synthetic(name); });
     if (ids.size() < 2 && names.size() < 2 && (synthetic == 0 || !any_real)) return "";
     std::vector<std::string> lines;
+    lines.reserve(flown.size());
     for (const auto& [aircraft, its] : flown) lines.push_back(fmt::format("{}: {}", aircraft, fmt::join(its, ", ")));
     return fmt::format("{}", fmt::join(lines, "; "));
 }
