@@ -60,7 +60,9 @@ TEST(PlannedProbability, IsWhatTheFlightsOfAnAnswerKeep) {
 }
 
 TEST(PlannedProbability, NamesRemediesThatAreOnes) {
-    auto [problem, probability, kind] = test::generated_mission(3);
+    auto made = test::generated_mission(3);
+    auto& problem = made.problem;
+    const double probability = made.probability;
     problem.battery.capacity_ah *= 0.7;
     const auto plan = plan_mission(problem, probability);
     ASSERT_FALSE(plan.plan.feasible);
