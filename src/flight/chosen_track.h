@@ -12,13 +12,12 @@ namespace flightwatt::flight {
 
 /// The track of that name that the programs compute with: the first candidate that varies, else the first that has
 /// values. Exceptions: of airspeed one that varies or none (without a sensor it is constant); of ground speed the
-/// first; of throttle a rotorcraft's thrust comes last, and a
-/// fraction is made percent; of current and power the sum over devices where no message
-/// tells the whole. Power is the first that measures something (is not 0 throughout) and is not contradicted by voltage
-/// times current. Samples that cannot be are left out, and said in warnings_of: those beyond physical bounds
-/// (physical_bounds.h), of power, voltage and current where the message contradicts itself, and lonely spikes
-/// (docs/methods.md). Empty if the log has none. `source` says where it is from: "ENERGY.voltage * ENERGY.current",
-/// "ESC, summed over 4 devices".
+/// first; of throttle a rotorcraft's thrust comes last, and a fraction is made percent; of current and power the sum
+/// over devices where no message tells the whole. Power is the first that measures something (is not 0 throughout) and
+/// is not contradicted by voltage times current. Samples that cannot be are left out, and said in warnings_of: those
+/// beyond physical bounds (physical_bounds.h), of power, voltage and current where the message contradicts itself, and
+/// lonely spikes (docs/methods.md). Empty if the log has none. `source` says where it is from:
+/// "ENERGY.voltage * ENERGY.current", "ESC, summed over 4 devices".
 Track chosen_track(const FlightSeries& series, std::string_view name);
 
 /// The track of that name at other times, linear between its points and constant outside; `time_s` must rise.
