@@ -2,6 +2,7 @@
 
 #include "flight/flight_phases.h"
 #include "mechanical/level_law.h"
+#include "mechanical/physical_model.h"
 
 #include <filesystem>
 #include <optional>
@@ -113,6 +114,7 @@ struct MechanicalModel {
     std::string weighting;    ///< "uniform", "inverse-variance", "agreement", "by hand" or "published"
     flight::PerPhase<PhaseModel> phases;
     std::vector<FlightContribution> flights;
+    std::optional<PhysicalModel> physical = {};  ///< power of the motion, beside that of time; absent unless fitted
 };
 
 /// How a phase flown in another time than the model's is read.

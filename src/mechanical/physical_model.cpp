@@ -1,0 +1,91 @@
+#include "mechanical/physical_model.h"
+
+#include "mechanical/prediction/level_spread.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+constexpr std::array<std::string_view, power_term_count> power_term_names{"drag",  "induced", "turn",
+                                                                          "climb", "descent", "constant"};
+constexpr std::array<std::string_view, power_term_count> power_term_units{"W s^3/m^3", "W m/s", "W m/s",
+                                                                          "W s/m",     "W s/m", "W"};
+
+bool is_within(const MotionRange& range, double value) { return range.low <= value && value <= range.high; }
+
+/// Of the sum of the terms, in W^2.
+double coefficient_variance_w2(const PhysicalModel& model, const TermValues& values) {
+    double variance_w2 = 0.0;
+    for (std::size_t i = 0; i < model.terms.size(); ++i) {
+        for (std::size_t j = 0; j < model.terms.size(); ++j) {
+            variance_w2 += values[model.terms[i]] * model.covariance[i][j] * values[model.terms[j]];
+        }
+    }
+    return std::max(variance_w2, 0.0);
+}
+
+}  // namespace
+
+std::string_view to_string(PowerTerm term) { return power_term_names[static_cast<std::size_t>(term)]; }
+
+std::optional<PowerTerm> power_term_from(std::string_view name) {
+    for (const auto term : all_power_terms)
+        if (to_string(term) == name) return term;
+    return std::nullopt;
+}
+
+std::string_view unit_of(PowerTerm term) { return power_term_units[static_cast<std::size_t>(term)]; }
+
+TermValues terms_of(const AirMotion& motion) {
+    const double airspeed = motion.airspeed_m_per_s;
+    const double load = motion.load_factor;
+    if (!(airspeed > 0.0) || !std::isfinite(airspeed)) {
+        throw std::invalid_argument(fmt::format("an airspeed of {} m/s: expected more than 0", airspeed));
+    }
+    if (!(load >= 0.0) || !std::isfinite(load)) {
+        throw std::invalid_argument(fmt::format("a load factor of {}: expected 0 or more", load));
+    }
+    TermValues values;
+    values[PowerTerm::drag] = airspeed * airspeed * airspeed;
+    values[PowerTerm::induced] = 1.0 / airspeed;
+    values[PowerTerm::turn] = (load * load - 1.0) / airspeed;
+    values[PowerTerm::climb] = motion.climb_m_per_s;
+    values[PowerTerm::descent] = std::min(motion.climb_m_per_s, 0.0);
+    values[PowerTerm::constant] = 1.0;
+    return values;
+}
+
+double power_of_terms_w(const PhysicalModel& model, const TermValues& values) {
+    double power = 0.0;
+    for (const auto term : model.terms) power += model.coefficients[term] * values[term];
+    return power;
+}
+
+double power_w(const PhysicalModel& model, const AirMotion& motion) {
+    return std::max(0.0, power_of_terms_w(model, terms_of(motion)));
+}
+
+std::optional<PowerUncertainty> uncertainty_of(const PhysicalModel& model, const TermValues& mean_values,
+                                               double duration_s) {
+    if (!model.level_sd) return std::nullopt;
+    const double level_w = *model.level_sd * power_of_terms_w(model, mean_values);
+    const double between_w2 = level_w * level_w + coefficient_variance_w2(model, mean_values);
+    const double drift_w2 = variance_of_mean_w2({model.drift_sd_w, model.correlation_s}, duration_s);
+    const double sum_w2 = between_w2 + drift_w2;
+    if (!(sum_w2 > 0.0)) return PowerUncertainty{0.0, model.degrees_of_freedom};
+    const double squares =
+        between_w2 * between_w2 / model.degrees_of_freedom + drift_w2 * drift_w2 / model.drift_degrees_of_freedom;
+    return PowerUncertainty{std::sqrt(sum_w2), sum_w2 * sum_w2 / squares};
+}
+
+bool was_flown(const PhysicalModel& model, const AirMotion& motion) {
+    return is_within(model.airspeed_m_per_s, motion.airspeed_m_per_s) &&
+           is_within(model.climb_m_per_s, motion.climb_m_per_s);
+}
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flightwatt::mechanical {
+
+/// How an aircraft on wings moves through the air.
+struct AirMotion {
+    double airspeed_m_per_s = 0.0;
+    double climb_m_per_s = 0.0;  ///< below 0 it descends
+    double load_factor = 1.0;    ///< lift over weight: 1 / cos(bank) in a level turn
+};
+
+/// What power is a sum of, each a coefficient times a value of the motion.
+enum class PowerTerm {
+    drag,      ///< V^3: form and friction drag
+    induced,   ///< 1 / V: the drag of lift in straight flight
+    turn,      ///< (n^2 - 1) / V: what a turn adds to it
+    climb,     ///< climb rate, both ways: m g / efficiency
+    descent,   ///< climb rate below 0, on top of `climb`: what a descent gives back less
+    constant,  ///< what does not depend on the motion
+};
+
+inline constexpr std::size_t power_term_count = 6;
+inline constexpr std::array<PowerTerm, power_term_count> all_power_terms{
+    PowerTerm::drag, PowerTerm::induced, PowerTerm::turn, PowerTerm::climb, PowerTerm::descent, PowerTerm::constant};
+
+/// "drag" and so on, as model files call them.
+std::string_view to_string(PowerTerm term);
+std::optional<PowerTerm> power_term_from(std::string_view name);
+
+/// The unit of a term's coefficient, "W s^3/m^3".
+std::string_view unit_of(PowerTerm term);
+
+/// A value for each term, indexed by PowerTerm.
+struct TermValues {
+    std::array<double, power_term_count> values{};
+    double& operator[](PowerTerm term) { return values[static_cast<std::size_t>(term)]; }
+    const double& operator[](PowerTerm term) const { return values[static_cast<std::size_t>(term)]; }
+};
+
+/// The terms' values. Throws std::invalid_argument unless the airspeed is positive and the load factor at least 0.
+TermValues terms_of(const AirMotion& motion);
+
+struct MotionRange {
+    double low = 0.0;
+    double high = 0.0;
+};
+
+/// Mechanical power from the motion through the air, fitted to flights of one aircraft:
+///     power(t) = (1 + level) * sum over the terms of coefficient * value  +  drift(t)       [W]
+/// level: of a flight, the same throughout; drift: within a flight, with exponential correlation.
+struct PhysicalModel {
+    std::vector<PowerTerm> terms;                 ///< those that were kept
+    TermValues coefficients;                      ///< 0 for a term that was not
+    std::vector<std::vector<double>> covariance;  ///< of the coefficients of `terms`, in their order
+
+    /// Standard deviation of a flight's level, as a part of its power; absent from a single flight, which does not tell
+    /// how flights differ. With `degrees_of_freedom` the scale of a Student's t.
+    std::optional<double> level_sd;
+    double degrees_of_freedom = 0.0;
+
+    double drift_sd_w = 0.0;     ///< of means over bin_s
+    double correlation_s = 1.0;  ///< for how long a drift lasts
+    double drift_degrees_of_freedom = 1.0;
+
+    double bin_s = 0.0;  ///< the time over which power and motion were averaged for the fit
+    std::size_t bins = 0;
+    std::size_t samples = 0;  ///< of power, in the bins
+    std::vector<std::string> flights;
+
+    MotionRange airspeed_m_per_s;  ///< of the bins' means
+    MotionRange climb_m_per_s;
+    double mean_airspeed_m_per_s = 0.0;  ///< of the flights' cruises, each counting the same
+};
+
+/// The power of a motion [W], 0 where the terms sum to less: in a steep descent the motor stands, and gives nothing
+/// back. What terms_of throws.
+double power_w(const PhysicalModel& model, const AirMotion& motion);
+
+/// The sum of the terms [W], which may be below 0: the means over a time of the terms give the mean power.
+double power_of_terms_w(const PhysicalModel& model, const TermValues& values);
+
+/// A standard deviation with the degrees of freedom of the Student's t that makes intervals of it.
+struct PowerUncertainty {
+    double sd_w = 0.0;
+    double degrees_of_freedom = 0.0;
+};
+
+/// How far the mean power of a flight not seen may be from what the model says, over `duration_s` with these mean
+/// values of the terms: the flight's own level, its drift, and that the coefficients come from few flights (docs/methods.md,
+/// Power from airspeed and climb). std::nullopt for a model of a single flight.
+std::optional<PowerUncertainty> uncertainty_of(const PhysicalModel& model, const TermValues& mean_values,
+                                               double duration_s);
+
+/// Whether the model's flights flew so: what lies outside is extrapolated.
+bool was_flown(const PhysicalModel& model, const AirMotion& motion);
+
+}  // namespace flightwatt::mechanical
