@@ -6,8 +6,10 @@
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
+#include "cli/output/physical_output.h"
 #include "cli/stage.h"
 #include "mechanical/measured_flight.h"
+#include "mechanical/physical_fit.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -40,15 +42,21 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     return options;
 }
 
-std::vector<mechanical::FlightSamples> read_flights(const cli::StageCall& call, int order) {
+/// Of --model: whether the power of the motion is fitted, beside that of time.
+bool is_physical(const cli::StageCall& call) {
+    const auto name = call.get<std::string>("model");
+    if (name == "physical") return true;
+    if (name == "fourier") return false;
+    throw UsageError(fmt::format("--model {}: expected fourier or physical", name));
+}
+
+std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, int order) {
     const auto needed = mechanical::samples_needed(order);
     const auto options = cli::read_flight_options(call);
-    return cli::from_flights<mechanical::FlightSamples>(call, options, [&](const auto&, const auto& loaded) {
+    return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
         auto measured = mechanical::measure_flights(loaded, needed);
         for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
-        std::vector<mechanical::FlightSamples> flights;
-        for (auto& flight : measured.flights) flights.push_back(std::move(flight.samples));
-        return flights;
+        return std::move(measured.flights);
     });
 }
 
@@ -64,14 +72,28 @@ flight::PerPhase<mechanical::OrderChoice> choose_orders(const cli::StageCall& ca
     return choices;
 }
 
+/// The physical model of the flights, put into the model too.
+mechanical::PhysicalFit fit_motion(const cli::StageCall& call, std::span<const mechanical::MeasuredFlight> measured,
+                                   mechanical::MechanicalModel& model) {
+    std::vector<mechanical::FlightMotion> motions;
+    for (const auto& flight : measured) motions.push_back(flight.motion);
+    auto physical = mechanical::fit_physical_model(motions);
+    cli::warn_of_physical(call, physical);
+    model.physical = physical.model;
+    return physical;
+}
+
 int fit(const cli::StageCall& call) {
+    const bool with_motion = is_physical(call);
     const bool auto_order = !read_order(call, cli::AutoOrder::accepted);
     auto options = read_options(call);
     const auto table_file = call.maybe<std::string>("table");
     if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
     const auto curves_file = call.maybe<std::string>("curves");
     const auto published = cli::read_published(call);
-    const auto flights = read_flights(call, auto_order ? mechanical::highest_tried_order : options.phases.order);
+    const auto measured = read_flights(call, auto_order ? mechanical::highest_tried_order : options.phases.order);
+    std::vector<mechanical::FlightSamples> flights;
+    for (const auto& flight : measured) flights.push_back(flight.samples);
     std::optional<flight::PerPhase<mechanical::OrderChoice>> choices;
     if (auto_order) {
         choices = choose_orders(call, flights, options);
@@ -87,6 +109,8 @@ int fit(const cli::StageCall& call) {
     const auto table =
         cli::table_of(fitted.model, published,
                       call.has("intervals") ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
+    std::optional<mechanical::PhysicalFit> physical;
+    if (with_motion) physical = fit_motion(call, measured, fitted.model);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
     if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, *reports));
     cli::write_result(call, to_toml(fitted.model));
@@ -96,11 +120,12 @@ int fit(const cli::StageCall& call) {
         auto json = cli::to_json(fitted.model);
         if (reports) cli::add_errors_json(json, fitted.model, *reports);
         if (robust) cli::add_loss_json(json, fitted);
+        if (physical) json["physical"] = cli::physical_json(*physical);
         for (const auto phase : flight::all_phases)
             if (choices) cli::add_order_json(json, phase, (*choices)[phase]);
         cli::print(cli::json_text(json));
     } else if (call.output) {
-        cli::print(to_text(table));
+        cli::print(to_text(table) + (physical ? "\n" + cli::physical_text(*physical) : ""));
     }
     return cli::ok;
 }
@@ -116,6 +141,9 @@ as TOML; with -o it goes to the file and Table I is shown.)"};
     add_fit_options(stage.options, cli::AutoOrder::accepted);
     auto add = stage.options.add_options();
     add("name", cli::value("NAME"), "the model's name");
+    add("model", cli::value("KIND")->default_value("fourier"),
+        "fourier: power over the time of each phase; physical: besides, power from airspeed and climb, for "
+        "aircraft on wings whose flights measured them");
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
     add("table", cli::output_file("FILE"), "write Table I as .txt, .csv, .md or .tex");
     add("errors",

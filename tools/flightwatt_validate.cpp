@@ -7,6 +7,7 @@
 #include "cli/output/json_text.h"
 #include "cli/output/validation_output.h"
 #include "cli/stage.h"
+#include "flight/chosen_track.h"
 #include "mechanical/covariates.h"
 #include "mechanical/measured_flight.h"
 
@@ -25,12 +26,17 @@ std::vector<mechanical::MeasuredFlight> in_cruise(const cli::StageCall& call, co
                                                   mechanical::MeasuredFlights measured, double until_s,
                                                   const flight::SegmentationOptions& options) {
     std::vector<mechanical::MeasuredFlight> flights;
+    const flight::ChosenTracks tracks(loaded.series);
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
         try {
             const auto sortie = measured.sorties[i];
             const double time_s = mechanical::time_since_lift_off(loaded.series, until_s, sortie, options);
             flight.flown = mechanical::progress_at(loaded.series, time_s, sortie, options);
+            if (const auto& cruise = flight.samples.phases[flight::Phase::cruise]) {
+                const double end_s = cruise->start_s + cruise->duration_s;
+                flight.cruise_ahead = mechanical::motion_of(tracks, {{flight::Phase::cruise, time_s, end_s}}).bins;
+            }
             flights.push_back(std::move(flight));
         } catch (const NoAnswerError& error) {
             cli::warn(call, fmt::format("{} is excluded: {}", flight.samples.flight, error.what()));
@@ -93,11 +99,16 @@ from their durations alone; then compares with the integral of the power that wa
   nearest_flight  the mean power of the one flight whose durations are nearest
   airspeed_cubed  cruise power proportional to the mean cube of the airspeed that was flown, as if it
                   had been known before; where flights measured it
+  physical        power from the airspeed and climb that were flown, as if they had been known before
+                  (flightwatt fit --model physical); where flights measured them
 With --until S: S seconds after its lift-off a flight has measured its energy up to then; the rest of
 the cruise and the landing are predicted, by the models above as before the flight, and by
   in_flight           the cruise level shrunk between model and flight (see flightwatt predict)
   in_flight_constant  the same about the model's mean power
-  in_flight_airspeed  the same about the power that the airspeed so far lets expect
+  in_flight_airspeed  the same about the power that the airspeed so far and the others' later airspeed
+                      let expect
+  in_flight_path      the physical model at this flight's own level, on the airspeed and climb of the
+                      rest as they were flown, as if they had been known
 Errors in percent are parts of the phase's measured energy, the flown part included; none for landing,
 whose power is near zero. Bias is predicted less measured.)"};
     cli::add_fit_options(stage.options);

@@ -42,6 +42,7 @@ void visit_measured_phase(Flight& flight, flight::Phase phase, Samples& samples,
     visit("duration_s", samples.duration_s);
     visit("start_s", samples.start_s);
     visit("airspeed_cubed_m3_per_s3", samples.airspeed_cubed_m3_per_s3);
+    visit("airspeed_cubed_parts_m3_per_s3", samples.airspeed_cubed_parts);
     visit("covariates", samples.covariates);
     visit("energy_wh", flight.energy_wh[phase]);
     visit("counter_energy_wh", flight.counter_energy_wh[phase]);

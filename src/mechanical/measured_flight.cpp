@@ -39,6 +39,18 @@ PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& spa
     return samples;
 }
 
+std::vector<double> airspeed_cubed_parts(const flight::Track& airspeed, const flight::PhaseSpan& span) {
+    std::vector<double> parts;
+    const double part_s = (span.end.time_s - span.start.time_s) / static_cast<double>(airspeed_parts);
+    for (std::size_t i = 0; i < airspeed_parts; ++i) {
+        const double start_s = span.start.time_s + static_cast<double>(i) * part_s;
+        const auto cubed = mean_cubed_airspeed_m3_per_s3(airspeed, start_s, start_s + part_s);
+        if (!cubed) return {};
+        parts.push_back(*cubed);
+    }
+    return parts;
+}
+
 bool has_any_phase(const MeasuredFlight& flight) {
     return std::ranges::any_of(flight.samples.phases.values, [](const auto& samples) { return samples.has_value(); });
 }
@@ -73,13 +85,18 @@ MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight
             }
             samples.airspeed_cubed_m3_per_s3 =
                 mean_cubed_airspeed_m3_per_s3(tracks["airspeed_m_per_s"], start_s, span.end.time_s);
-            if (span.phase == flight::Phase::cruise) samples.covariates = covariates_of(tracks, sortie);
+            if (span.phase == flight::Phase::cruise) {
+                samples.covariates = covariates_of(tracks, sortie);
+                samples.airspeed_cubed_parts = airspeed_cubed_parts(tracks["airspeed_m_per_s"], span);
+            }
             const auto statistics = statistics_of_power.between(start_s, span.end.time_s);
             flight.energy_wh[span.phase] = statistics.energy_wh;
             flight.counter_energy_wh[span.phase] = statistics.counter_energy_wh;
             flight.samples.phases[span.phase] = std::move(samples);
         }
         if (!has_any_phase(flight)) continue;
+        flight.motion = motion_of(tracks, spans_of(sortie));
+        flight.motion.flight = flight.samples.flight;
         measured.flights.push_back(std::move(flight));
         measured.sorties.push_back(sortie.number - 1);
     }

@@ -92,6 +92,8 @@ struct PhaseModel {
     std::optional<LevelLaw> level_law = {};  ///< absent unless it was asked for
     /// Of airspeed_cubed; absent unless 2 flights or more measured their airspeed.
     std::optional<LevelLaw> airspeed_law = {};
+    /// Mean cube of the airspeed in equal parts of the phase, over the flights that measured it in all; may be empty.
+    std::vector<double> airspeed_cubed_parts_m3_per_s3 = {};
 };
 
 /// One flight's part in one phase.

@@ -1,6 +1,7 @@
 #include "base/toml_reader.h"
 #include "base/toml_text.h"
 #include "mechanical/mechanical_model.h"
+#include "mechanical/physical/physical_toml.h"
 
 #include <limits>
 
@@ -151,6 +152,14 @@ LevelLaw read_airspeed_of_0_1(const TomlTable& table) {
             coefficient * relative_sd};
 }
 
+std::vector<double> read_airspeed_parts(const TomlTable& table) {
+    constexpr std::string_view key = "airspeed_cubed_parts_m3_per_s3";
+    auto parts = table.numbers(key);
+    if (parts.empty()) throw InputError(table.where(key), fmt::format("{} holds no number", key));
+    for (const double part : parts) require_in(at_least(0.0), part, key, table.where(key));
+    return parts;
+}
+
 PhaseModel read_phase(const TomlTable& table) {
     PhaseModel phase;
     phase.duration_s = positive(table, "duration_s");
@@ -173,6 +182,7 @@ PhaseModel read_phase(const TomlTable& table) {
     if (const auto spread = table.optional_table("level_spread")) phase.level_spread = read_level_spread(*spread);
     if (const auto law = table.optional_table("level_law")) phase.level_law = read_level_law(*law);
     if (const auto law = table.optional_table("airspeed_law")) phase.airspeed_law = read_airspeed_law(*law);
+    if (table.has("airspeed_cubed_parts_m3_per_s3")) phase.airspeed_cubed_parts_m3_per_s3 = read_airspeed_parts(table);
     if (const auto old = table.optional_table("airspeed")) phase.airspeed_law = read_airspeed_of_0_1(*old);
     table.refuse_unknown_keys();
     return phase;
@@ -224,6 +234,8 @@ std::string phase_toml(flight::Phase name, const PhaseModel& phase) {
     }
     if (phase.level_law) text += level_law_toml("level_law", *phase.level_law);
     if (phase.airspeed_law) text += level_law_toml("airspeed_law", *phase.airspeed_law);
+    if (const auto& parts = phase.airspeed_cubed_parts_m3_per_s3; !parts.empty())
+        text += fmt::format("airspeed_cubed_parts_m3_per_s3 = {}\n", toml_reals(parts));
     if (phase.errors) text += fmt::format("\n[{}.errors]\n{}", to_string(name), errors_toml(*phase.errors));
     if (phase.spread) text += fmt::format("\n[{}.spread]\n{}", to_string(name), spread_toml(*phase.spread));
     return text;
@@ -252,6 +264,7 @@ MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
     model.weighting = root.optional_string("weighting").value_or("");
     for (const auto phase : flight::all_phases) model.phases[phase] = read_phase(root.table(to_string(phase)));
     for (const auto& flight : root.tables("flights")) model.flights.push_back(read_flight(flight));
+    if (const auto physical = root.optional_table("physical")) model.physical = read_physical(*physical);
     root.refuse_unknown_keys();
     return model;
 }
@@ -265,6 +278,7 @@ std::string to_toml(const MechanicalModel& model) {
                         toml_string(model.description), toml_string(model.weighting));
     for (const auto phase : flight::all_phases) text += phase_toml(phase, model.phases[phase]);
     for (const auto& flight : model.flights) text += flight_toml(flight);
+    if (model.physical) text += physical_toml(*model.physical);
     return text;
 }
 

@@ -60,6 +60,20 @@ LevelLaw wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) 
         needed));
 }
 
+std::vector<double> mean_airspeed_cubed_parts(std::span<const PhaseSamples> flights) {
+    std::vector<double> sum;
+    std::size_t count = 0;
+    for (const auto& flight : flights) {
+        const auto& parts = flight.airspeed_cubed_parts;
+        if (parts.empty()) continue;
+        if (sum.empty()) sum.assign(parts.size(), 0.0);
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += parts[i];
+        ++count;
+    }
+    for (auto& value : sum) value /= static_cast<double>(count);
+    return sum;
+}
+
 }  // namespace
 
 std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, flight::Phase phase) {
@@ -84,6 +98,7 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     fitted.model.level_spread = level_spread(fitted.model, flights);
     if (phase == flight::Phase::cruise) {
         fitted.model.airspeed_law = fit_level_law(flights, Covariate::airspeed_cubed);
+        fitted.model.airspeed_cubed_parts_m3_per_s3 = mean_airspeed_cubed_parts(flights);
         if (options.level_covariate) fitted.model.level_law = wanted_law(flights, *options.level_covariate);
     }
     return fitted;

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "mechanical/physical/path_prediction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ struct Expectation {
     double degrees_of_freedom = 1.0;  ///< of level_sd_w
     double shape_flown_w = 0.0;       ///< what the curve says beyond `flown_w`, where its shape is not believed
     double shape_remaining_w = 0.0;
+    double ahead_sd_w = 0.0;  ///< of what remains alone: an airspeed that is not known yet
 };
 
 Expectation expect_by_curve(const PhaseForecast& cruise, double flown_s, double remaining_s) {
@@ -32,17 +34,45 @@ Expectation expect_by_curve(const PhaseForecast& cruise, double flown_s, double 
             cruise.weight_square_sum, static_cast<double>(spread.flights - 1)};
 }
 
-/// What the model's airspeed law or level law lets expect of this flight.
-LawLevel level_by_law(const PhaseModel& model, const FlightProgress& flown, LevelSource source) {
-    if (source == LevelSource::airspeed) {
-        if (!model.airspeed_law) {
-            throw NoAnswerError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
-        }
-        if (!flown.airspeed_cubed_m3_per_s3) {
-            throw NoAnswerError("the flight has not measured its airspeed");
-        }
-        return level_at(*model.airspeed_law, *flown.airspeed_cubed_m3_per_s3);
+/// Mean cube of the airspeed of the model's flights from a part of their cruise on; `otherwise` where the model does
+/// not say.
+double later_airspeed_cubed(const PhaseModel& model, double flown_part, double otherwise) {
+    const auto& parts = model.airspeed_cubed_parts_m3_per_s3;
+    if (parts.empty()) return otherwise;
+    const auto count = static_cast<double>(parts.size());
+    double sum = 0.0;
+    double weight = 0.0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const double ahead = std::clamp(static_cast<double>(i + 1) - flown_part * count, 0.0, 1.0);
+        sum += ahead * parts[i];
+        weight += ahead;
     }
+    return weight > 0.0 ? sum / weight : parts.back();
+}
+
+/// By the airspeed so far, and in what remains by the mean of that and the other flights' later one: all tend to
+/// fly on as they do, and to end as flights end.
+void expect_by_airspeed(Expectation& expected, const PhaseModel& model, const FlightProgress& flown,
+                        double flown_part) {
+    if (!model.airspeed_law) {
+        throw NoAnswerError("the model has no airspeed law: fewer than 2 of its flights measured airspeed");
+    }
+    if (!flown.airspeed_cubed_m3_per_s3) throw NoAnswerError("the flight has not measured its airspeed");
+    constexpr double own_part = 0.5;
+    const auto& law = *model.airspeed_law;
+    const double so_far = *flown.airspeed_cubed_m3_per_s3;
+    const double ahead = own_part * so_far + (1.0 - own_part) * later_airspeed_cubed(model, flown_part, so_far);
+    const auto level = level_at(law, ahead);
+    expected.flown_w = level_at(law, so_far).power_w;
+    expected.remaining_w = level.power_w;
+    expected.level_sd_w = level.sd_w.value();
+    expected.weight_square_sum = level.law_variance;
+    expected.degrees_of_freedom = level.degrees_of_freedom;
+    expected.ahead_sd_w = own_part * law.slope_w;  // of the others' airspeed, one standard deviation off
+}
+
+/// What the model's level law lets expect of this flight.
+LawLevel level_by_law(const PhaseModel& model, const FlightProgress& flown) {
     if (!model.level_law) throw NoAnswerError("the model has no level law: it was fitted without --level-covariate");
     const auto covariate = model.level_law->covariate;
     if (const auto& value = flown.covariates[covariate]) return level_at(*model.level_law, *value);
@@ -59,7 +89,11 @@ Expectation expect(const PhaseForecast& cruise, const FlightProgress& flown, dou
     expected.shape_remaining_w = expected.remaining_w - mean_w;
     expected.flown_w = expected.remaining_w = mean_w;
     if (source == LevelSource::constant) return expected;
-    const auto level = level_by_law(cruise.model, flown, source);
+    if (source == LevelSource::airspeed) {
+        expect_by_airspeed(expected, cruise.model, flown, flown_s / (flown_s + remaining_s));
+        return expected;
+    }
+    const auto level = level_by_law(cruise.model, flown);
     expected.flown_w = expected.remaining_w = level.power_w;
     expected.level_sd_w = level.sd_w.value();
     expected.weight_square_sum = level.law_variance;
@@ -100,6 +134,7 @@ void add_shares(RestPrediction& rest, const Expectation& expected, const Varianc
     add_share(energy, {average * kept * kept * of.level_w2 * wh2_per_w2, expected.degrees_of_freedom});
     add_share(energy, {average * drift_w2 * wh2_per_w2, drift_degrees_of_freedom});
     add_share(energy, {shape_w * shape_w * wh2_per_w2, drift_degrees_of_freedom});
+    add_share(energy, {std::pow(expected.ahead_sd_w, 2) * wh2_per_w2, expected.degrees_of_freedom});
     add_share(energy,
               {average * gain_w2 * wh2_per_w2, std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
 }
@@ -181,6 +216,36 @@ RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& f
     // How much a flight drifts differs from flight to flight, so many samples are no more than their flights;
     // and the curve, their average, takes one.
     add_shares(rest, expected, of, static_cast<double>(spread.flights - 1), remaining_s);
+    return rest;
+}
+
+EnergyEstimate predict_by_motion(const PhysicalModel& model, const TermValues& mean_values, double duration_s) {
+    const double mean_w = std::max(power_of_terms_w(model, mean_values), 0.0);
+    const auto uncertainty = uncertainty_of(model, mean_values, duration_s);
+    EnergyEstimate estimate{units::wh_from_joule(mean_w * duration_s), uncertainty.has_value(), 0.0, 0.0};
+    if (!uncertainty) return estimate;
+    const double sd_wh = units::wh_from_joule(uncertainty->sd_w * duration_s);
+    add_share(estimate, {sd_wh * sd_wh, uncertainty->degrees_of_freedom});
+    return estimate;
+}
+
+RestPrediction predict_rest_by_motion(const PhysicalModel& model, const FlightProgress& flown, const TermValues& ahead,
+                                      double remaining_s) {
+    if (!model.level_sd) throw NoAnswerError("the physical model does not say how flights differ: fit two or more");
+    RestPrediction rest;
+    if (remaining_s == 0.0) return rest;
+    const auto power = predict_path(model, flown.motion.bins, flown.until_s, ahead, remaining_s);
+    const double wh_per_w = units::wh_from_joule(remaining_s);
+    rest.gain = power.level;
+    std::vector<MotionBin> cruise;
+    for (const auto& bin : flown.motion.bins)
+        if (bin.phase == flight::Phase::cruise) cruise.push_back(bin);
+    rest.expected_w = std::max(power_of_terms_w(model, mean_values(cruise)), 0.0);
+    rest.flown_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
+    rest.remaining_mean_w = power.mean_w;
+    rest.energy.energy_wh = power.mean_w * wh_per_w;
+    add_share(rest.energy, {std::pow(power.parameter_sd_w * wh_per_w, 2), power.parameter_degrees_of_freedom});
+    add_share(rest.energy, {std::pow(power.drift_sd_w * wh_per_w, 2), power.drift_degrees_of_freedom});
     return rest;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mechanical/mechanical_model.h"
+#include "mechanical/physical_model.h"
 #include "mechanical/prediction/flight_progress.h"
 #include "mechanical/prediction/level_spread.h"
 
@@ -60,7 +61,7 @@ EnergyEstimate predict_rest_before_flight(const PhaseForecast& phase, double flo
 enum class LevelSource {
     curve,     ///< the model's Fourier curve
     constant,  ///< the curve's mean, for flights whose power has no shape in common
-    airspeed,  ///< the model's airspeed law at the airspeed measured so far, even over the time
+    airspeed,  ///< the airspeed law at the airspeed so far; in what remains at the mean of that and the others' later
     covariate  ///< the model's level law at what is known of its covariate, even over the time
 };
 
@@ -68,6 +69,7 @@ enum class LevelSource {
 struct RestPrediction {
     EnergyEstimate energy;
     double gain = 0.0;        ///< 0: the model alone counts, 1: the difference seen so far goes on in full
+                              ///< (predict_rest_by_motion: the part of the flight's power by which it is off the model)
     double expected_w = 0.0;  ///< mean power so far, as the model expected it
     double flown_w = 0.0;     ///< and as it was measured
     double remaining_mean_w = 0.0;
@@ -79,5 +81,14 @@ struct RestPrediction {
 /// flight did not measure what it asks for.
 RestPrediction predict_rest(const PhaseForecast& cruise, const FlightProgress& flown, double remaining_s,
                             LevelSource source);
+
+/// Energy of `duration_s` whose motion is known (means of the terms), before the flight: power_of_terms_w, not below
+/// 0, and uncertainty_of it.
+EnergyEstimate predict_by_motion(const PhysicalModel& model, const TermValues& mean_values, double duration_s);
+
+/// The rest of a cruise whose motion is known, in flight (predict_path): `ahead` are the means of the terms over it.
+/// Throws NoAnswerError if the model rests on a single flight.
+RestPrediction predict_rest_by_motion(const PhysicalModel& model, const FlightProgress& flown, const TermValues& ahead,
+                                      double remaining_s);
 
 }  // namespace flightwatt::mechanical

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "mechanical/physical_fit.h"
 #include "mechanical/validation/baselines.h"
 
 #include <algorithm>
@@ -19,7 +20,8 @@ struct Fold {
     flight::Phase phase;
     const PhaseSamples& flown;
     std::vector<PhaseSamples> others;
-    std::size_t nearest;  ///< among `others`
+    std::size_t nearest;                           ///< among `others`
+    const std::optional<PhysicalModel>& physical;  ///< of the others
 };
 
 PhaseForecast forecast_of_others(const Fold& fold, const ModelFitOptions& options) {
@@ -45,6 +47,16 @@ void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Cova
     }
 }
 
+/// By the motion that was flown.
+std::optional<EnergyEstimate> physical_estimate(const MeasuredFlight& flight, const Fold& fold) {
+    if (!fold.physical || flight.motion.bins.empty()) return std::nullopt;
+    std::vector<MotionBin> bins;
+    for (const auto& bin : flight.motion.bins)
+        if (bin.phase == fold.phase) bins.push_back(bin);
+    if (bins.empty()) return energy_of(constant_mean(fold.others), fold.flown.duration_s);
+    return predict_by_motion(*fold.physical, mean_values(bins), fold.flown.duration_s);
+}
+
 Estimates predict_phase(const Fold& fold, const ModelFitOptions& options) {
     const double duration_s = fold.flown.duration_s;
     const auto mean = constant_mean(fold.others);
@@ -68,11 +80,14 @@ Estimates predict_landing_in_flight(const Fold& fold, const ModelFitOptions& opt
     estimates.emplace_back("in_flight", fourier);
     estimates.emplace_back("in_flight_constant", fourier);
     estimates.emplace_back("in_flight_airspeed", fourier);
+    estimates.emplace_back("in_flight_path", fourier);
     return estimates;
 }
 
-Estimates predict_cruise_in_flight(const Fold& fold, const FlightProgress& flown, double remaining_s,
+Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& excluded, double remaining_s,
                                    const ModelFitOptions& options) {
+    const auto& flown = *excluded.flown;
+    const auto& ahead = excluded.cruise_ahead;
     const auto forecast = forecast_of_others(fold, options);
     const double known_wh = flown.cruise_energy_wh;
     Estimates estimates{
@@ -88,6 +103,10 @@ Estimates predict_cruise_in_flight(const Fold& fold, const FlightProgress& flown
     if (forecast.model.airspeed_law && flown.airspeed_cubed_m3_per_s3) {
         update("in_flight_airspeed", LevelSource::airspeed);
     }
+    if (fold.physical && fold.physical->level_sd && !ahead.empty()) {
+        const auto rest = predict_rest_by_motion(*fold.physical, flown, mean_values(ahead), remaining_s);
+        estimates.emplace_back("in_flight_path", after(known_wh, rest.energy));
+    }
     return estimates;
 }
 
@@ -95,6 +114,7 @@ Estimates estimates_of(const MeasuredFlight& excluded, const Fold& fold, const M
                        std::span<const Covariate> covariates) {
     if (!excluded.flown) {
         auto estimates = predict_phase(fold, options);
+        if (const auto physical = physical_estimate(excluded, fold)) estimates.emplace_back("physical", *physical);
         add_covariates(estimates, fold, covariates);
         return estimates;
     }
@@ -102,7 +122,7 @@ Estimates estimates_of(const MeasuredFlight& excluded, const Fold& fold, const M
     if (fold.phase == flight::Phase::landing) return predict_landing_in_flight(fold, options);
     const double remaining_s = fold.flown.duration_s - excluded.flown->cruise_s();
     if (remaining_s <= 0.0) return {};
-    return predict_cruise_in_flight(fold, *excluded.flown, remaining_s, options);
+    return predict_cruise_in_flight(fold, excluded, remaining_s, options);
 }
 
 FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& model) {
@@ -111,14 +131,30 @@ FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& mode
     return flight.predictions.emplace_back(FlightPrediction{model, {}});
 }
 
-ValidatedFlight validate_flight(const MeasuredFlight& excluded, std::span<const FlightSamples> others,
-                                const ModelFitOptions& options, std::span<const Covariate> covariates) {
+/// std::nullopt where the flights' motion does not tell their power.
+std::optional<PhysicalModel> physical_model_of(std::span<const FlightMotion> flights) {
+    try {
+        return fit_physical_model(flights).model;
+    } catch (const NoAnswerError&) {
+        return std::nullopt;
+    }
+}
+
+/// The flights without one of them.
+struct Others {
+    std::vector<FlightSamples> samples;
+    std::optional<PhysicalModel> physical;
+};
+
+ValidatedFlight validate_flight(const MeasuredFlight& excluded, const Others& others, const ModelFitOptions& options,
+                                std::span<const Covariate> covariates) {
     ValidatedFlight flight{excluded.samples.flight, {}, {}, {}};
     for (const auto phase : flight::all_phases) {
         if (!excluded.samples.phases[phase]) continue;
-        const auto nearest = nearest_flight(others, phase, excluded.samples);
+        const auto nearest = nearest_flight(others.samples, phase, excluded.samples);
         if (!nearest) continue;
-        const Fold fold{phase, *excluded.samples.phases[phase], samples_of_phase(others, phase), *nearest};
+        const Fold fold{phase, *excluded.samples.phases[phase], samples_of_phase(others.samples, phase), *nearest,
+                        others.physical};
         for (const auto& [model, estimate] : estimates_of(excluded, fold, options, covariates)) {
             prediction_of(flight, model).phases[phase] = estimate;
             flight.measured_wh[phase] = excluded.energy_wh[phase];
@@ -154,9 +190,14 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     }
     std::vector<ValidatedFlight> validated;
     for (const auto& excluded : flights) {
-        std::vector<FlightSamples> others;
-        for (const auto& other : flights)
-            if (&other != &excluded) others.push_back(other.samples);
+        Others others;
+        std::vector<FlightMotion> motions;
+        for (const auto& other : flights) {
+            if (&other == &excluded) continue;
+            others.samples.push_back(other.samples);
+            motions.push_back(other.motion);
+        }
+        if (!excluded.motion.bins.empty()) others.physical = physical_model_of(motions);
         validated.push_back(validate_flight(excluded, others, options, covariates));
     }
     return validated;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mechanical/model_fit.h"
+#include "mechanical/physical/motion_bins.h"
 #include "mechanical/prediction.h"
 
 #include <optional>
@@ -16,6 +17,8 @@ struct MeasuredFlight {
     flight::PerPhase<std::optional<double>> energy_wh;          ///< integral of the measured power
     flight::PerPhase<std::optional<double>> counter_energy_wh;  ///< what the on-board counter said
     std::optional<FlightProgress> flown;                        ///< only for a validation in flight
+    FlightMotion motion = {};                                   ///< as it was flown
+    std::vector<MotionBin> cruise_ahead = {};                   ///< of `motion`'s kind, from `flown` to the landing
 };
 
 /// What one model says of a flight that it has not seen.
@@ -38,12 +41,15 @@ struct ValidatedFlight {
 ///   nearest_flight   the mean power of the flight with the nearest durations
 ///   airspeed_cubed   cruise: the LevelLaw of airspeed_cubed at the airspeed that was flown, as if it had been
 ///                    known; other phases as constant_mean; only if the flight and two others measured airspeed
+///   physical         fit_physical_model of the others at the motion that was flown, as if it had been known; a
+///                    phase without bins as constant_mean; only if the flight and another have bins
 ///   by_NAME          cruise: power_by_covariate, for each of `covariates`; other phases as constant_mean
 /// Where a flight has `flown`, the take-off is past and not predicted; what the models above (without airspeed_cubed
 /// and covariates) say of the rest of the cruise is added to what was measured until then, and beside them
 ///   in_flight            predict_rest by the curve
 ///   in_flight_constant   predict_rest by the curve's mean
-///   in_flight_airspeed   predict_rest by the airspeed so far
+///   in_flight_airspeed   predict_rest by the airspeed so far and the others' later airspeed
+///   in_flight_path       predict_path: the rest's airspeed and climb as flown, as if they had been known
 /// Throws NoAnswerError for fewer than 2 flights, and what fit_phase_model throws.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
                                            std::span<const Covariate> covariates = {});

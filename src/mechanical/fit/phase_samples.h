@@ -9,6 +9,9 @@
 
 namespace flightwatt::mechanical {
 
+/// In how many parts of a cruise the airspeed is known, so that a flight in the air knows how others went on.
+inline constexpr std::size_t airspeed_parts = 10;
+
 /// Power over one phase of one flight, on that flight's own normalised time.
 struct PhaseSamples {
     std::string flight;
@@ -18,6 +21,8 @@ struct PhaseSamples {
     double start_s = 0.0;         ///< when the phase began, on the log's own clock
     /// Mean of the cube of the airspeed measured in the phase; absent without a sensor.
     std::optional<double> airspeed_cubed_m3_per_s3 = {};
+    /// Of a cruise: the same in each of airspeed_parts equal parts of it; empty unless it was measured in all.
+    std::vector<double> airspeed_cubed_parts = {};
     Covariates covariates = {};  ///< of the cruise, for a level that follows one
 };
 

@@ -34,15 +34,6 @@ std::optional<flight::Sortie> sortie_of(const flight::FlightSeries& known, std::
     return std::move(phases.sorties[index]);
 }
 
-double log_end_s(const flight::FlightSeries& series) {
-    double end_s = -std::numeric_limits<double>::infinity();
-    for (const auto& track : series.tracks) {
-        const bool counts = track.name == "power_w" || track.name == "altitude_m";
-        if (counts && !track.empty()) end_s = std::max(end_s, track.time_s.back());
-    }
-    return end_s;
-}
-
 /// Of any power sample, whatever source will be chosen later.
 double first_sample_s(const flight::FlightSeries& series) {
     double first_s = std::numeric_limits<double>::infinity();
@@ -54,13 +45,22 @@ double first_sample_s(const flight::FlightSeries& series) {
 
 }  // namespace
 
+double last_time_s(const flight::FlightSeries& series) {
+    double end_s = -std::numeric_limits<double>::infinity();
+    for (const auto& track : series.tracks) {
+        const bool counts = track.name == "power_w" || track.name == "altitude_m";
+        if (counts && !track.empty()) end_s = std::max(end_s, track.time_s.back());
+    }
+    return end_s;
+}
+
 double time_since_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie,
                            const flight::SegmentationOptions& options) {
     constexpr double look_again_s = 5.0;
     constexpr double same_s = 1e-3;
     const auto slim = tracks_for_segmentation(series);
     double time_s = first_sample_s(slim) + since_s;
-    const double last_s = log_end_s(slim) + longest_log_gap_s;
+    const double last_s = last_time_s(slim) + longest_log_gap_s;
     while (time_s <= last_s) {
         const auto found = sortie_of(cut_series(slim, time_s), sortie, options);
         const double due_s =
@@ -69,7 +69,7 @@ double time_since_lift_off(const flight::FlightSeries& series, double since_s, s
         time_s = due_s;
     }
     throw NoAnswerError(fmt::format("{}: the log ends at {:.0f} s, before {:.0f} s after a lift-off", series.flight,
-                                    log_end_s(slim), since_s));
+                                    last_time_s(slim), since_s));
 }
 
 FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie_index,
@@ -77,7 +77,7 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
     const auto known = cut_series(series, until_s);
     FlightProgress flown;
     flown.until_s = until_s;
-    if (const double end_s = log_end_s(known); std::isfinite(end_s) && until_s > end_s + longest_log_gap_s) {
+    if (const double end_s = last_time_s(known); std::isfinite(end_s) && until_s > end_s + longest_log_gap_s) {
         throw NoAnswerError(
             fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", series.flight, end_s, until_s));
     }
@@ -102,7 +102,10 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
     flown.energy_wh = integrated_energy_wh(known, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
     flown.airspeed_cubed_m3_per_s3 =
         mean_cubed_airspeed_m3_per_s3(chosen_track(known, "airspeed_m_per_s"), flown.cruise_start_s, until_s);
-    flown.covariates = covariates_of(flight::ChosenTracks(known), *sortie);
+    const flight::ChosenTracks tracks(known);
+    flown.covariates = covariates_of(tracks, *sortie);
+    flown.motion = motion_of(tracks, {{flight::Phase::takeoff, flown.lift_off_s, flown.cruise_start_s},
+                                      {flight::Phase::cruise, flown.cruise_start_s, until_s}});
     return flown;
 }
 

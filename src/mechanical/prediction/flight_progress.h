@@ -3,6 +3,7 @@
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
 #include "mechanical/covariates.h"
+#include "mechanical/physical/motion_bins.h"
 
 #include <cstddef>
 #include <optional>
@@ -18,8 +19,12 @@ struct FlightProgress {
     double cruise_energy_wh = 0.0;
     std::optional<double> airspeed_cubed_m3_per_s3;  ///< mean over the cruise so far
     Covariates covariates;                           ///< covariates_of what was known
+    FlightMotion motion = {};                        ///< until now
     double cruise_s() const { return until_s - cruise_start_s; }
 };
+
+/// The last time of the log at which power or altitude was logged: now, of a log that still grows. -infinity of none.
+double last_time_s(const flight::FlightSeries& series);
 
 /// The log's time so many seconds after a lift-off that is itself found in what lies before: waits, like a
 /// ground station, until the lift-off that is seen is that long ago. Never looks beyond the answer. `sortie`

@@ -1,0 +1,139 @@
+#include "cli/output/physical_output.h"
+
+#include "base/statistics.h"
+#include "base/units.h"
+#include "cli/output/json_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using mechanical::PowerTerm;
+
+std::string_view value_of(PowerTerm term) {
+    switch (term) {
+        case PowerTerm::drag:
+            return "airspeed cubed";
+        case PowerTerm::induced:
+            return "1 / airspeed";
+        case PowerTerm::turn:
+            return "(load factor squared - 1) / airspeed";
+        case PowerTerm::climb:
+            return "climb rate";
+        case PowerTerm::descent:
+            return "climb rate below 0, besides";
+        case PowerTerm::constant:
+            return "1";
+    }
+    return "";
+}
+
+/// Half the 95 % interval of a term's coefficient; absent from a single flight.
+std::optional<double> half_width(const mechanical::PhysicalModel& model, std::size_t term) {
+    if (!model.level_sd) return std::nullopt;
+    return student_t_half_width(model.degrees_of_freedom) * std::sqrt(model.covariance[term][term]);
+}
+
+std::string four_digits(double value) { return fmt::format("{:.4g}", value); }
+
+/// How far a flight of an hour may be off at the model's own mean airspeed, level, as a part of its power.
+std::string accuracy(const mechanical::PhysicalModel& model) {
+    if (!model.level_sd) return "a single flight does not tell how flights differ: no interval of an unseen one\n";
+    const mechanical::AirMotion level{.airspeed_m_per_s = model.mean_airspeed_m_per_s};
+    if (!(level.airspeed_m_per_s > 0.0)) return "";
+    constexpr double hour_s = 3600.0;
+    const double power = power_w(model, level);
+    const auto of = uncertainty_of(model, terms_of(level), hour_s).value();
+    return fmt::format(
+        "an hour of level flight at {:.1f} m/s: {:.2f} W, of an unseen flight +- {:.2f} W (95 %); flights differ by "
+        "{:.1f} % (1 sd), power drifts by {:.1f} W for {:.0f} s\n",
+        level.airspeed_m_per_s, power, student_t_half_width(of.degrees_of_freedom) * of.sd_w,
+        units::percent_of(*model.level_sd, 1.0), model.drift_sd_w, model.correlation_s);
+}
+
+}  // namespace
+
+TextTable constants_table(const mechanical::PhysicalModel& model) {
+    TextTable table{{"term", "times", "coefficient", "+-", "unit"}, {}};
+    for (std::size_t i = 0; i < model.terms.size(); ++i) {
+        const auto term = model.terms[i];
+        const auto half = half_width(model, i);
+        table.rows.push_back({std::string(to_string(term)), std::string(value_of(term)),
+                              four_digits(model.coefficients[term]), half ? fmt::format("{:.2g}", *half) : "-",
+                              std::string(unit_of(term))});
+    }
+    return table;
+}
+
+TextTable trials_table(const mechanical::PhysicalFit& fit) {
+    TextTable table{{"tried", "without W", "with W", "result"}, {}};
+    for (const auto& trial : fit.trials) {
+        table.rows.push_back({trial.term, fixed(trial.rms_before_w, 2), fixed(trial.rms_after_w, 2),
+                              trial.kept ? "kept" : trial.reason});
+    }
+    return table;
+}
+
+std::string physical_text(const mechanical::PhysicalFit& fit) {
+    const auto& model = fit.model;
+    return "Power from the motion through the air\n" + to_text(constants_table(model)) + accuracy(model) +
+           fmt::format(
+               "rests on {} flight{}, {} stretches of about {:.0f} s with {} samples, {:.1f} to {:.1f} m/s, climbing "
+               "{:+.1f} to {:+.1f} m/s\n\n",
+               model.flights.size(), model.flights.size() == 1 ? "" : "s", model.bins, model.bin_s, model.samples,
+               model.airspeed_m_per_s.low, model.airspeed_m_per_s.high, model.climb_m_per_s.low,
+               model.climb_m_per_s.high) +
+           fmt::format("RMS error of stretches held back, {} in turn:\n",
+                       fit.held_back_flights ? "flights" : "fifths of the flight") +
+           to_text(trials_table(fit));
+}
+
+nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit) {
+    using Json = nlohmann::ordered_json;
+    const auto& model = fit.model;
+    Json terms = Json::array();
+    for (std::size_t i = 0; i < model.terms.size(); ++i) {
+        const auto term = model.terms[i];
+        terms.push_back({{"term", to_string(term)},
+                         {"coefficient", model.coefficients[term]},
+                         {"half_width_95", optional_json(half_width(model, i))},
+                         {"unit", unit_of(term)}});
+    }
+    Json trials = Json::array();
+    for (const auto& trial : fit.trials) {
+        trials.push_back({{"term", trial.term},
+                          {"kept", trial.kept},
+                          {"rms_without_w", optional_json(trial.rms_before_w)},
+                          {"rms_with_w", optional_json(trial.rms_after_w)},
+                          {"reason", trial.reason}});
+    }
+    return {{"terms", terms},
+            {"level_sd", optional_json(model.level_sd)},
+            {"degrees_of_freedom", model.degrees_of_freedom},
+            {"drift_sd_w", model.drift_sd_w},
+            {"correlation_s", model.correlation_s},
+            {"flights", model.flights},
+            {"bins", model.bins},
+            {"bin_s", model.bin_s},
+            {"samples", model.samples},
+            {"airspeed_m_per_s", {{"low", model.airspeed_m_per_s.low}, {"high", model.airspeed_m_per_s.high}}},
+            {"climb_m_per_s", {{"low", model.climb_m_per_s.low}, {"high", model.climb_m_per_s.high}}},
+            {"mean_airspeed_m_per_s", model.mean_airspeed_m_per_s},
+            {"trials", trials}};
+}
+
+void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit) {
+    for (const auto& [flight, reason] : fit.without)
+        warn(call, fmt::format("{} is not in the physical model: {}", flight, reason));
+    if (fit.model.level_sd) return;
+    warn(call,
+         "the physical model rests on a single flight: how flights differ is not known, and its predictions have "
+         "no interval; give two flights or more");
+}
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,205 @@
+#include "mechanical/physical/power_regression.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+namespace flightwatt::mechanical {
+namespace {
+
+constexpr double least_condition = 1e-8;  // of the columns' products, each of length 1
+constexpr double prior_degrees_of_freedom = 3.0;
+
+/// From half a bin, where neighbours are nearly independent, to 20 minutes; twice as long at each second step.
+std::vector<double> correlations_s() {
+    std::vector<double> grid;
+    for (int i = 0; i < 14; ++i) grid.push_back(0.5 * usual_bin_s * std::pow(2.0, 0.5 * i));
+    return grid;
+}
+
+/// From far below what a prediction would feel to as much as the power itself.
+std::vector<double> level_sds(std::size_t flights) {
+    if (flights < 2) return {0.0};
+    std::vector<double> grid;
+    for (int i = 0; i < 24; ++i) grid.push_back(0.002 * std::pow(1.32, i));
+    return grid;
+}
+
+/// Of the grid's logarithmic steps.
+double log_prior(double level_sd) {
+    if (level_sd == 0.0) return 0.0;
+    const double ratio = level_sd / level_prior_scale;
+    return std::log(level_sd) -
+           0.5 * (prior_degrees_of_freedom + 1.0) * std::log1p(ratio * ratio / prior_degrees_of_freedom);
+}
+
+ColumnVector column_values(const MotionBin& bin, const ColumnVector& scale) {
+    ColumnVector values(column_count);
+    for (const auto term : all_power_terms) values[static_cast<int>(term)] = bin.values[term];
+    values[throttle_column] = bin.throttle_cubed.value_or(0.0);
+    return values.cwiseQuotient(scale);
+}
+
+/// Sums of the chosen columns alone.
+struct ChosenSums {
+    ColumnMatrix products;
+    ColumnVector responses;
+    double square = 0.0;
+    double log_determinant = 0.0;
+};
+
+std::vector<ChosenSums> chosen_sums(std::span<const MotionSums> flights, const std::vector<int>& columns) {
+    std::vector<ChosenSums> chosen;
+    chosen.reserve(flights.size());
+    for (const auto& of : flights)
+        chosen.push_back({of.products(columns, columns), of.responses(columns), of.square, of.log_determinant});
+    return chosen;
+}
+
+/// What each flight's power leaves, its own level taken out; flights of a single bin are absent.
+std::vector<double> own_drift_variances_w2(std::span<const MotionSums> flights, const std::vector<int>& columns,
+                                           const ColumnVector& coefficients) {
+    std::vector<double> variances;
+    for (const auto& of : flights) {
+        if (of.bins < 2) continue;
+        const ColumnMatrix products = of.products(columns, columns);
+        const ColumnVector responses = of.responses(columns);
+        const ColumnVector fitted = products * coefficients;
+        const double expected = coefficients.dot(fitted);
+        const double level = coefficients.dot(responses) - expected;
+        const double square = of.square - 2.0 * coefficients.dot(responses) + expected - level * level / expected;
+        variances.push_back(std::max(square, 0.0) / static_cast<double>(of.bins - 1));
+    }
+    return variances;
+}
+
+bool is_determined(const std::vector<ChosenSums>& flights) {
+    ColumnMatrix sum = flights.front().products;
+    for (std::size_t i = 1; i < flights.size(); ++i) sum += flights[i].products;
+    if (!(sum.diagonal().minCoeff() > 0.0)) return false;
+    const ColumnVector root = sum.diagonal().cwiseSqrt().cwiseInverse();
+    const ColumnMatrix scaled = root.asDiagonal() * sum * root.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<ColumnMatrix> solver(scaled, Eigen::EigenvaluesOnly);
+    return solver.eigenvalues().minCoeff() > least_condition;
+}
+
+}  // namespace
+
+ColumnVector column_scale() {
+    ColumnVector scale(column_count);
+    scale << 1000.0, 0.1, 0.1, 1.0, 1.0, 1.0, 1.0;
+    return scale;
+}
+
+MotionSums motion_sums(std::span<const MotionBin> bins, double correlation_s) {
+    const auto scale = column_scale();
+    MotionSums sums;
+    ColumnVector last;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        const ColumnVector now = column_values(bins[i], scale);
+        ColumnVector column = now;
+        double response = bins[i].power_w;
+        if (i > 0 && correlation_s > 0.0) {
+            const double kept = std::exp(-(bins[i].middle_s() - bins[i - 1].middle_s()) / correlation_s);
+            const double innovation = 1.0 - kept * kept;
+            column = (now - kept * last) / std::sqrt(innovation);
+            response = (response - kept * bins[i - 1].power_w) / std::sqrt(innovation);
+            sums.log_determinant += std::log(innovation);
+        }
+        sums.products += column * column.transpose();
+        sums.responses += response * column;
+        sums.square += response * response;
+        ++sums.bins;
+        last = now;
+    }
+    return sums;
+}
+
+std::optional<NodeFit> fit_node(std::span<const MotionSums> flights, const std::vector<int>& columns, double level_sd) {
+    constexpr int rounds = 6;  // the expected power and the drift settle in three
+    const auto count = static_cast<Eigen::Index>(columns.size());
+    const auto sums = chosen_sums(flights, columns);
+    std::size_t bins = 0;
+    for (const auto& of : flights) bins += of.bins;
+    if (bins <= columns.size() || !is_determined(sums)) return std::nullopt;
+    NodeFit fit;
+    ColumnVector expected = ColumnVector::Zero(count);
+    ColumnMatrix normal;
+    for (int round = 0; round < rounds; ++round) {
+        const double ratio = round == 0 ? 0.0 : level_sd * level_sd / fit.drift_variance_w2;
+        normal = ColumnMatrix::Zero(count, count);
+        ColumnVector right = ColumnVector::Zero(count);
+        double log_determinant = 0.0;
+        // The level's part of each flight's covariance is of rank one: Sherman and Morrison.
+        std::vector<double> shrink;
+        for (const auto& of : sums) {
+            const ColumnVector along = of.products * expected;
+            const double size = expected.dot(along);
+            shrink.push_back(ratio / (1.0 + ratio * size));
+            normal += of.products - shrink.back() * along * along.transpose();
+            right += of.responses - shrink.back() * expected.dot(of.responses) * along;
+            log_determinant += of.log_determinant + std::log1p(ratio * size);
+        }
+        const Eigen::LDLT<ColumnMatrix> factor(normal);
+        if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
+        fit.coefficients = factor.solve(right);
+        double square = 0.0;
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            const ColumnVector fitted = sums[i].products * fit.coefficients;
+            const double level = expected.dot(sums[i].responses) - expected.dot(fitted);
+            square += sums[i].square - 2.0 * fit.coefficients.dot(sums[i].responses) + fit.coefficients.dot(fitted) -
+                      shrink[i] * level * level;
+        }
+        const auto freedom = static_cast<double>(bins - columns.size());
+        constexpr double least_w2 = 1e-12;  // bins that a model explains exactly
+        fit.drift_variance_w2 = std::max(square / freedom, least_w2);
+        fit.log_likelihood =
+            -0.5 * (freedom * std::log(fit.drift_variance_w2) + log_determinant + factor.vectorD().array().log().sum());
+        expected = fit.coefficients;
+        fit.covariance = factor.solve(ColumnMatrix::Identity(count, count)) * fit.drift_variance_w2;
+    }
+    return fit;
+}
+
+ColumnVector mean_coefficients(const PowerPosterior& posterior) {
+    ColumnVector mean = ColumnVector::Zero(posterior.fits.front().coefficients.size());
+    for (std::size_t i = 0; i < posterior.fits.size(); ++i)
+        mean += posterior.weights[i] * posterior.fits[i].coefficients;
+    return mean;
+}
+
+MotionRegression::MotionRegression(std::span<const FlightMotion> flights) : flights_(flights.size()) {
+    for (const double correlation_s : correlations_s()) {
+        auto& sums = by_correlation_.emplace_back();
+        for (const auto& flight : flights) sums.push_back(motion_sums(flight.bins, correlation_s));
+    }
+    for (const auto& flight : flights) bins_ += flight.bins.size();
+}
+
+std::optional<PowerPosterior> MotionRegression::posterior(const std::vector<int>& columns) const {
+    PowerPosterior posterior;
+    const auto correlations = correlations_s();
+    for (std::size_t i = 0; i < correlations.size(); ++i) {
+        for (const double level_sd : level_sds(flights_)) {
+            auto fit = fit_node(by_correlation_[i], columns, level_sd);
+            if (!fit) return std::nullopt;
+            posterior.nodes.push_back({correlations[i], level_sd});
+            posterior.weights.push_back(fit->log_likelihood + log_prior(level_sd));
+            posterior.fits.push_back(std::move(*fit));
+        }
+    }
+    const auto most = std::ranges::max_element(posterior.weights);
+    posterior.likeliest = static_cast<std::size_t>(most - posterior.weights.begin());
+    const double highest = *most;
+    double sum = 0.0;
+    for (auto& weight : posterior.weights) sum += weight = std::exp(weight - highest);
+    for (auto& weight : posterior.weights) weight /= sum;
+    const auto correlation = posterior.likeliest / level_sds(flights_).size();
+    posterior.drift_variances_w2 =
+        own_drift_variances_w2(by_correlation_[correlation], columns, posterior.fits[posterior.likeliest].coefficients);
+    return posterior;
+}
+
+}  // namespace flightwatt::mechanical

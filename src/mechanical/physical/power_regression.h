@@ -1,0 +1,87 @@
+#pragma once
+
+#include "mechanical/physical/motion_bins.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flightwatt::mechanical {
+
+/// The columns of a regression: PowerTerm's, and one more for the cube of the throttle, which is tried and told but
+/// is no term of a model.
+inline constexpr int throttle_column = static_cast<int>(power_term_count);
+inline constexpr int column_count = throttle_column + 1;
+
+using ColumnMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, column_count, column_count>;
+using ColumnVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, column_count, 1>;
+
+/// What a regression needs of one flight's bins, their drift taken out: with the drift's correlation R,
+/// products = X' R^-1 X and so on, columns in units of column_scale.
+struct MotionSums {
+    ColumnMatrix products = ColumnMatrix::Zero(column_count, column_count);
+    ColumnVector responses = ColumnVector::Zero(column_count);
+    double square = 0.0;
+    double log_determinant = 0.0;  ///< of R
+    std::size_t bins = 0;
+};
+
+/// The typical sizes of the columns, which make them alike.
+ColumnVector column_scale();
+
+/// Sums over bins whose drift is correlated by exp(-lag / correlation_s); 0: not at all.
+MotionSums motion_sums(std::span<const MotionBin> bins, double correlation_s);
+
+/// What the flights' levels and the drift are taken to be.
+struct VarianceNode {
+    double correlation_s = 0.0;
+    double level_sd = 0.0;  ///< as a part of the power
+};
+
+struct NodeFit {
+    ColumnVector coefficients;  ///< in units of W over column_scale
+    ColumnMatrix covariance;
+    double drift_variance_w2 = 0.0;
+    double log_likelihood = 0.0;  ///< restricted (REML), but for a constant
+};
+
+/// Generalised least squares with given variances: flights differ by a factor with sd level_sd, so their covariance is
+/// level_sd^2 m m' + drift, m the power that the model expects. std::nullopt where the columns are not determined.
+std::optional<NodeFit> fit_node(std::span<const MotionSums> flights, const std::vector<int>& columns, double level_sd);
+
+/// All nodes of a grid, with their posterior weights.
+struct PowerPosterior {
+    std::vector<VarianceNode> nodes;
+    std::vector<NodeFit> fits;
+    std::vector<double> weights;  ///< sum to 1
+    std::size_t likeliest = 0;
+    std::vector<double> drift_variances_w2;  ///< of each flight about the likeliest fit at the flight's own level
+};
+
+ColumnVector mean_coefficients(const PowerPosterior& posterior);
+
+/// Each flight's sums for every correlation of the grid.
+class MotionRegression {
+  public:
+    explicit MotionRegression(std::span<const FlightMotion> flights);
+
+    /// Over the grid of drift correlations and level spreads: weight = REML likelihood times prior. A single flight
+    /// has no spread. std::nullopt where the columns are not determined.
+    std::optional<PowerPosterior> posterior(const std::vector<int>& columns) const;
+
+    std::size_t bins() const { return bins_; }
+    std::size_t flights() const { return flights_; }
+
+  private:
+    std::vector<std::vector<MotionSums>> by_correlation_;
+    std::size_t bins_ = 0;
+    std::size_t flights_ = 0;
+};
+
+/// The prior of the spread between flights is half a Student's t of 3 degrees of freedom with this scale: air density,
+/// load, and above all a few percent of airspeed sensor, which count three times in its cube, make about a tenth.
+inline constexpr double level_prior_scale = 0.1;
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,257 @@
+#include "mechanical/physical/term_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+constexpr std::size_t most_folds = 10;
+constexpr std::size_t blocks_of_single_flight = 5;
+
+/// The level and the drift that the choice works with: about right is enough to compare terms.
+constexpr double working_level_sd = level_prior_scale;
+constexpr double working_correlation_s = 2.0 * usual_bin_s;
+
+/// What is held back at once, with the sums of its bins.
+struct Fold {
+    std::vector<MotionSums> flights;  ///< their drift taken out
+    MotionSums plain;                 ///< as they are
+};
+
+struct Folds {
+    std::vector<Fold> folds;
+    double level_sd = working_level_sd;
+    bool bank_measured = true;
+    bool throttle_measured = true;
+    std::size_t flights = 0;
+    const MotionRegression* regression = nullptr;  ///< of all flights
+};
+
+void add_to(MotionSums& sum, const MotionSums& other) {
+    sum.products += other.products;
+    sum.responses += other.responses;
+    sum.square += other.square;
+    sum.bins += other.bins;
+}
+
+void add_bins(Fold& fold, std::span<const MotionBin> bins) {
+    fold.flights.push_back(motion_sums(bins, working_correlation_s));
+    add_to(fold.plain, motion_sums(bins, 0.0));
+}
+
+Folds folds_of(std::span<const FlightMotion> flights) {
+    Folds made;
+    made.flights = flights.size();
+    for (const auto& flight : flights) {
+        made.bank_measured = made.bank_measured && flight.bank_measured;
+        made.throttle_measured = made.throttle_measured && std::ranges::all_of(flight.bins, [](const auto& bin) {
+                                     return bin.throttle_cubed.has_value();
+                                 });
+    }
+    if (flights.size() == 1) {
+        made.level_sd = 0.0;
+        const std::span<const MotionBin> bins(flights.front().bins);
+        made.folds.resize(std::min(blocks_of_single_flight, bins.size()));
+        for (std::size_t i = 0; i < made.folds.size(); ++i) {
+            const auto first = bins.size() * i / made.folds.size();
+            const auto last = bins.size() * (i + 1) / made.folds.size();
+            add_bins(made.folds[i], bins.subspan(first, last - first));
+        }
+        return made;
+    }
+    made.folds.resize(std::min(most_folds, flights.size()));
+    for (std::size_t i = 0; i < flights.size(); ++i) add_bins(made.folds[i % made.folds.size()], flights[i].bins);
+    return made;
+}
+
+/// How well columns predict what was held back.
+struct HeldBackError {
+    std::vector<double> square;  ///< sum over the bins of each fold
+    double mean_square = 0.0;
+    double rms_w() const { return std::sqrt(mean_square); }
+};
+
+/// std::nullopt where a fit is not determined.
+std::optional<HeldBackError> held_back_error(const Folds& of, const std::vector<int>& columns) {
+    HeldBackError error;
+    std::size_t bins = 0;
+    for (std::size_t out = 0; out < of.folds.size(); ++out) {
+        std::vector<MotionSums> others;
+        for (std::size_t i = 0; i < of.folds.size(); ++i)
+            if (i != out) others.insert(others.end(), of.folds[i].flights.begin(), of.folds[i].flights.end());
+        if (others.empty()) return std::nullopt;
+        const auto fit = fit_node(others, columns, of.level_sd);
+        if (!fit) return std::nullopt;
+        const auto& plain = of.folds[out].plain;
+        const ColumnVector& c = fit->coefficients;
+        const ColumnVector fitted = plain.products(columns, columns) * c;
+        const ColumnVector responses = plain.responses(columns);
+        error.square.push_back(std::max(plain.square - 2.0 * c.dot(responses) + c.dot(fitted), 0.0));
+        error.mean_square += error.square.back();
+        bins += plain.bins;
+    }
+    error.mean_square /= static_cast<double>(bins);
+    return error;
+}
+
+/// Terms that every motion has much alike: between few flights they cannot be told apart.
+bool is_of_level(PowerTerm term) {
+    return term == PowerTerm::drag || term == PowerTerm::induced || term == PowerTerm::constant;
+}
+
+bool has(const std::vector<PowerTerm>& terms, PowerTerm term) { return std::ranges::find(terms, term) != terms.end(); }
+
+/// Why a term cannot be tried beside others; empty if it can.
+std::string why_untried(const Folds& of, const std::vector<PowerTerm>& terms, PowerTerm term) {
+    if (term == PowerTerm::turn && !of.bank_measured) return "not tried: the bank was not measured in all flights";
+    if (term == PowerTerm::descent && !has(terms, PowerTerm::climb)) return "not tried without the climb";
+    const auto levels = std::ranges::count_if(terms, is_of_level);
+    if (is_of_level(term) && levels > 0 &&
+        static_cast<std::size_t>(levels) + 1 > std::max<std::size_t>(1, of.flights - 1))
+        return fmt::format("not tried beside {}: {} flight{} cannot tell them apart",
+                           fmt::join(
+                               [&] {
+                                   std::vector<std::string_view> names;
+                                   for (const auto other : terms)
+                                       if (is_of_level(other)) names.push_back(to_string(other));
+                                   return names;
+                               }(),
+                               " and "),
+                           of.flights, of.flights == 1 ? "" : "s");
+    return "";
+}
+
+std::vector<PowerTerm> with(std::vector<PowerTerm> terms, PowerTerm term) {
+    terms.push_back(term);
+    std::ranges::sort(terms);
+    return terms;
+}
+
+/// Whether the fit of all flights is one that physics lets be.
+bool is_possible(const Folds& of, const std::vector<PowerTerm>& terms) {
+    const auto posterior = of.regression->posterior(columns_of(terms));
+    return posterior && are_possible(terms, mean_coefficients(*posterior));
+}
+
+struct Candidate {
+    PowerTerm term = PowerTerm::drag;
+    HeldBackError error;
+};
+
+bool is_better(const HeldBackError& error, const HeldBackError& before) {
+    std::size_t won = 0;
+    for (std::size_t i = 0; i < error.square.size(); ++i)
+        if (error.square[i] < before.square[i]) ++won;
+    return error.mean_square <= (1.0 - least_gain_of_term) * before.mean_square && 2 * won > error.square.size();
+}
+
+/// Tries a term beside those that were chosen, and says in the trial what came of it.
+std::optional<Candidate> tried(const Folds& of, const std::vector<PowerTerm>& terms, const HeldBackError& before,
+                               TermTrial& trial) {
+    const auto term = *power_term_from(trial.term);
+    trial.rms_before_w.reset();
+    trial.rms_after_w.reset();
+    trial.reason = why_untried(of, terms, term);
+    if (!trial.reason.empty()) return std::nullopt;
+    const auto more = with(terms, term);
+    const auto error = held_back_error(of, columns_of(more));
+    if (!error) {
+        trial.reason = "not tried: these flights do not determine it";
+        return std::nullopt;
+    }
+    trial.rms_before_w = before.rms_w();
+    trial.rms_after_w = error->rms_w();
+    if (!is_better(*error, before)) {
+        trial.reason = "does not predict what was held back";
+        return std::nullopt;
+    }
+    if (!is_possible(of, more)) {
+        trial.reason = "would take a coefficient that physics does not let be";
+        return std::nullopt;
+    }
+    return Candidate{term, *error};
+}
+
+void try_throttle(const Folds& of, const std::vector<PowerTerm>& terms, const HeldBackError& before, TermTrial& trial) {
+    trial.reason = "not tried: the throttle was not measured throughout";
+    if (!of.throttle_measured) return;
+    auto columns = columns_of(terms);
+    columns.push_back(throttle_column);
+    const auto error = held_back_error(of, columns);
+    trial.reason = "not tried: these flights do not determine it";
+    if (!error) return;
+    trial.rms_before_w = before.rms_w();
+    trial.rms_after_w = error->rms_w();
+    trial.reason = "told, never kept: it is what the flight's control answers, not known before a flight";
+}
+
+/// The drag, or a constant where these flights' power does not follow it.
+std::optional<Candidate> first_term(const Folds& of) {
+    std::optional<Candidate> first;
+    for (const auto term : {PowerTerm::drag, PowerTerm::constant}) {
+        auto error = held_back_error(of, columns_of({term}));
+        if (!error || !is_possible(of, {term})) continue;
+        if (!first || is_better(*error, first->error)) first = Candidate{term, std::move(*error)};
+    }
+    return first;
+}
+
+}  // namespace
+
+std::vector<int> columns_of(const std::vector<PowerTerm>& terms) {
+    std::vector<int> columns;
+    columns.reserve(terms.size());
+    for (const auto term : terms) columns.push_back(static_cast<int>(term));
+    return columns;
+}
+
+bool are_possible(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients) {
+    double climb = 0.0;
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        const double value = coefficients[static_cast<Eigen::Index>(i)];
+        if (terms[i] == PowerTerm::climb) climb = value;
+        if (terms[i] == PowerTerm::descent ? value > 0.0 || climb + value < 0.0 : value < 0.0) return false;
+    }
+    return true;
+}
+
+TermChoice choose_terms(std::span<const FlightMotion> flights, const MotionRegression& regression) {
+    auto of = folds_of(flights);
+    of.regression = &regression;
+    TermChoice choice;
+    choice.folds = of.folds.size();
+    for (const auto term : all_power_terms) choice.trials.push_back({std::string(to_string(term)), false, {}, {}, ""});
+    choice.trials.push_back({"throttle", false, {}, {}, ""});
+    const auto first = first_term(of);
+    if (!first) return choice;
+    choice.terms = {first->term};
+    auto error = first->error;
+    choice.trials[static_cast<std::size_t>(first->term)].kept = true;
+    choice.trials[static_cast<std::size_t>(first->term)].rms_after_w = error.rms_w();
+    for (bool grown = true; grown;) {
+        std::optional<Candidate> best;
+        for (const auto term : all_power_terms) {
+            auto& trial = choice.trials[static_cast<std::size_t>(term)];
+            if (trial.kept) continue;
+            auto candidate = tried(of, choice.terms, error, trial);
+            if (!candidate) continue;
+            trial.reason = "another term in its place predicts better";
+            if (!best || candidate->error.mean_square < best->error.mean_square) best = std::move(candidate);
+        }
+        grown = best.has_value();
+        if (!grown) continue;
+        auto& trial = choice.trials[static_cast<std::size_t>(best->term)];
+        trial.kept = true;
+        trial.reason.clear();
+        choice.terms = with(choice.terms, best->term);
+        error = best->error;
+    }
+    try_throttle(of, choice.terms, error, choice.trials.back());
+    return choice;
+}
+
+}  // namespace flightwatt::mechanical

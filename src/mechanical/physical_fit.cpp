@@ -1,0 +1,142 @@
+#include "mechanical/physical_fit.h"
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "mechanical/physical/level_mixture.h"
+#include "mechanical/physical/term_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+/// The grid's fits as one record.
+void summarise(PhysicalModel& model, const PowerPosterior& posterior) {
+    const auto scale = column_scale();
+    const auto count = model.terms.size();
+    const ColumnVector mean = mean_coefficients(posterior);
+    ColumnMatrix covariance = ColumnMatrix::Zero(mean.size(), mean.size());
+    for (std::size_t n = 0; n < posterior.fits.size(); ++n) {
+        const ColumnVector off = posterior.fits[n].coefficients - mean;
+        covariance += posterior.weights[n] * (posterior.fits[n].covariance + off * off.transpose());
+    }
+    model.covariance.assign(count, std::vector<double>(count, 0.0));
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        const double row_scale = scale[static_cast<int>(model.terms[i])];
+        model.coefficients[model.terms[i]] = mean[row] / row_scale;
+        for (std::size_t j = 0; j < count; ++j)
+            model.covariance[i][j] =
+                covariance(row, static_cast<Eigen::Index>(j)) / row_scale / scale[static_cast<int>(model.terms[j])];
+    }
+    const auto& likeliest = posterior.nodes[posterior.likeliest];
+    model.correlation_s = likeliest.correlation_s;
+    model.drift_sd_w = std::sqrt(posterior.fits[posterior.likeliest].drift_variance_w2);
+    if (model.flights.size() < 2) return;
+    std::vector<double> sds;
+    for (const auto& node : posterior.nodes) sds.push_back(node.level_sd);
+    const auto level = student_t_of_mixture(sds, posterior.weights);
+    model.level_sd = level.scale;
+    model.degrees_of_freedom = level.degrees_of_freedom;
+}
+
+void add_value(MotionRange& range, double value, bool first) {
+    range.low = first ? value : std::min(range.low, value);
+    range.high = first ? value : std::max(range.high, value);
+}
+
+/// What the model rests on.
+void describe_flights(PhysicalModel& model, std::span<const FlightMotion> flights) {
+    std::vector<double> cruise_speeds;
+    double duration_s = 0.0;
+    for (const auto& flight : flights) {
+        model.flights.push_back(flight.flight);
+        double sum = 0.0;
+        double of_cruise_s = 0.0;
+        for (const auto& bin : flight.bins) {
+            add_value(model.airspeed_m_per_s, bin.airspeed_m_per_s, model.bins == 0);
+            add_value(model.climb_m_per_s, bin.values[PowerTerm::climb], model.bins == 0);
+            ++model.bins;
+            model.samples += bin.samples;
+            duration_s += bin.duration_s;
+            if (bin.phase != flight::Phase::cruise) continue;
+            sum += bin.airspeed_m_per_s * bin.duration_s;
+            of_cruise_s += bin.duration_s;
+        }
+        if (of_cruise_s > 0.0) cruise_speeds.push_back(sum / of_cruise_s);
+    }
+    model.bin_s = duration_s / static_cast<double>(model.bins);
+    if (!cruise_speeds.empty()) model.mean_airspeed_m_per_s = mean(cruise_speeds);
+}
+
+/// A sum of squares of so many normal numbers differs between flights as their drifts' variances do (2 / v is its
+/// relative variance): at most the independent stretches of drift, less what the coefficients took.
+double drift_degrees_of_freedom(const PhysicalModel& model, const std::vector<double>& variances_w2) {
+    const double stretches =
+        static_cast<double>(model.bins) * model.bin_s / std::max(2.0 * model.correlation_s, model.bin_s);
+    const double most = std::max(1.0, stretches - static_cast<double>(model.terms.size()));
+    if (variances_w2.size() < 2 || !(mean(variances_w2) > 0.0)) return most;
+    const auto flights = static_cast<double>(variances_w2.size());
+    const double relative = sample_variance(variances_w2) / std::pow(mean(variances_w2), 2);
+    const double by_chance = 2.0 * flights / most;
+    return std::clamp(2.0 / std::max(relative - by_chance, 2.0 / most), std::min(flights - 1.0, most), most);
+}
+
+PhysicalModel fit_terms(std::span<const FlightMotion> flights, const MotionRegression& regression,
+                        const std::vector<PowerTerm>& terms) {
+    PhysicalModel model;
+    model.terms = terms;
+    std::ranges::sort(model.terms);
+    describe_flights(model, flights);
+    const auto posterior = regression.posterior(columns_of(model.terms));
+    if (!posterior) throw NoAnswerError("the flights' motion does not determine a power model: it hardly varies");
+    summarise(model, *posterior);
+    model.drift_degrees_of_freedom = drift_degrees_of_freedom(model, posterior->drift_variances_w2);
+    return model;
+}
+
+}  // namespace
+
+PhysicalModel fit_power_terms(std::span<const FlightMotion> flights, const std::vector<PowerTerm>& terms) {
+    return fit_terms(flights, MotionRegression(flights), terms);
+}
+
+PhysicalFit fit_physical_model(std::span<const FlightMotion> flights) {
+    PhysicalFit fit;
+    std::vector<FlightMotion> moving;
+    std::size_t bins = 0;
+    for (const auto& flight : flights) {
+        if (!flight.lacks.empty()) {
+            fit.without.push_back({flight.flight, flight.lacks});
+            continue;
+        }
+        moving.push_back(flight);
+        bins += flight.bins.size();
+    }
+    if (moving.empty()) {
+        std::string reasons;
+        for (const auto& [flight, reason] : fit.without) reasons += fmt::format("; {}: {}", flight, reason);
+        throw NoAnswerError("no flight tells how its power follows its motion" + reasons);
+    }
+    constexpr std::size_t least_bins = 10;
+    if (bins < least_bins) {
+        throw NoAnswerError(
+            fmt::format("{} stretches of {:.0f} s with power, airspeed and altitude: a physical model "
+                        "needs {} or more",
+                        bins, usual_bin_s, least_bins));
+    }
+    const MotionRegression regression(moving);
+    auto choice = choose_terms(moving, regression);
+    if (choice.terms.empty())
+        throw NoAnswerError("power follows neither the airspeed's cube nor a constant: are power and airspeed sound?");
+    fit.trials = std::move(choice.trials);
+    fit.folds = choice.folds;
+    fit.held_back_flights = moving.size() > 1;
+    fit.model = fit_terms(moving, regression, choice.terms);
+    return fit;
+}
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "mechanical/physical/motion_bins.h"
+#include "mechanical/physical_model.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flightwatt::mechanical {
+
+/// A term that the fit tried, and what became of it.
+struct TermTrial {
+    std::string term;  ///< as to_string(PowerTerm), or "throttle"
+    bool kept = false;
+    std::optional<double> rms_before_w;  ///< error of bins held back, without the term; absent if it was not tried
+    std::optional<double> rms_after_w;   ///< and with it
+    std::string reason;                  ///< why it was dropped, or could not be tried; empty if it was kept
+};
+
+/// A flight that is not in the fit.
+struct MotionlessFlight {
+    std::string flight;
+    std::string reason;
+};
+
+struct PhysicalFit {
+    PhysicalModel model;
+    std::vector<TermTrial> trials;  ///< in the order of all_power_terms, the throttle last
+    std::vector<MotionlessFlight> without;
+    bool held_back_flights = true;  ///< false: a single flight, and blocks of its time were held back
+    std::size_t folds = 0;
+};
+
+/// So much less must the mean square error of bins held back be for a term to be kept.
+inline constexpr double least_gain_of_term = 0.05;
+
+/// Fits power to the motion of flights of one aircraft (docs/methods.md, Power from airspeed and climb). The first term
+/// is the drag, or a constant where that predicts better by least_gain_of_term; then, one by one, the term that lowers
+/// the error most, if that is by least_gain_of_term or more, in more than half of the folds, and all coefficients are
+/// what physics lets them be (none negative; a descent gives back at most what the climb took). Folds are the flights,
+/// each held back in turn (ten groups of more than ten), or fifths of a single flight's time. Throws NoAnswerError
+/// where no flight has bins, or they do not tell a single term.
+PhysicalFit fit_physical_model(std::span<const FlightMotion> flights);
+
+/// The same with these terms alone.
+PhysicalModel fit_power_terms(std::span<const FlightMotion> flights, const std::vector<PowerTerm>& terms);
+
+}  // namespace flightwatt::mechanical
