@@ -109,12 +109,21 @@ class PathFlight {
     void fly_stretch(const GroundTrack& track, const Stretch& stretch) {
         const double horizontal = horizontal_of(airspeed(), stretch.climb_m_per_s);
         const double tolerance_m = 1e-9 * track.length_m();
-        for (double from_m = stretch.from_m; from_m < stretch.to_m - tolerance_m;) {
-            double to_m = std::min(stretch.to_m, from_m + track.piece_m());
-            if (to_m > stretch.to_m - tolerance_m) to_m = stretch.to_m;
+        const double piece_m = track.piece_m();
+        const auto period = track.pieces_a_period();
+        std::vector<PathPiece> whole;  // of the first turn: the others are the same
+        for (std::size_t k = 0;; ++k) {
+            const double from_m = stretch.from_m + piece_m * static_cast<double>(k);
+            if (from_m >= stretch.to_m - tolerance_m) break;
+            const bool is_whole = from_m + piece_m <= stretch.to_m - tolerance_m;
+            if (is_whole && whole.size() == period) {
+                add(whole[k % period].time_s, stretch.climb_m_per_s, whole[k % period].motion.load_factor);
+                continue;
+            }
+            const double to_m = is_whole ? from_m + piece_m : stretch.to_m;
             add(track.time_s(from_m, to_m, horizontal), stretch.climb_m_per_s,
                 std::sqrt(track.load_factor_squared(from_m, to_m, horizontal)));
-            from_m = to_m;
+            if (is_whole) whole.push_back(flown_.pieces.back());
         }
     }
 

@@ -126,7 +126,7 @@ TEST(Path, PartsOfCirclesAddUpToTheWhole) {
     EXPECT_NEAR(sum_s, whole_s, 1e-8);
     // Very many circles have longer pieces, and the same sums.
     const auto many = fly_path({{element_of(Circles{80.0, 5000.5, true, 30.0})}}, wind);
-    EXPECT_LT(many.pieces.size(), 1200U);
+    EXPECT_LT(many.pieces.size(), 300U);
     EXPECT_NEAR(many.duration_s, 5000.0 * whole_s + time_s(element_of(Circles{80.0, 0.5, true, 30.0}), wind), 1e-4);
 }
 

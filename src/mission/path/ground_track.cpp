@@ -12,7 +12,7 @@ namespace {
 
 constexpr double standard_gravity_m_per_s2 = 9.80665;
 constexpr double pieces_a_turn = 12.0;
-constexpr double most_pieces = 1000.0;  // of one element: longer ones have longer pieces, with exact means
+constexpr double most_pieces = 240.0;  // of one element: longer ones have longer pieces, with exact means
 
 double rad_of(double deg) { return deg / units::degree_per_rad; }
 
@@ -104,6 +104,11 @@ double GroundTrack::load_factor_squared(double from_m, double to_m, double horiz
         return tangent * tangent / speed;
     });
     return 1.0 + tangent_squared_s / time_s(from_m, to_m, horizontal_m_per_s);
+}
+
+std::size_t GroundTrack::pieces_a_period() const {
+    const bool is_part_of_a_turn = !is_steady() && piece_m() * std::abs(curvature_rad_m_) < units::rad_per_turn / 2.0;
+    return is_part_of_a_turn ? static_cast<std::size_t>(pieces_a_turn) : 1;
 }
 
 double GroundTrack::piece_m() const {

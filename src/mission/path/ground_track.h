@@ -43,6 +43,9 @@ class GroundTrack {
     /// The greatest length over which the motion counts as one: all of it where nothing turns or no wind blows.
     double piece_m() const;
 
+    /// After so many whole pieces the motion repeats itself.
+    std::size_t pieces_a_period() const;
+
   private:
     bool is_steady() const {
         return curvature_rad_m_ == 0.0 || (wind_.east_m_per_s == 0.0 && wind_.north_m_per_s == 0.0);
