@@ -1,0 +1,86 @@
+#include "battery/landing_forecast.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "battery/discharge.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace flightwatt::battery {
+namespace {
+
+/// A day: whoever flies longer charges meanwhile.
+constexpr double longest_s = 86400.0;
+constexpr double step_s = 1.0;
+
+Discharge through(const Battery& battery, const BatteryState& state, const PowerStretch& stretch) {
+    const double power_w = stretch.power_w;
+    const Load load{[power_w](double) { return power_w; }, 0.0, stretch.duration_s};
+    return discharge(battery, load, state, {.max_step_s = step_s});
+}
+
+/// When a battery stopped; the end of the stretch if it did not.
+std::optional<double> failed_at_s(const Discharge& discharge) {
+    if (const auto ended = discharge.ended_at_s()) return ended;
+    if (discharge.undeliverable) return discharge.undeliverable->time_s;
+    return std::nullopt;
+}
+
+}  // namespace
+
+double resting_soc_percent(const Battery& battery, double voltage_v) {
+    constexpr int bisections = 50;
+    double low = 0.0;
+    double high = units::percent_per_whole;
+    for (int i = 0; i < bisections; ++i) {
+        const double middle = 0.5 * (low + high);
+        (open_circuit_voltage_v(battery, middle) < voltage_v ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+BatteryState state_after(const Battery& battery, const DischargeRecord& flown, double initial_soc_percent) {
+    BatteryState state{initial_soc_percent, 0.0};
+    if (flown.time_s.empty()) return state;
+    const double drawn_ah = flown.charge_ah.back();
+    state.soc_percent -= units::percent_of(drawn_ah, battery.capacity_ah);
+    if (state.soc_percent < 0.0) {
+        throw NoAnswerError(
+            fmt::format("{:.3f} Ah were drawn from {:.1f} % of a battery of {:.3f} Ah: is it another one?", drawn_ah,
+                        initial_soc_percent, battery.capacity_ah));
+    }
+    if (battery.thevenin && battery.thevenin->rc_resistance_ohm > 0.0) {
+        state.rc_voltage_v =
+            battery.thevenin->rc_resistance_ohm * settled_current_a(flown, battery.thevenin->rc_time_constant_s).back();
+    }
+    return state;
+}
+
+LandingForecast forecast_landing(const Battery& battery, const BatteryState& now, std::span<const PowerStretch> ahead) {
+    LandingForecast forecast;
+    forecast.soc_now_percent = now.soc_percent;
+    BatteryState state = now;
+    double flown_s = 0.0;
+    double power_w = 0.0;
+    for (const auto& stretch : ahead) {
+        if (stretch.duration_s == 0.0) continue;
+        const auto end = through(battery, state, stretch);
+        state = end;
+        power_w = stretch.power_w;
+        if (const auto failed_s = failed_at_s(end)) {
+            forecast.fails_after_s = flown_s + *failed_s;
+            break;
+        }
+        flown_s += stretch.duration_s;
+    }
+    forecast.soc_percent = state.soc_percent;
+    forecast.voltage_v = terminal_voltage_v(battery, state, delivered_current_a(battery, power_w, state));
+    if (forecast.fails_after_s || !(ahead.front().power_w > 0.0)) return forecast;
+    const auto on = through(battery, state, {ahead.front().power_w, longest_s});
+    forecast.seconds_left = failed_at_s(on).value_or(longest_s);
+    return forecast;
+}
+
+}  // namespace flightwatt::battery

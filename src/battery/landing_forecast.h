@@ -1,0 +1,36 @@
+#pragma once
+
+#include "battery/battery.h"
+#include "battery/identification/discharge_record.h"
+
+#include <optional>
+#include <span>
+
+namespace flightwatt::battery {
+
+/// A constant power for some time.
+struct PowerStretch {
+    double power_w = 0.0;
+    double duration_s = 0.0;
+};
+
+/// How a battery in flight will land.
+struct LandingForecast {
+    double soc_now_percent = 0.0;
+    double soc_percent = 0.0;                  ///< at the end of what lies ahead, or where the battery failed before
+    double voltage_v = 0.0;                    ///< there, under the last stretch's power
+    double seconds_left = 0.0;                 ///< so long could the first stretch's power go on from there
+    std::optional<double> fails_after_s = {};  ///< from now: empty, or asked for more than it delivers
+};
+
+/// The state of charge at which the battery rests at a voltage, between 0 and 100 %. The battery is a Thévenin circuit.
+double resting_soc_percent(const Battery& battery, double voltage_v);
+
+/// The battery after what was flown: `initial_soc_percent` less the charge drawn since, with the voltage of the RC pair.
+/// Throws NoAnswerError where more was drawn than there was.
+BatteryState state_after(const Battery& battery, const DischargeRecord& flown, double initial_soc_percent);
+
+/// From a state through the stretches ahead, at least one, in their order.
+LandingForecast forecast_landing(const Battery& battery, const BatteryState& now, std::span<const PowerStretch> ahead);
+
+}  // namespace flightwatt::battery
