@@ -8,6 +8,7 @@
 #include "cli/stage.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
+#include "mission/path_limits.h"
 #include "mission/plan.h"
 
 #include <filesystem>
@@ -23,9 +24,11 @@ struct MissionFile {
     std::filesystem::path path;
     std::string text;
 
-    mission::AnyMission read(std::optional<double> cruise_s = {}) const {
-        return mission::parse_mission(text, path, {true, cruise_s});
+    mission::AnyMission read(mission::MissionReading reading = {}) const {
+        reading.may_lack_schedule = true;
+        return mission::parse_mission(text, path, reading);
     }
+    mission::AnyMission read_with_cruise(double cruise_s) const { return read({.cruise_s = cruise_s}); }
 };
 
 std::optional<double> probability(const cli::StageCall& call) {
@@ -62,7 +65,7 @@ void note_sources(const cli::StageCall& call, const mission::MissionSetup& missi
                                     const mission::PlanningProblem& problem, const mission::MissionPlan& plan) {
     if (!plan.plan.deliverable) throw NoAnswerError(describe(plan.summary));
     const auto report = infeasibility_report(
-        problem, plan, [&](double cruise_s) { return file.read(cruise_s); }, probability(call));
+        problem, plan, [&](double cruise_s) { return file.read_with_cruise(cruise_s); }, probability(call));
     if (call.json) {
         auto json = cli::to_json(plan, problem);
         json["shortfall"] = cli::to_json(report);
@@ -138,15 +141,32 @@ int answer(const cli::StageCall& call, const mission::MissionSetup& mission, con
     return cli::ok;
 }
 
+/// --longest-cruise of a mission that says where it flies.
+int answer_of_path(const cli::StageCall& call, const MissionFile& file, const mission::AnyMission& mission,
+                   const mission::CruisePath& cruise) {
+    const auto& setup = setup_of(mission);
+    const auto& path = cruise.plan->path;
+    if (question_of(path) == mission::PathQuestion::circles) {
+        const auto most =
+            mission::most_circles([&](double circles) { return file.read({.circles = circles}); }, probability(call));
+        return answer(call, setup, "most_circles", "circles", most);
+    }
+    const auto most = mission::farthest_return([&](double after_m) { return file.read({.return_after_m = after_m}); },
+                                               length_of_legs_m(path), probability(call));
+    return answer(call, setup, "farthest_return_m", "m", most);
+}
+
 int plan_file(const cli::StageCall& call) {
     const MissionFile file{call.inputs.front(), read_file(call.inputs.front())};
     const bool cruise = call.has("longest-cruise");
     const bool payload = call.has("largest-payload");
     if (cruise && payload) throw UsageError("--longest-cruise and --largest-payload are two questions: ask one");
     if (cruise) {
-        const auto most =
-            mission::longest_cruise([&](double cruise_s) { return file.read(cruise_s); }, probability(call));
-        return answer(call, setup_of(file.read()), "longest_cruise_s", "s", most);
+        const auto mission = file.read();
+        if (const auto& flown = setup_of(mission).cruise_path) return answer_of_path(call, file, mission, *flown);
+        const auto most = mission::longest_cruise([&](double cruise_s) { return file.read_with_cruise(cruise_s); },
+                                                  probability(call));
+        return answer(call, setup_of(mission), "longest_cruise_s", "s", most);
     }
     if (payload) {
         const auto mission = file.read();
@@ -168,7 +188,9 @@ simulated and made anew until they land; the bound is then that of the highest v
     stage.max_inputs = 1;
     auto add = stage.options.add_options();
     add("probability", cli::value<double>("P"), "keep the reserve with this chance, as flights differ (0.95)");
-    add("longest-cruise", "instead: the longest cruise that lands with the reserve [s]");
+    add("longest-cruise",
+        "instead: the longest cruise that lands with the reserve [s]; of a [path] the most circles, or without any the "
+        "farthest from where the mission returns [m]");
     add("largest-payload", "instead: the largest constant power that can be fed besides [W]");
     return flightwatt::cli::run_stage(argc, argv, stage, plan_file);
 }

@@ -51,20 +51,6 @@ Bracket bracket_of(const SpareOf& spare_of, Bracket tried, double factor, double
     return tried;
 }
 
-/// `beyond` is the mission with a little more than `value`.
-FeasibilityLimit limit_at(double value, double margin_percent, const Mission& at, const Mission& beyond) {
-    FeasibilityLimit most;
-    most.value = value;
-    most.margin_percent = margin_percent;
-    most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
-    most.residual_percent = most.final_soc_percent - margin_percent - at.reserve_soc_percent;
-    const auto further = simulate(beyond).summary;
-    most.limited_by = further.undeliverable  ? FeasibilityBound::power
-                      : further.cut_off_at_s ? FeasibilityBound::cut_off
-                                             : FeasibilityBound::charge;
-    return most;
-}
-
 /// Its interval, if it has one, in proportion.
 Mission with_capacity(Mission mission, double capacity_ah) {
     auto& battery = mission.battery;
@@ -155,6 +141,19 @@ AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::o
 }
 
 }  // namespace
+
+FeasibilityLimit limit_at(double value, double margin_percent, const Mission& at, const Mission& beyond) {
+    FeasibilityLimit most;
+    most.value = value;
+    most.margin_percent = margin_percent;
+    most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
+    most.residual_percent = most.final_soc_percent - margin_percent - at.reserve_soc_percent;
+    const auto further = simulate(beyond).summary;
+    most.limited_by = further.undeliverable  ? FeasibilityBound::power
+                      : further.cut_off_at_s ? FeasibilityBound::cut_off
+                                             : FeasibilityBound::charge;
+    return most;
+}
 
 std::string to_string(FeasibilityBound bound) {
     constexpr std::array names{"charge", "power", "cut-off"};

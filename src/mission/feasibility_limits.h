@@ -31,6 +31,9 @@ struct FeasibilityLimit {
     FeasibilityBound limited_by = FeasibilityBound::charge;
 };
 
+/// The limit `at`, whose flights need a margin, of which `beyond` is the mission with a little more.
+FeasibilityLimit limit_at(double value, double margin_percent, const Mission& at, const Mission& beyond);
+
 /// With a `probability`, that part of the flights which sampling/flight_draws.h makes of the answer keep the reserve; and
 /// they throw as require_known_spread does.
 

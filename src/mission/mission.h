@@ -3,6 +3,7 @@
 #include "battery/battery.h"
 #include "compute/compute_model.h"
 #include "mechanical/mechanical_model.h"
+#include "mission/cruise_path.h"
 #include "mission/schedule.h"
 
 #include <cstddef>
@@ -46,10 +47,11 @@ struct MissionSetup {
     std::string name;
     std::optional<mechanical::MechanicalModel> mechanical;  ///< none: computing alone
     mechanical::PhaseClock phase_clock = mechanical::PhaseClock::stretched;
-    /// The cruise's mean power under the stated conditions; `mechanical` has this level then.
+    /// The cruise's mean power under the stated conditions, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
-    PerPhase<double> duration_s;        ///< 0: the phase is not flown
-    PerPhase<bool> duration_is_stated;  ///< by the mission, and not its model's: all flights take so long
+    std::optional<CruisePath> cruise_path = {};  ///< what the cruise's power is then, instead of the model's curve
+    PerPhase<double> duration_s;                 ///< 0: the phase is not flown
+    PerPhase<bool> duration_is_stated;           ///< by the mission, and not its model's: all flights take so long
     battery::Battery battery;
     bool capacity_is_stated = false;  ///< by the mission, and not its battery's: all packs hold so much
     bool may_charge = false;          ///< power below 0 is meant, and charges the battery
@@ -59,6 +61,7 @@ struct MissionSetup {
     double cutoff_voltage_v = 0.0;     ///< the battery is cut off below it; 0: never
     double reserve_soc_percent = 0.0;  ///< what should be left at the end
     Uncertainty uncertainty;
+    std::vector<std::string> notes = {};  ///< what people should know of how it was read
 };
 
 /// A mission that can be flown.

@@ -11,8 +11,11 @@ namespace flightwatt::mission {
 
 /// What else than the file decides how a mission is read.
 struct MissionReading {
-    bool may_lack_schedule = false;  ///< accept a mission that is yet to be planned
-    std::optional<double> cruise_s;  ///< fly the cruise this long, whatever the file says
+    bool may_lack_schedule = false;       ///< accept a mission that is yet to be planned
+    std::optional<double> cruise_s = {};  ///< fly the cruise this long, whatever the file says
+    // Of a path: fly the last circles of it so often; or turn back after so many metres of legs.
+    std::optional<double> circles = {};
+    std::optional<double> return_after_m = {};
 };
 
 /// Reads a mission file (docs/missions.md). A mission with [plan], with an adaptive policy, or with components and no

@@ -1,6 +1,9 @@
 #include "base/atomic_file.h"
 #include "base/toml_reader.h"
 #include "compute/profile_reader.h"
+#include "mission/file/conditions_toml.h"
+#include "mission/file/named_file.h"
+#include "mission/file/path_toml.h"
 #include "mission/file/planning_toml.h"
 #include "mission/file/schedule_toml.h"
 #include "mission/mission_file.h"
@@ -14,21 +17,6 @@ constexpr double shortest_phase_s = 1e-3;
 constexpr double least_capacity_ah_of_a_pack = 1e-3;  // below, it is a mistake in the unit
 constexpr double largest_sd_percent = 1000.0;
 constexpr double longest_phase_s = 1e7;  // a third of a year: beyond, it is a mistake in the unit
-
-/// The file that a key names, relative to the mission file.
-std::filesystem::path file_of(const TomlTable& table, std::string_view key) {
-    auto path = std::filesystem::path(table.file()).parent_path() / table.string(key);
-    const auto error = reading_error(path);
-    if (error == std::errc::no_such_file_or_directory) {
-        throw InputError(table.where(key), fmt::format("{}: there is no file {}", key, path.string()),
-                         "paths are relative to the mission file");
-    }
-    if (error) {
-        throw InputError(table.where(key),
-                         fmt::format("{}: {} cannot be read: {}", key, path.string(), error.message()));
-    }
-    return path;
-}
 
 std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root) {
     if (root.string("mechanical") == "none") return std::nullopt;
@@ -46,47 +34,6 @@ mechanical::PhaseClock read_clock(const TomlTable& root, bool has_mechanical) {
     if (*name == "absolute") return mechanical::PhaseClock::absolute;
     throw InputError(root.where("phase_clock"), fmt::format("there is no phase_clock '{}'", *name),
                      "it is \"stretch\" or \"absolute\"");
-}
-
-const mechanical::LevelLaw& law_of(const TomlTable& conditions,
-                                   const std::optional<mechanical::MechanicalModel>& mechanical) {
-    if (!mechanical) {
-        throw InputError(conditions.where(), "conditions have no meaning with mechanical = \"none\"", "leave them out");
-    }
-    const auto& law = mechanical->phases[Phase::cruise].level_law;
-    if (law) return *law;
-    throw InputError(
-        conditions.where(),
-        fmt::format("the cruise level of the mechanical model '{}' follows no condition", mechanical->name),
-        "fit it with one: flightwatt fit --level-covariate NAME FLIGHT...; or leave the conditions out");
-}
-
-/// Shifts the model's cruise so that its mean over the model's own duration is the power of its level law under the
-/// [conditions], and returns that power with its spread. What the flights of the law did not show is refused: a plan
-/// can be changed, and a power that nothing supports should not look like a result.
-mechanical::ConstantPower apply_conditions(const TomlTable& conditions,
-                                           std::optional<mechanical::MechanicalModel>& mechanical) {
-    const auto& law = law_of(conditions, mechanical);
-    const auto name = to_string(law.covariate);
-    for (const auto& key : conditions.keys()) {
-        if (key == name) continue;
-        throw InputError(conditions.where(key),
-                         fmt::format("the cruise level of this mechanical model does not follow '{}'", key),
-                         fmt::format("it follows {}, from {:.4g} to {:.4g}", name, law.least, law.most));
-    }
-    const double value = conditions.number(name);
-    const auto level = level_at(law, value);
-    if (!level.within_flights) {
-        throw InputError(
-            conditions.where(name), fmt::format("{} = {} is beyond what the model's flights showed", name, value),
-            fmt::format("the {} flights of its level law were from {:.4g} to {:.4g}; give one of these, or "
-                        "fit a model to flights that were flown so",
-                        law.flights, law.least, law.most));
-    }
-    auto& cruise = mechanical->phases[Phase::cruise];
-    const double model_mean_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
-    cruise.fourier.a0_w += level.power_w - model_mean_w;
-    return constant_power(level);
 }
 
 double read_duration(const TomlTable& durations, std::string_view phase) {
@@ -233,18 +180,35 @@ AnyMission with_read_schedule(const TomlTable& root, const MissionReading& readi
 
 AnyMission parse_mission(std::string_view text, const std::filesystem::path& path, const MissionReading& reading) {
     const auto root = parse_toml(text, path.string());
-    root.refuse_keys_except({"format", "name", "mechanical", "duration_s", "phase_clock", "conditions", "battery",
-                             "initial_soc_percent", "capacity_ah", "cutoff_voltage_v", "reserve_soc_percent",
-                             "may_charge", "components", "schedule", "plan", "policy", "uncertainty"});
+    root.refuse_keys_except({"format",
+                             "name",
+                             "mechanical",
+                             "duration_s",
+                             "phase_clock",
+                             "airspeed_m_per_s",
+                             "conditions",
+                             "path",
+                             "wind",
+                             "battery",
+                             "initial_soc_percent",
+                             "capacity_ah",
+                             "cutoff_voltage_v",
+                             "reserve_soc_percent",
+                             "may_charge",
+                             "components",
+                             "schedule",
+                             "plan",
+                             "policy",
+                             "uncertainty"});
     require_known_format(root);
     MissionSetup mission;
     mission.file = path.string();
     mission.name = root.optional_string("name").value_or(path.stem().string());
     mission.mechanical = read_mechanical(root);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
-    if (const auto conditions = root.optional_table("conditions"))
-        mission.cruise_level = apply_conditions(*conditions, mission.mechanical);
+    if (!root.has("path")) apply_conditions(root, mission);
     read_durations(root, mission);
+    read_cruise_path(root, reading, mission);
     if (reading.cruise_s) {
         mission.duration_s[Phase::cruise] = *reading.cruise_s;
         mission.duration_is_stated[Phase::cruise] = true;

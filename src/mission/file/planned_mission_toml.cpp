@@ -83,6 +83,8 @@ std::string planned_mission_toml(std::string_view text, const std::filesystem::p
         for (auto&& [name, component] : *components)
             if (auto* table = component.as_table()) move_path(*table, "profile", from, to);
     }
+    if (auto* cruise = root.get_as<toml::table>("path"))
+        for (const std::string_view key : {"waypoints", "flight_plan"}) move_path(*cruise, key, from, to);
     std::ostringstream out;
     out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};
     return out.str() + "\n" + schedule_text(compute, schedule);

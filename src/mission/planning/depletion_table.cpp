@@ -30,7 +30,7 @@ struct PhaseLoad {
     const VoltageCourse* course;  ///< none: the battery's own
     double cutoff_voltage_v;
     double phase_start_s;
-    const std::optional<mechanical::FourierModel>& mechanical;
+    std::optional<mechanical::FourierModel> mechanical;
     double compute_w;
 
     /// Its RC voltage takes the battery's constant source to where the course is.
@@ -81,8 +81,18 @@ double at_cell(const PhaseDepletion& depletion, std::size_t cell, double part) {
            part * (slope_a + part * (3.0 * rise - 2.0 * slope_a - slope_b + part * (slope_a + slope_b - 2.0 * rise)));
 }
 
+/// The last piece that starts at a time or before.
+const PhaseDepletion::Piece& piece_at(const PhaseDepletion& depletion, double time_s) {
+    const auto after = std::ranges::upper_bound(depletion.pieces, time_s, {}, &PhaseDepletion::Piece::start_s);
+    return after == depletion.pieces.begin() ? *after : *(after - 1);
+}
+
 /// How many points the battery has lost since the phase began.
 double depleted_percent(const PhaseDepletion& depletion, double time_s) {
+    if (!depletion.pieces.empty()) {
+        const auto& piece = piece_at(depletion, time_s);
+        return piece.depleted_before_percent + depleted_percent(piece.depletion, time_s - piece.start_s);
+    }
     const double position = std::clamp(time_s, 0.0, depletion.duration_s) * depletion.cells_per_s;
     const auto cell = std::min(static_cast<std::size_t>(position), depletion.nodes.size() - 2);
     const double part = position - static_cast<double>(cell);
@@ -130,8 +140,41 @@ PhaseDepletion tabulate(const PhaseLoad& load, double duration_s) {
     return depletion;
 }
 
+/// A table for each piece of a path.
+PhaseDepletion tabulate(PhaseLoad load, const PowerPieces& pieces) {
+    PhaseDepletion depletion;
+    depletion.duration_s = pieces.back().end_s;
+    const double phase_start_s = load.phase_start_s;
+    double depleted = 0.0;
+    for (const auto& [start_s, end_s, power_w, energy_before_j] : pieces) {
+        load.mechanical = mechanical::FourierModel{0.0, power_w, {}, {}};
+        load.phase_start_s = phase_start_s + start_s;
+        auto of_piece = tabulate(load, end_s - start_s);
+        depletion.deliverable = depletion.deliverable && of_piece.deliverable;
+        depletion.error_percent += of_piece.error_percent;
+        const double before = depleted;
+        depleted += of_piece.nodes.back().depleted_percent;
+        depletion.pieces.push_back({start_s, before, std::move(of_piece)});
+    }
+    return depletion;
+}
+
+bool charges(const PhaseDepletion& depletion) {
+    return std::ranges::any_of(depletion.nodes, [](const auto& node) { return node.percent_per_s < 0.0; }) ||
+           std::ranges::any_of(depletion.pieces, [](const auto& piece) { return charges(piece.depletion); });
+}
+
 bool is_undeliverable(const PhaseDepletion& depletion, double start_s, double end_s) {
     if (depletion.deliverable) return false;
+    if (!depletion.pieces.empty()) {
+        const double tolerance_s = same_time_tolerance_s(depletion.duration_s);
+        return std::ranges::any_of(depletion.pieces, [&](const auto& piece) {
+            const double piece_end_s = piece.start_s + piece.depletion.duration_s;
+            return piece.start_s < end_s - tolerance_s && piece_end_s > start_s + tolerance_s &&
+                   is_undeliverable(piece.depletion, start_s - piece.start_s,
+                                    std::min(end_s - piece.start_s, piece.depletion.duration_s));
+        });
+    }
     const auto cells = depletion.nodes.size() - 1;
     // A segment that ends on a node does not touch the cell behind it.
     const double inside = same_time_tolerance_s(depletion.duration_s);
@@ -198,11 +241,10 @@ DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<com
                                  flown.mechanical[phase],
                                  power_w(mission.compute, table.configurations[c])};
             auto& depletion = table.depletions[c][phase];
-            depletion = tabulate(load, mission.duration_s[phase]);
+            depletion = phase == Phase::cruise && flown.cruise_pieces ? tabulate(load, *flown.cruise_pieces)
+                                                                      : tabulate(load, mission.duration_s[phase]);
             table.error_percent = std::max(table.error_percent, depletion.error_percent);
-            table.charges = table.charges || std::ranges::any_of(depletion.nodes, [](const auto& node) {
-                                return node.percent_per_s < 0.0;
-                            });
+            table.charges = table.charges || charges(depletion);
         }
     }
     return table;

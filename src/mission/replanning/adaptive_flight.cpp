@@ -146,7 +146,7 @@ class Flight {
         running_ = planned.run;
         append_merged(flight_.schedule, planned);
         const auto flown = rescale_to_flown_durations({planned}, known_.duration_s, actual_.duration_s);
-        for (const auto& segment : disturbed({load_segment(load_, flown.front())}, disturbances_))
+        for (const auto& segment : disturbed(smooth_parts(load_segment(load_, flown.front())), disturbances_))
             charge_ = after_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
     }
 

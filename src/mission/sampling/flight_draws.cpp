@@ -36,6 +36,8 @@ std::string basis_of(const LevelDeviation& deviation) {
             return sd + "stated";
         case DeviationSource::conditions:
             return sd + "of the flights about what the conditions say";
+        case DeviationSource::path:
+            return sd + "of the flights about what their motion says";
         case DeviationSource::flights:
             return sd + fmt::format("of {} flights", deviation.flights);
         case DeviationSource::fit_error:
@@ -44,9 +46,28 @@ std::string basis_of(const LevelDeviation& deviation) {
     throw std::logic_error("basis_of: no such source of a deviation");
 }
 
+bool has_wind_spread(const MissionSetup& mission) {
+    if (!mission.cruise_path) return false;
+    const auto& wind = mission.cruise_path->plan->wind;
+    return wind.speed_sd_m_per_s > 0.0 || wind.direction_sd_deg > 0.0;
+}
+
+void find_wind(const MissionSetup& mission, FlightSpreads& spreads) {
+    if (!mission.cruise_path) return;
+    const auto& wind = mission.cruise_path->plan->wind;
+    const auto note = [&](double sd, const std::string& what, std::string_view unit, std::string_view key) {
+        note_source(spreads, sd > 0.0, what,
+                    sd > 0.0 ? fmt::format("sd {:.4g} {}, stated", sd, unit) : fmt::format("[wind] states no {}", key));
+    };
+    note(wind.speed_sd_m_per_s, "wind speed", "m/s", "speed_sd_m_per_s");
+    note(wind.direction_sd_deg, "wind direction", "degrees", "direction_sd_deg");
+}
+
 /// Throughout, what the mission states is fixed, and [uncertainty] alone gives it a spread.
 void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spreads) {
     const auto source = fmt::format("{} duration", to_string(phase));
+    if (phase == Phase::cruise && mission.cruise_path)
+        return note_source(spreads, has_wind_spread(mission), source, "as the path and the wind make it");
     auto& sd_s = spreads.duration_sd_s[phase];
     std::vector<double> flown_s;
     if (mission.mechanical) {
@@ -151,6 +172,18 @@ void move_level(mechanical::PhaseModel& phase, double moved_w, double shown_s) {
         for (auto& term_w : *terms_w) term_w *= factor;
 }
 
+/// The cruise along a path in the wind of its flight, its level moved as a part of the planned.
+void fly_drawn_path(double moved_w, double speed_z, double direction_z, const MissionSetup& planned,
+                    MissionSetup& flight) {
+    const auto& plan = planned.cruise_path->plan;
+    auto wind = plan->wind;
+    wind.speed_m_per_s = std::max(0.0, wind.speed_m_per_s + speed_z * wind.speed_sd_m_per_s);
+    wind.from_deg += direction_z * wind.direction_sd_deg;
+    const double factor = std::max(0.0, 1.0 + moved_w / mean_power_w(*planned.cruise_path));
+    flight.cruise_path = fly_cruise(plan, wind, ForbiddenLeg::crawl, factor);
+    flight.duration_s[Phase::cruise] = duration_s(*flight.cruise_path);
+}
+
 /// The numbers that make a flight, in their order.
 class Normals {
   public:
@@ -209,6 +242,7 @@ FlightSpreads find_spreads(const MissionSetup& mission) {
         }
         find_duration(mission, phase, spreads);
     }
+    find_wind(mission, spreads);
     find_compute(mission, spreads);
     find_battery(mission, spreads);
     return spreads;
@@ -217,7 +251,7 @@ FlightSpreads find_spreads(const MissionSetup& mission) {
 std::size_t count_normals(const MissionSetup& mission) {
     constexpr std::size_t of_phases = 2 * all_phases.size();
     constexpr std::size_t of_battery = 5;
-    std::size_t count = of_phases + of_battery;
+    std::size_t count = of_phases + of_battery + (mission.cruise_path ? 2 : 0);
     for (const auto& component : mission.compute.components) count += 1 + component.profile.power_w.size();
     return count;
 }
@@ -234,8 +268,10 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals) {
     Normals normal(normals);
     auto flight = mission;
+    double cruise_moved_w = 0.0;
     for (const auto phase : all_phases) {
         const double moved_w = normal() * spreads.level_sd_w[phase];
+        if (phase == Phase::cruise) cruise_moved_w = moved_w;
         const double planned_s = mission.duration_s[phase];
         const double flown_s = planned_s + normal() * spreads.duration_sd_s[phase];
         flight.duration_s[phase] = std::max(shortest_part * planned_s, flown_s);
@@ -247,6 +283,10 @@ MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads
     move_battery(spreads.battery, normal, flight.battery);
     for (std::size_t i = 0; i < spreads.components.size(); ++i)
         move_component(spreads.components[i], normal, flight.compute.components[i].profile.power_w);
+    if (!mission.cruise_path) return flight;
+    const double wind_speed_z = normal();
+    const double wind_direction_z = normal();
+    fly_drawn_path(cruise_moved_w, wind_speed_z, wind_direction_z, mission, flight);
     return flight;
 }
 
@@ -258,6 +298,7 @@ MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& sprea
 MissionSetup without_evidence(MissionSetup mission) {
     if (mission.mechanical) {
         mission.mechanical->flights.clear();
+        mission.mechanical->physical.reset();
         for (const auto phase : all_phases) {
             const auto& model = mission.mechanical->phases[phase];
             mechanical::PhaseModel curve;

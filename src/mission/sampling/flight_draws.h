@@ -41,7 +41,7 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 
 /// The mission as the flight of these numbers flies it, each of which moves one quantity by so many deviations: of each
 /// phase level and duration, of the battery capacity, voltage, resistance, RC resistance and RC time constant, of each
-/// component its power and that of each node. Levels move a phase's whole curve; where that would be negative, which it
+/// component its power and that of each node, of a path the wind's speed and direction. Levels move a phase's whole curve; where that would be negative, which it
 /// was not, the curve is scaled to the same mean, down to 0. The knots of an open-circuit voltage move together, each
 /// by its own error. An interval has a deviation for each side; a time constant is normal in its logarithm. Durations
 /// stop at a tenth of the planned, what cannot be negative at 0 (or a thousandth).

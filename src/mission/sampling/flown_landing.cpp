@@ -45,7 +45,10 @@ Landing land(const DrawnFlight& flight, const std::vector<double>& times_s) {
     landing.depleted = charge.empty_at_s && *charge.empty_at_s < lasted_s;
     landing.battery_failure = charge.undeliverable || (charge.ended_at_s() && *charge.ended_at_s() < lasted_s);
     landing.left_percent = charge.soc_percent;
-    if (landing.battery_failure) {
+    if (const auto& path = flight.setup.cruise_path; path && path->is_forbidden) {
+        landing.battery_failure = true;  // it never gets there
+        landing.left_percent = std::min(-1e-9, landing.left_percent - units::percent_per_whole);
+    } else if (landing.battery_failure) {
         const double failed_at_s = charge.undeliverable ? charge.undeliverable->time_s : *charge.ended_at_s();
         landing.left_percent = std::min(-1e-9, -missed_percent(flight, failed_at_s));
     }

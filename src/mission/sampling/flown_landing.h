@@ -17,7 +17,7 @@ struct DrawnFlight {
 struct Landing {
     double final_soc_percent = 0.0;
     bool depleted = false;
-    bool battery_failure = false;  ///< that, or cut off, or beyond the power limit
+    bool battery_failure = false;  ///< that, or cut off, or beyond the power limit, or on a path that the wind forbids
     /// What is left [points]; after a failure less than 0, by the energy demanded later as a part of a full battery's.
     double left_percent = 0.0;
     std::vector<double> soc_percent;  ///< at the times that were asked for

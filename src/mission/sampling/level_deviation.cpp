@@ -14,11 +14,13 @@ LevelDeviation level_deviation(const MissionSetup& mission, Phase phase) {
     if (const auto percent = mission.uncertainty.level_sd_percent[phase]) {
         const double duration_s = mission.duration_s[phase];
         const auto flown = flown_model(model, duration_s, mission.phase_clock);
-        const double mean_w = std::abs(energy_j(flown, duration_s) / duration_s);
+        const bool has_path = phase == Phase::cruise && mission.cruise_path;
+        const double mean_w =
+            has_path ? mean_power_w(*mission.cruise_path) : std::abs(energy_j(flown, duration_s) / duration_s);
         return {units::part_of(mean_w, *percent), DeviationSource::stated};
     }
     if (phase == Phase::cruise && mission.cruise_level && mission.cruise_level->sd_w)
-        return {*mission.cruise_level->sd_w, DeviationSource::conditions};
+        return {*mission.cruise_level->sd_w, mission.cruise_path ? DeviationSource::path : DeviationSource::conditions};
     if (const auto& spread = model.level_spread) {
         const double weight_square_sum = forecast_of(*mission.mechanical, phase).weight_square_sum;
         return {spread->level_sd_w * std::sqrt(1.0 + weight_square_sum), DeviationSource::flights,

@@ -11,6 +11,7 @@ enum class DeviationSource {
     none,
     stated,      ///< the mission's [uncertainty]
     conditions,  ///< the flights about what the mission's [conditions] say
+    path,        ///< the flights about what their motion says
     flights,     ///< the model's flights about their average
     fit_error    ///< the standard error of the fit alone, which is not how flights differ
 };

@@ -89,9 +89,13 @@ double depleted_percent(const battery::Battery& battery, const LoadSegment& segm
 }  // namespace
 
 MissionLoad load_of(const MissionSetup& mission) {
-    MissionLoad load{mission, timeline_of(mission.duration_s), {}};
+    MissionLoad load{mission, timeline_of(mission.duration_s), {}, {}};
     for (const auto phase : all_phases) {
         if (!mission.mechanical || mission.duration_s[phase] == 0.0) continue;
+        if (phase == Phase::cruise && mission.cruise_path) {
+            load.cruise_pieces = mission.cruise_path->pieces;
+            continue;
+        }
         load.mechanical[phase] =
             flown_model(mission.mechanical->phases[phase], mission.duration_s[phase], mission.phase_clock);
     }
@@ -105,6 +109,7 @@ LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& schedul
     segment.start_s = segment.phase_start_s + scheduled.start_s;
     segment.end_s = segment.phase_start_s + scheduled.end_s;
     segment.mechanical = load.mechanical[scheduled.phase];
+    if (scheduled.phase == Phase::cruise) segment.pieces = load.cruise_pieces;
     segment.compute_w = power_w(load.mission.compute, scheduled.run);
     return segment;
 }
@@ -113,8 +118,29 @@ std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedu
     const auto load = load_of(mission);
     std::vector<LoadSegment> segments;
     segments.reserve(schedule.size());
-    for (const auto& scheduled : schedule) segments.push_back(load_segment(load, scheduled));
+    for (const auto& scheduled : schedule)
+        for (auto& part : smooth_parts(load_segment(load, scheduled))) segments.push_back(std::move(part));
     return segments;
+}
+
+std::vector<LoadSegment> smooth_parts(const LoadSegment& segment) {
+    if (!segment.pieces) return {segment};
+    std::vector<LoadSegment> parts;
+    const auto last = static_cast<std::size_t>(segment.pieces->size() - 1);
+    const auto first_piece = &piece_at(*segment.pieces, segment.start_s - segment.phase_start_s + edge_tolerance_s);
+    for (auto i = static_cast<std::size_t>(first_piece - segment.pieces->data()); i <= last; ++i) {
+        const auto& piece = (*segment.pieces)[i];
+        auto& part = parts.emplace_back(segment);
+        part.pieces.reset();
+        part.mechanical = mechanical::FourierModel{0.0, piece.power_w, {}, {}};
+        part.start_s = parts.size() == 1 ? segment.start_s : parts[parts.size() - 2].end_s;
+        if (parts.size() > 1) part.soc_drop_percent = 0.0;
+        part.end_s = segment.phase_start_s + piece.end_s;
+        if (i < last && part.end_s < segment.end_s - edge_tolerance_s) continue;
+        part.end_s = segment.end_s;
+        break;
+    }
+    return parts;
 }
 
 std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, const Disturbances& disturbances) {
@@ -141,12 +167,17 @@ std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, con
 }
 
 double mechanical_w(const LoadSegment& segment, double time_s) {
+    if (segment.pieces) return piece_at(*segment.pieces, time_s - segment.phase_start_s).power_w;
     return segment.mechanical ? power_w(*segment.mechanical, time_s - segment.phase_start_s) : 0.0;
 }
 
 double power_w(const LoadSegment& segment, double time_s) { return mechanical_w(segment, time_s) + segment.compute_w; }
 
 double mechanical_energy_j(const LoadSegment& segment, double time_s) {
+    if (segment.pieces) {
+        return energy_until_j(*segment.pieces, time_s - segment.phase_start_s) -
+               energy_until_j(*segment.pieces, segment.start_s - segment.phase_start_s);
+    }
     if (!segment.mechanical) return 0.0;
     return energy_j(*segment.mechanical, time_s - segment.phase_start_s) -
            energy_j(*segment.mechanical, segment.start_s - segment.phase_start_s);

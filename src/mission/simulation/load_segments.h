@@ -4,6 +4,7 @@
 #include "mission/disturbance.h"
 #include "mission/mission.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,14 +13,15 @@ namespace flightwatt::mission {
 /// A battery that ends this near to the end of its mission has lasted.
 inline constexpr double lasting_tolerance_s = 1e-6;
 
-/// What a mission demands from one jump of power to the next: smooth mechanical power and constant computing.
-/// Times are those of the mission.
+/// What a mission demands while one configuration runs: mechanical power, smooth but for the jumps between the pieces of
+/// a path, and constant computing. Times are those of the mission.
 struct LoadSegment {
     Phase phase = Phase::takeoff;
     double phase_start_s = 0.0;
     double start_s = 0.0;
     double end_s = 0.0;
     std::optional<mechanical::FourierModel> mechanical;  ///< in the phase's own time
+    std::shared_ptr<const PowerPieces> pieces;           ///< of a path, instead: in the phase's own time too
     double compute_w = 0.0;
     double soc_drop_percent = 0.0;  ///< [points] that the battery loses at once as this starts
 };
@@ -30,15 +32,20 @@ struct MissionLoad {
     MissionTimeline timeline;
     /// Of the phases that are flown, in their own time; none without a mechanical model.
     PerPhase<std::optional<mechanical::FourierModel>> mechanical;
+    std::shared_ptr<const PowerPieces> cruise_pieces = nullptr;  ///< of a path, instead of a curve
 };
 
 MissionLoad load_of(const MissionSetup& mission);
+/// Of a path it may hold jumps, which smooth_parts parts.
 LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& scheduled);
 
-/// The load of a schedule, in order and without gaps: each segment starts exactly where the one before ends.
+/// A segment, parted where the pieces of a path meet: each of one constant power. Others are one part.
+std::vector<LoadSegment> smooth_parts(const LoadSegment& segment);
+
+/// The load of a schedule in smooth parts, in order and without gaps: each starts exactly where the one before ends.
 std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedule& schedule);
 
-/// The segments, cut where a disturbance starts or ends and changed in between.
+/// The segments, which are smooth parts, cut where a disturbance starts or ends and changed in between.
 std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, const Disturbances& disturbances);
 
 double mechanical_w(const LoadSegment& segment, double time_s);

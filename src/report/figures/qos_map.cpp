@@ -208,6 +208,14 @@ bool have_same_software(const mission::MissionSetup& a, const mission::MissionSe
         });
 }
 
+/// The cruise along the same pieces of power, or both by their models' curves.
+bool have_same_path(const mission::MissionSetup& a, const mission::MissionSetup& b) {
+    if (!a.cruise_path || !b.cruise_path) return !a.cruise_path && !b.cruise_path;
+    return std::ranges::equal(*a.cruise_path->pieces, *b.cruise_path->pieces, [](const auto& one, const auto& other) {
+        return one.end_s == other.end_s && one.power_w == other.power_w;
+    });
+}
+
 bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& b) {
     const auto nameless = [](battery::Battery battery) {
         battery.name.clear();
@@ -215,7 +223,7 @@ bool have_same_map(const mission::MissionSetup& a, const mission::MissionSetup& 
     };
     return a.duration_s.values == b.duration_s.values && a.initial_soc_percent == b.initial_soc_percent &&
            nameless(a.battery) == nameless(b.battery) && have_same_software(a, b) && a.phase_clock == b.phase_clock &&
-           have_same_model(a, b);
+           have_same_model(a, b) && have_same_path(a, b);
 }
 
 Figure qos_map_figure(const QosMap& map, std::span<const SimulatedMission> missions,

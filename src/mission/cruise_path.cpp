@@ -1,0 +1,159 @@
+#include "mission/cruise_path.h"
+
+#include "base/units.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double same_power_part = 1e-12;
+
+/// Neighbours of the same power are one piece.
+PowerPieces power_pieces(const mechanical::PhysicalModel& model, const FlownPath& flown, double factor) {
+    PowerPieces pieces;
+    for (const auto& [time_s, motion, element] : flown.pieces) {
+        const double power_w = factor * mechanical::power_w(model, motion);
+        if (pieces.empty()) {
+            pieces.push_back({0.0, time_s, power_w, 0.0});
+            continue;
+        }
+        auto& last = pieces.back();
+        const double end_s = last.end_s + time_s;
+        if (std::abs(power_w - last.power_w) <= same_power_part * std::abs(last.power_w)) {
+            last.end_s = end_s;
+        } else {
+            const double energy_j = last.energy_before_j + last.power_w * (last.end_s - last.start_s);
+            pieces.push_back({last.end_s, end_s, power_w, energy_j});
+        }
+    }
+    return pieces;
+}
+
+/// "12.1 to 14.9 m/s".
+std::string range_text(const mechanical::MotionRange& range) {
+    return fmt::format("{:.4g} to {:.4g} m/s", range.low, range.high);
+}
+
+}  // namespace
+
+CruisePath fly_cruise(std::shared_ptr<const PathPlan> plan, const Wind& wind, ForbiddenLeg forbidden, double factor) {
+    const auto flown = fly_path(plan->path, wind, forbidden);
+    CruisePath cruise;
+    cruise.pieces = std::make_shared<const PowerPieces>(power_pieces(plan->power, flown, factor));
+    cruise.is_forbidden = flown.blown.has_value();
+    cruise.plan = std::move(plan);
+    return cruise;
+}
+
+double duration_s(const CruisePath& cruise) { return cruise.pieces->back().end_s; }
+
+double energy_j(const CruisePath& cruise) { return energy_until_j(*cruise.pieces, duration_s(cruise)); }
+
+double mean_power_w(const CruisePath& cruise) { return energy_j(cruise) / duration_s(cruise); }
+
+const PowerPiece& piece_at(const PowerPieces& pieces, double time_s) {
+    const auto after = std::ranges::upper_bound(pieces, time_s, {}, &PowerPiece::start_s);
+    return after == pieces.begin() ? pieces.front() : *(after - 1);
+}
+
+double energy_until_j(const PowerPieces& pieces, double time_s) {
+    const auto& piece = piece_at(pieces, time_s);
+    return piece.energy_before_j + piece.power_w * (time_s - piece.start_s);
+}
+
+std::vector<FlownElement> flown_elements(const PathPlan& plan) {
+    const auto flown = fly_path(plan.path, plan.wind);
+    std::vector<FlownElement> elements;
+    double start_s = 0.0;
+    for (std::size_t i = 0; i < plan.path.elements.size(); ++i) {
+        const auto& element = plan.path.elements[i];
+        FlownElement row;
+        row.name = element.name;
+        row.kind = "hold";
+        row.start_s = start_s;
+        row.duration_s = flown.element_s[i];
+        row.airspeed_m_per_s = element.airspeed_m_per_s;
+        if (const auto* leg = std::get_if<Leg>(&element.shape)) {
+            row.kind = "leg";
+            row.length_m = leg->length_m;
+            row.course_deg = leg->course_deg;
+        } else if (const auto* circles = std::get_if<Circles>(&element.shape)) {
+            row.kind = "circles";
+            row.length_m = units::rad_from_turns(circles->turns) * circles->radius_m;
+        }
+        start_s += row.duration_s;
+        row.load_factor = 0.0;
+        elements.push_back(std::move(row));
+    }
+    for (const auto& [time_s, motion, index] : flown.pieces) {
+        auto& row = elements[index];
+        const double part = time_s / row.duration_s;
+        row.climb_m_per_s += part * motion.climb_m_per_s;
+        row.load_factor += part * motion.load_factor * motion.load_factor;
+        row.mechanical_w += part * mechanical::power_w(plan.power, motion);
+    }
+    for (auto& row : elements) row.load_factor = std::sqrt(row.load_factor);
+    return elements;
+}
+
+mechanical::TermValues mean_terms(const FlownPath& flown) {
+    mechanical::TermValues sums;
+    for (const auto& piece : flown.pieces) {
+        const auto terms = mechanical::terms_of(piece.motion);
+        for (const auto term : mechanical::all_power_terms) sums[term] += terms[term] * piece.time_s / flown.duration_s;
+    }
+    return sums;
+}
+
+mechanical::PhysicalModel model_of_law(const mechanical::LevelLaw& law) {
+    const double coefficient = law.mean_power_w / law.mean;
+    mechanical::PhysicalModel model;
+    model.terms = {mechanical::PowerTerm::drag};
+    model.coefficients[mechanical::PowerTerm::drag] = coefficient;
+    const auto flights = static_cast<double>(law.flights);
+    double variance = 0.0;
+    if (law.residual_sd_w) {
+        model.level_sd = *law.residual_sd_w / law.mean_power_w;
+        variance = std::pow(*model.level_sd * coefficient, 2) / flights;
+    }
+    model.covariance = {{variance}};
+    model.degrees_of_freedom = flights - 1.0;
+    model.airspeed_m_per_s = {std::cbrt(law.least), std::cbrt(law.most)};
+    model.mean_airspeed_m_per_s = std::cbrt(law.mean);
+    return model;
+}
+
+std::vector<std::string> path_warnings(const PathPlan& plan, const FlownPath& flown) {
+    constexpr double steep_load_factor = 2.0;  // a bank of 60 degrees
+    constexpr std::size_t most_named = 3;
+    std::vector<std::string> warnings;
+    std::size_t warned = plan.path.elements.size();
+    std::size_t extrapolated = 0;
+    bool is_steep = false;
+    for (const auto& [time_s, motion, element] : flown.pieces) {
+        const auto& name = plan.path.elements[element].name;
+        if (element != warned && !was_flown(plan.power, motion)) {
+            warned = element;
+            if (++extrapolated > most_named) continue;
+            warnings.push_back(fmt::format(
+                "{}: {:.4g} m/s with a climb of {:.3g} m/s is beyond what the model's flights flew ({}, climb {}): its power "
+                "is extrapolated",
+                name, motion.airspeed_m_per_s, motion.climb_m_per_s, range_text(plan.power.airspeed_m_per_s),
+                range_text(plan.power.climb_m_per_s)));
+        }
+        if (motion.load_factor > steep_load_factor && !is_steep) {
+            is_steep = true;
+            const double bank_deg = std::acos(1.0 / motion.load_factor) * units::degree_per_rad;
+            warnings.push_back(fmt::format("{}: such a circle takes a bank of {:.0f} degrees", name, bank_deg));
+        }
+    }
+    if (extrapolated > most_named)
+        warnings.push_back(fmt::format("the power of {} more is extrapolated so", extrapolated - most_named));
+    return warnings;
+}
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "mechanical/level_law.h"
+#include "mechanical/physical_model.h"
+#include "mission/path.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace flightwatt::mission {
+
+/// A part of the cruise with constant mechanical power.
+struct PowerPiece {
+    double start_s = 0.0;  ///< since the cruise began; the first starts at 0, each other where the one before ends
+    double end_s = 0.0;
+    double power_w = 0.0;
+    double energy_before_j = 0.0;  ///< of all pieces before
+};
+using PowerPieces = std::vector<PowerPiece>;
+
+/// Where a cruise is flown, in which wind, and what its motion takes.
+struct PathPlan {
+    FlightPath path;
+    Wind wind;
+    mechanical::PhysicalModel power;
+};
+
+/// A cruise whose power follows from a path, and not from a curve over time. Copies are cheap.
+struct CruisePath {
+    std::shared_ptr<const PathPlan> plan;
+    std::shared_ptr<const PowerPieces> pieces;  ///< never empty
+    bool is_forbidden = false;                  ///< by a wind that was drawn: the flight fails
+};
+
+/// A cruise as it is flown in `wind`, its power times `factor`. Throws as fly_path.
+CruisePath fly_cruise(std::shared_ptr<const PathPlan> plan, const Wind& wind, ForbiddenLeg forbidden,
+                      double factor = 1.0);
+
+double duration_s(const CruisePath& cruise);
+double energy_j(const CruisePath& cruise);
+double mean_power_w(const CruisePath& cruise);
+
+/// The piece at a time of the cruise; at a jump the one that starts. Times outside have the nearest.
+const PowerPiece& piece_at(const PowerPieces& pieces, double time_s);
+
+/// The energy [J] from the start of the cruise to a time within it.
+double energy_until_j(const PowerPieces& pieces, double time_s);
+
+/// One element of a path as it is flown: means over its time.
+struct FlownElement {
+    std::string name;      ///< "leg 3"
+    std::string kind;      ///< "leg", "circles" or "hold"
+    double start_s = 0.0;  ///< since the cruise began
+    double duration_s = 0.0;
+    std::optional<double> length_m;  ///< over ground
+    std::optional<double> course_deg;
+    double airspeed_m_per_s = 0.0;
+    double climb_m_per_s = 0.0;
+    double load_factor = 1.0;  ///< the root of the mean square
+    double mechanical_w = 0.0;
+};
+std::vector<FlownElement> flown_elements(const PathPlan& plan);
+
+/// The mean of each term of the power over the cruise, weighted by time: what uncertainty_of wants.
+mechanical::TermValues mean_terms(const FlownPath& flown);
+
+/// The model that a law of airspeed cubed makes, for level flight alone (docs/methods.md, Eq. 23).
+mechanical::PhysicalModel model_of_law(const mechanical::LevelLaw& law);
+
+/// For people: the elements that the model's flights did not fly so, and banks above 60 degrees; empty if there are
+/// none.
+std::vector<std::string> path_warnings(const PathPlan& plan, const FlownPath& flown);
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,228 @@
+#include "mission/file/path_toml.h"
+
+#include "mission/file/named_file.h"
+#include "mission/path/path_entries.h"
+#include "mission/path/waypoint_files.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double fastest_wind_m_per_s = 100.0;
+constexpr auto altitudes = between(-1e5, 1e5);
+constexpr auto times = more_than_up_to(0.0, 1e7);
+
+Wind read_wind(const TomlTable& root) {
+    Wind wind;
+    const auto table = root.optional_table("wind");
+    if (!table) return wind;
+    table->refuse_keys_except({"speed_m_per_s", "from_deg", "speed_sd_m_per_s", "direction_sd_deg"});
+    wind.speed_m_per_s = number_in(between(0.0, fastest_wind_m_per_s), *table, "speed_m_per_s");
+    const bool is_calm = wind.speed_m_per_s == 0.0;
+    wind.from_deg = is_calm ? number_in_or(between(-360.0, 360.0), *table, "from_deg", 0.0)
+                            : number_in(between(-360.0, 360.0), *table, "from_deg");
+    wind.speed_sd_m_per_s = number_in_or(between(0.0, fastest_wind_m_per_s), *table, "speed_sd_m_per_s", 0.0);
+    wind.direction_sd_deg = number_in_or(between(0.0, 360.0), *table, "direction_sd_deg", 0.0);
+    return wind;
+}
+
+ClimbRates read_rates(const TomlTable& table) {
+    const auto rates = more_than_up_to(0.0, fastest_m_per_s);
+    return {optional_number_in(rates, table, "climb_m_per_s"), optional_number_in(rates, table, "descent_m_per_s")};
+}
+
+/// The place that a table gives, in either coordinates.
+struct StatedPlace {
+    std::optional<LocalPlace> local;
+    std::optional<GeographicPlace> geographic;
+};
+
+StatedPlace read_place(const TomlTable& table) {
+    StatedPlace place;
+    const auto metres = between(-1e7, 1e7);
+    if (table.has("east_m") || table.has("north_m"))
+        place.local = LocalPlace{number_in(metres, table, "east_m"), number_in(metres, table, "north_m")};
+    if (table.has("latitude_deg") || table.has("longitude_deg")) {
+        place.geographic = GeographicPlace{number_in(between(-90.0, 90.0), table, "latitude_deg"),
+                                           number_in(between(-180.0, 180.0), table, "longitude_deg")};
+    }
+    if (place.local && place.geographic)
+        throw InputError(table.where(), "a place in metres and in degrees", "give one of them");
+    return place;
+}
+
+PathEntry read_leg(const TomlTable& leg, std::size_t number) {
+    leg.refuse_keys_except({"east_m", "north_m", "latitude_deg", "longitude_deg", "length_m", "course_deg",
+                            "duration_s", "altitude_m", "airspeed_m_per_s", "climb_m_per_s", "descent_m_per_s",
+                            "circles", "radius_m", "turn", "hold_s"});
+    PathEntry entry;
+    entry.name = fmt::format("leg {}", number);
+    entry.where = leg.where();
+    const auto place = read_place(leg);
+    entry.place = place.local;
+    entry.geographic = place.geographic;
+    entry.length_m = optional_number_in(more_than_up_to(0.0, longest_leg_m), leg, "length_m");
+    entry.course_deg = optional_number_in(between(-360.0, 360.0), leg, "course_deg");
+    entry.duration_s = optional_number_in(times, leg, "duration_s");
+    entry.altitude_m = optional_number_in(altitudes, leg, "altitude_m");
+    entry.airspeed_m_per_s = optional_number_in(more_than_up_to(0.0, fastest_m_per_s), leg, "airspeed_m_per_s");
+    entry.rates = read_rates(leg);
+    entry.circles = optional_number_in(more_than_up_to(0.0, largest_circle_count), leg, "circles");
+    entry.radius_m = optional_number_in(between(least_radius_m, most_radius_m), leg, "radius_m");
+    entry.hold_s = optional_number_in(times, leg, "hold_s");
+    if (const auto turn = leg.optional_string("turn")) {
+        if (*turn != "left" && *turn != "right")
+            throw InputError(leg.where("turn"), fmt::format("there is no turn '{}'", *turn),
+                             "it is \"left\" or \"right\"");
+        if (!entry.circles) throw InputError(leg.where("turn"), "turn belongs to circles", "leave it out");
+        entry.to_right = *turn == "right";
+    }
+    return entry;
+}
+
+PathDefaults read_defaults(const TomlTable& path) {
+    PathDefaults defaults;
+    defaults.where = path.where();
+    defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, fastest_m_per_s), path, "airspeed_m_per_s");
+    defaults.altitude_m = optional_number_in(altitudes, path, "altitude_m");
+    defaults.rates = read_rates(path);
+    defaults.return_to_start = path.optional_boolean("return_to_start").value_or(false);
+    if (const auto start = path.optional_table("start")) {
+        start->refuse_keys_except({"east_m", "north_m", "latitude_deg", "longitude_deg"});
+        const auto place = read_place(*start);
+        if (!place.local && !place.geographic)
+            throw InputError(start->where(), "start is no place",
+                             "give east_m and north_m, or latitude_deg and longitude_deg");
+        defaults.start = place.local;
+        defaults.geographic_start = place.geographic;
+    }
+    return defaults;
+}
+
+/// Those of a file first, then the legs.
+std::vector<PathEntry> read_entries(const TomlTable& path) {
+    std::vector<PathEntry> entries;
+    const bool has_waypoints = path.has("waypoints");
+    if (has_waypoints && path.has("flight_plan"))
+        throw InputError(path.where("flight_plan"), "waypoints and flight_plan are two paths", "give one");
+    if (path.has("flight_plan") != path.has("waypoint_order")) {
+        throw InputError(
+            path.where(), "flight_plan and waypoint_order belong together",
+            "a flight plan's blocks are a program that is not run: say which of its waypoints are flown, in "
+            "order, waypoint_order = [\"1\", \"2\"]");
+    }
+    if (has_waypoints) entries = read_waypoints(file_of(path, "waypoints"));
+    if (path.has("flight_plan"))
+        entries = read_flight_plan(file_of(path, "flight_plan"), path.strings("waypoint_order"));
+    std::size_t number = 0;
+    for (const auto& leg : path.tables("leg")) entries.push_back(read_leg(leg, ++number));
+    if (entries.empty())
+        throw InputError(path.where(), "the path has no legs", "add [[path.leg]], waypoints or flight_plan");
+    return entries;
+}
+
+void refuse_what_the_path_decides(const TomlTable& root) {
+    const auto refuse = [&](const Location& where, const std::string& message, const std::string& hint) {
+        throw InputError(where, message, hint);
+    };
+    if (const auto durations = root.optional_table("duration_s"); durations && durations->has("cruise"))
+        refuse(durations->where("cruise"), "the duration of the cruise follows from [path]",
+               "leave it out, or the path");
+    for (const std::string_view key : {"conditions", "airspeed_m_per_s"}) {
+        if (!root.has(key)) continue;
+        refuse(root.where(key), fmt::format("{} and [path] both say how the cruise is flown", key),
+               "leave it out: [path] has airspeed_m_per_s of its own, and [wind] stands beside it");
+    }
+    const auto uncertainty = root.optional_table("uncertainty");
+    if (!uncertainty) return;
+    if (const auto durations = uncertainty->optional_table("duration_sd_s"); durations && durations->has("cruise"))
+        refuse(durations->where("cruise"), "the duration of the cruise follows from [path] and [wind]",
+               "state how the wind differs: speed_sd_m_per_s and direction_sd_deg in [wind]");
+}
+
+/// What the motion takes: by the model's own terms, else by drag's law for a level path.
+mechanical::PhysicalModel power_model(const TomlTable& path, const MissionSetup& mission, bool is_level) {
+    if (!mission.mechanical)
+        throw InputError(path.where(), "a path has no meaning with mechanical = \"none\"", "leave it out");
+    if (mission.mechanical->physical) return *mission.mechanical->physical;
+    const auto& law = mission.mechanical->phases[Phase::cruise].airspeed_law;
+    const std::string fit =
+        "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured "
+        "their airspeed";
+    if (!law) {
+        throw InputError(path.where(),
+                         fmt::format("the mechanical model '{}' does not know what motion takes: it has no [physical]",
+                                     mission.mechanical->name),
+                         fit);
+    }
+    if (!is_level) {
+        throw InputError(path.where(),
+                         fmt::format("the mechanical model '{}' knows airspeed and not climb: it has no [physical]",
+                                     mission.mechanical->name),
+                         "fly at one altitude, or " + fit);
+    }
+    return model_of_law(*law);
+}
+
+/// The entry whose circles may be repeated: the last that has some.
+PathEntry* repeated_circles(std::vector<PathEntry>& entries) {
+    const auto last = std::find_if(entries.rbegin(), entries.rend(), [](const auto& entry) { return !!entry.circles; });
+    return last == entries.rend() ? nullptr : &*last;
+}
+
+FlightPath read_path(const TomlTable& table, const MissionReading& reading) {
+    table.refuse_keys_except({"airspeed_m_per_s", "altitude_m", "climb_m_per_s", "descent_m_per_s", "start",
+                              "return_to_start", "waypoints", "flight_plan", "waypoint_order", "leg"});
+    const auto defaults = read_defaults(table);
+    auto entries = read_entries(table);
+    if (reading.circles) {
+        auto* repeated = repeated_circles(entries);
+        if (repeated == nullptr) throw NoAnswerError("the path has no circles");
+        repeated->circles = *reading.circles;
+    }
+    auto path = path_of(entries, defaults);
+    if (reading.return_after_m) path = there_and_back(path, *reading.return_after_m, defaults.rates);
+    return path;
+}
+
+/// The level of the cruise and how flights differ about it.
+mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const FlownPath& flown, double mean_w) {
+    mechanical::ConstantPower level{mean_w, std::nullopt, 0.0};
+    if (const auto uncertainty = uncertainty_of(model, mean_terms(flown), flown.duration_s)) {
+        level.sd_w = uncertainty->sd_w;
+        level.degrees_of_freedom = uncertainty->degrees_of_freedom;
+    }
+    return level;
+}
+
+}  // namespace
+
+void read_cruise_path(const TomlTable& mission_table, const MissionReading& reading, MissionSetup& mission) {
+    const auto table = mission_table.optional_table("path");
+    if (!table) {
+        if (mission_table.has("wind"))
+            throw InputError(mission_table.where("wind"), "[wind] belongs to a [path]", "leave it out, or add one");
+        return;
+    }
+    if (reading.cruise_s) throw NoAnswerError("the duration of the cruise follows from its path");
+    refuse_what_the_path_decides(mission_table);
+    PathPlan plan;
+    plan.path = read_path(*table, reading);
+    plan.wind = read_wind(mission_table);
+    const bool is_level =
+        std::ranges::all_of(plan.path.elements, [](const auto& element) { return element.altitude_change_m == 0.0; });
+    plan.power = power_model(*table, mission, is_level);
+    const auto flown = fly_path(plan.path, plan.wind);
+    for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
+    const auto shared = std::make_shared<const PathPlan>(std::move(plan));
+    mission.cruise_path = fly_cruise(shared, shared->wind, ForbiddenLeg::refuse);
+    mission.cruise_level = level_of(shared->power, flown, mean_power_w(*mission.cruise_path));
+    mission.duration_s[Phase::cruise] = duration_s(*mission.cruise_path);
+    mission.duration_is_stated[Phase::cruise] = true;
+}
+
+}  // namespace flightwatt::mission

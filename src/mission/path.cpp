@@ -1,0 +1,255 @@
+#include "mission/path.h"
+
+#include "base/units.h"
+#include "mission/path/ground_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <boost/math/tools/toms748_solve.hpp>
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double crawling_part = 0.02;  // of the airspeed, over ground, where a drawn wind forbids an element
+constexpr double longest_path_s = 1e7;
+constexpr double nearly = 1.0 - 1e-9;
+
+/// A part of a track with one climb rate.
+struct Stretch {
+    double from_m = 0.0;
+    double to_m = 0.0;
+    double climb_m_per_s = 0.0;
+};
+
+double horizontal_of(double airspeed_m_per_s, double climb_m_per_s) {
+    return std::sqrt(std::max(0.0, airspeed_m_per_s * airspeed_m_per_s - climb_m_per_s * climb_m_per_s));
+}
+
+/// Where `function` crosses 0, rising from `low` to `high`.
+template <typename Function>
+double rising_root(const Function& function, double low, double high) {
+    std::uintmax_t iterations = 200;
+    const auto [below, above] = boost::math::tools::toms748_solve(
+        function, low, high, boost::math::tools::eps_tolerance<double>(48), iterations);
+    return std::midpoint(below, above);
+}
+
+/// Flies the elements one after the other.
+class PathFlight {
+  public:
+    PathFlight(const FlightPath& path, const Wind& wind, ForbiddenLeg forbidden)
+        : path_(path), wind_(wind), crawls_(forbidden == ForbiddenLeg::crawl) {}
+
+    FlownPath fly() {
+        for (std::size_t i = 0; i < path_.elements.size(); ++i) {
+            index_ = i;
+            element_ = &path_.elements[i];
+            const double before_s = flown_.duration_s;
+            std::visit([&](const auto& shape) { fly_shape(shape); }, element_->shape);
+            flown_.element_s.push_back(flown_.duration_s - before_s);
+            if (!crawls_ && !(flown_.duration_s <= longest_path_s)) refuse_length();
+        }
+        return std::move(flown_);
+    }
+
+  private:
+    double airspeed() const { return element_->airspeed_m_per_s; }
+    double sign() const { return element_->altitude_change_m < 0.0 ? -1.0 : 1.0; }
+    double height_m() const { return std::abs(element_->altitude_change_m); }
+
+    [[noreturn]] void refuse(const std::string& message, const std::string& hint) const {
+        throw InputError(element_->where, element_->name + ": " + message, hint);
+    }
+    [[noreturn]] void refuse_length() const {
+        refuse(
+            fmt::format("up to its end the path takes {:.3g} s, more than {:.0e}", flown_.duration_s, longest_path_s),
+            "is a length or a speed in another unit?");
+    }
+
+    void add(double time_s, double climb_m_per_s, double load_factor = 1.0) {
+        if (!(time_s > 0.0)) return;
+        flown_.pieces.push_back({time_s, {airspeed(), climb_m_per_s, load_factor}, index_});
+        flown_.duration_s += time_s;
+    }
+
+    void fly_shape(const Hold& hold) {
+        const double rate = element_->climb_rate_m_per_s.value_or(height_m() / hold.time_s);
+        const double climb_s = height_m() > 0.0 ? height_m() / rate : 0.0;
+        require_slower_than_airspeed(height_m() > 0.0 ? rate : 0.0);
+        if (climb_s * nearly > hold.time_s) {
+            refuse(fmt::format("takes {:.4g} s, and at {:.4g} m/s {} m of height need {:.4g} s", hold.time_s, rate,
+                               height_m(), climb_s),
+                   "hold longer, or change the height faster");
+        }
+        add(std::min(climb_s, hold.time_s), sign() * rate);
+        add(hold.time_s - climb_s, 0.0);
+    }
+
+    template <typename Shape>
+    void fly_shape(const Shape& shape) {
+        const GroundTrack track(shape, wind_);
+        const double least = track.least_horizontal_m_per_s();
+        const double crawl_s = track.length_m() / (crawling_part * airspeed());
+        const bool is_forbidden = airspeed() <= least * (1.0 + 1e-12);
+        if (is_forbidden && !crawls_) refuse_wind(shape);
+        if (crawls_ && (is_forbidden || track.time_s(0.0, track.length_m(), airspeed()) > crawl_s)) {
+            if (!flown_.blown) flown_.blown = index_;
+            add(crawl_s, 0.0);
+            return;
+        }
+        const auto stretches = height_m() == 0.0              ? std::vector<Stretch>{{0.0, track.length_m(), 0.0}}
+                               : element_->climb_rate_m_per_s ? climb_first(track, least)
+                                                              : climb_all_along(track, least);
+        for (const auto& stretch : stretches) fly_stretch(track, stretch);
+    }
+
+    void fly_stretch(const GroundTrack& track, const Stretch& stretch) {
+        const double horizontal = horizontal_of(airspeed(), stretch.climb_m_per_s);
+        const double tolerance_m = 1e-9 * track.length_m();
+        const double piece_m = track.piece_m();
+        const auto period = track.pieces_a_period();
+        std::vector<PathPiece> whole;  // of the first turn: the others are the same
+        for (std::size_t k = 0;; ++k) {
+            const double from_m = stretch.from_m + piece_m * static_cast<double>(k);
+            if (from_m >= stretch.to_m - tolerance_m) break;
+            const bool is_whole = from_m + piece_m <= stretch.to_m - tolerance_m;
+            if (is_whole && whole.size() == period) {
+                add(whole[k % period].time_s, stretch.climb_m_per_s, whole[k % period].motion.load_factor);
+                continue;
+            }
+            const double to_m = is_whole ? from_m + piece_m : stretch.to_m;
+            add(track.time_s(from_m, to_m, horizontal), stretch.climb_m_per_s,
+                std::sqrt(track.load_factor_squared(from_m, to_m, horizontal)));
+            if (is_whole) whole.push_back(flown_.pieces.back());
+        }
+    }
+
+    void require_slower_than_airspeed(double rate_m_per_s) const {
+        if (rate_m_per_s < airspeed()) return;
+        refuse(fmt::format("changes its height at {:.4g} m/s with an airspeed of {:.4g} m/s", rate_m_per_s, airspeed()),
+               "climb or descend more slowly");
+    }
+
+    /// At the stated rate from the start on.
+    std::vector<Stretch> climb_first(const GroundTrack& track, double least) {
+        const double rate = *element_->climb_rate_m_per_s;
+        require_slower_than_airspeed(rate);
+        const double horizontal = horizontal_of(airspeed(), rate);
+        const double climb_s = height_m() / rate;
+        const double length_m = track.length_m();
+        const double possible_s = horizontal > least ? track.time_s(0.0, length_m, horizontal) : 0.0;
+        if (horizontal <= least || possible_s < climb_s * nearly) {
+            if (!crawls_) refuse_climb(rate, climb_s, possible_s);
+            add(climb_s, sign() * rate);  // up or down on the spot
+            return {};
+        }
+        if (possible_s <= climb_s) return {{0.0, length_m, sign() * rate}};
+        const auto missing_s = [&](double until_m) { return track.time_s(0.0, until_m, horizontal) - climb_s; };
+        const double until_m = rising_root(missing_s, 0.0, length_m);
+        return {{0.0, until_m, sign() * rate}, {until_m, length_m, 0.0}};
+    }
+
+    /// At the one rate that reaches the height at the end.
+    std::vector<Stretch> climb_all_along(const GroundTrack& track, double least) {
+        constexpr double below_steepest = 1.0 - 1e-6;
+        const double steepest = below_steepest * horizontal_of(airspeed(), least);
+        const auto above_m = [&](double rate) {
+            return rate * track.time_s(0.0, track.length_m(), horizontal_of(airspeed(), rate)) - height_m();
+        };
+        if (above_m(steepest) < 0.0) {
+            if (!crawls_) {
+                refuse(
+                    fmt::format("changes its height by {:.4g} m over {:.4g} m, too steep for an airspeed of {:.4g} m/s",
+                                height_m(), track.length_m(), airspeed()),
+                    "make it longer, or state climb_m_per_s and descent_m_per_s and circle while the height changes");
+            }
+            add(height_m() / steepest, sign() * steepest);
+            return {};
+        }
+        return {{0.0, track.length_m(), sign() * rising_root(above_m, 0.0, steepest)}};
+    }
+
+    [[noreturn]] void refuse_climb(double rate, double climb_s, double possible_s) const {
+        refuse(
+            fmt::format("changes its height by {:.4g} m at {:.4g} m/s, which takes {:.4g} s, and is flown in {:.4g} s",
+                        height_m(), rate, climb_s, possible_s),
+            "make it longer or the rate greater, add circles for the change, or state no rate: it is then spread over "
+            "all of it");
+    }
+
+    [[noreturn]] void refuse_wind(const Leg& leg) const {
+        const auto [speed, from_deg, speed_sd, direction_sd] = wind_;
+        const double angle_rad = (from_deg - leg.course_deg) / units::degree_per_rad;
+        const double against = speed * std::cos(angle_rad);
+        const double across = std::abs(speed * std::sin(angle_rad));
+        const auto why = across >= airspeed()
+                             ? fmt::format("{:.4g} m/s of it blow across, which no drift angle holds", across)
+                             : fmt::format("{:.4g} m/s of it blow against it, and {:.4g} m/s across", against, across);
+        refuse(fmt::format("the wind of {:.4g} m/s from {:.4g} degrees forbids the course of {:.4g} degrees at an "
+                           "airspeed of {:.4g} m/s: {}",
+                           speed, from_deg, leg.course_deg, airspeed(), why),
+               "fly it faster, on another course, or on another day");
+    }
+    [[noreturn]] void refuse_wind(const Circles& /*circles*/) const {
+        refuse(fmt::format("in a wind of {:.4g} m/s no circle over ground can be flown at an airspeed of {:.4g} m/s",
+                           wind_.speed_m_per_s, airspeed()),
+               "fly it faster, or on another day");
+    }
+
+    const FlightPath& path_;
+    const Wind& wind_;
+    bool crawls_;
+    FlownPath flown_;
+    std::size_t index_ = 0;
+    const PathElement* element_ = nullptr;
+};
+
+/// A leg flown the other way.
+PathElement reversed(PathElement element, const ClimbRates& back) {
+    auto& leg = std::get<Leg>(element.shape);
+    leg.course_deg = std::fmod(leg.course_deg + 180.0, 360.0);
+    element.altitude_change_m = -element.altitude_change_m;
+    element.climb_rate_m_per_s = element.altitude_change_m < 0.0 ? back.descent_m_per_s : back.climb_m_per_s;
+    element.name += " on the way back";
+    return element;
+}
+
+}  // namespace
+
+FlownPath fly_path(const FlightPath& path, const Wind& wind, ForbiddenLeg forbidden) {
+    return PathFlight(path, wind, forbidden).fly();
+}
+
+FlightPath there_and_back(const FlightPath& path, double return_after_m, const ClimbRates& back) {
+    FlightPath result;
+    std::vector<PathElement> way_back;
+    double left_m = return_after_m;
+    for (auto element : path.elements) {
+        if ((left_m <= 0.0 && !result.elements.empty()) || element.is_way_home) break;
+        if (auto* leg = std::get_if<Leg>(&element.shape)) {
+            const double part = std::min(1.0, left_m / leg->length_m);
+            leg->length_m *= part;
+            element.altitude_change_m *= part;
+            left_m -= leg->length_m;
+            way_back.push_back(reversed(element, back));
+        } else if (element.altitude_change_m != 0.0 && !way_back.empty()) {
+            way_back.back().altitude_change_m -= element.altitude_change_m;
+            way_back.back().climb_rate_m_per_s.reset();
+        }
+        result.elements.push_back(std::move(element));
+    }
+    std::move(way_back.rbegin(), way_back.rend(), std::back_inserter(result.elements));
+    return result;
+}
+
+double length_of_legs_m(const FlightPath& path) {
+    double length_m = 0.0;
+    for (const auto& element : path.elements)
+        if (const auto* leg = std::get_if<Leg>(&element.shape); leg && !element.is_way_home) length_m += leg->length_m;
+    return length_m;
+}
+
+}  // namespace flightwatt::mission

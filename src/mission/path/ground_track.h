@@ -1,0 +1,62 @@
+#pragma once
+
+#include "mission/path.h"
+
+#include <functional>
+#include <optional>
+
+namespace flightwatt::mission {
+
+/// The wind as a velocity [m/s], towards east and north.
+struct WindVelocity {
+    double east_m_per_s = 0.0;
+    double north_m_per_s = 0.0;
+};
+WindVelocity velocity_of(const Wind& wind);
+
+/// The wind triangle of one course.
+struct Drift {
+    double ground_speed_m_per_s = 0.0;
+    double cosine = 1.0;  ///< of the angle between heading and course
+};
+
+/// `horizontal_m_per_s`: the airspeed's part along the ground. None as ground_speed_m_per_s.
+std::optional<Drift> drift_of(double horizontal_m_per_s, double course_rad, const WindVelocity& wind);
+
+/// A leg or circles as lines over ground, measured in metres from their start.
+class GroundTrack {
+  public:
+    GroundTrack(const Leg& leg, const Wind& wind);
+    GroundTrack(const Circles& circles, const Wind& wind);
+
+    double length_m() const { return length_m_; }
+
+    /// All of it can be flown with any horizontal airspeed above this one.
+    double least_horizontal_m_per_s() const;
+
+    /// How long it takes from one place of it to another, at a horizontal airspeed above the least.
+    double time_s(double from_m, double to_m, double horizontal_m_per_s) const;
+
+    /// Mean square of the load factor meanwhile, over time.
+    double load_factor_squared(double from_m, double to_m, double horizontal_m_per_s) const;
+
+    /// The greatest length over which the motion counts as one: all of it where nothing turns or no wind blows.
+    double piece_m() const;
+
+    /// After so many whole pieces the motion repeats itself.
+    std::size_t pieces_a_period() const;
+
+  private:
+    bool is_steady() const {
+        return curvature_rad_m_ == 0.0 || (wind_.east_m_per_s == 0.0 && wind_.north_m_per_s == 0.0);
+    }
+    Drift drift_at(double along_m, double horizontal_m_per_s) const;
+    double integral_over(double from_m, double to_m, const std::function<double(double)>& of) const;
+
+    double length_m_ = 0.0;
+    double course_rad_ = 0.0;       ///< at its start
+    double curvature_rad_m_ = 0.0;  ///< course gained a metre; 0: straight
+    WindVelocity wind_;
+};
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,256 @@
+#include "mission/path/path_entries.h"
+
+#include "base/units.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double furthest_m = 300e3;  // of a place from the start: beyond, coordinates were mistaken
+constexpr double same_place_m = 1e-6;
+
+using Vector3 = std::array<double, 3>;
+
+/// On the surface of the ellipsoid, earth-centred.
+Vector3 earth_centred_m(const GeographicPlace& place) {
+    constexpr double equatorial_radius_m = 6378137.0;
+    constexpr double flattening = 1.0 / 298.257223563;
+    constexpr double eccentricity_squared = flattening * (2.0 - flattening);
+    const double latitude = place.latitude_deg / units::degree_per_rad;
+    const double longitude = place.longitude_deg / units::degree_per_rad;
+    const double sine = std::sin(latitude);
+    const double normal_m = equatorial_radius_m / std::sqrt(1.0 - eccentricity_squared * sine * sine);
+    return {normal_m * std::cos(latitude) * std::cos(longitude), normal_m * std::cos(latitude) * std::sin(longitude),
+            normal_m * (1.0 - eccentricity_squared) * sine};
+}
+
+/// Follows the aircraft from entry to entry.
+class PathBuilder {
+  public:
+    explicit PathBuilder(const PathDefaults& defaults, const std::optional<GeographicPlace>& origin)
+        : defaults_(defaults), origin_(origin), altitude_m_(defaults.altitude_m) {
+        if (defaults.start) place_ = *defaults.start;
+        start_ = place_;
+    }
+
+    void add(const PathEntry& entry) {
+        require_one_meaning(entry);
+        change_m_ = altitude_change_m(entry);
+        if (const auto there = place_of(entry)) {
+            entry.circles ? fly_to_circle(entry, *there) : fly_to(entry, *there);
+        } else if (entry.length_m) {
+            fly_leg(entry, *entry.length_m, *entry.course_deg);
+        }
+        if (entry.circles) circle(entry, place_of(entry));
+        if (entry.hold_s) add_element(entry, Hold{*entry.hold_s});
+        if (change_m_ != 0.0) change_height(entry);
+    }
+
+    FlightPath finish() {
+        if (defaults_.return_to_start) {
+            PathEntry home;
+            home.name = "return to start";
+            home.where = defaults_.where;
+            if (defaults_.altitude_m) home.altitude_m = defaults_.altitude_m;
+            home.place = start_;
+            home.rates = {};
+            change_m_ = altitude_change_m(home);
+            fly_to(home, start_);
+            if (!path_.elements.empty() && path_.elements.back().name == home.name)
+                path_.elements.back().is_way_home = true;
+            if (change_m_ != 0.0) change_height(home);
+        }
+        return std::move(path_);
+    }
+
+  private:
+    [[noreturn]] static void refuse(const PathEntry& entry, const std::string& message, const std::string& hint) {
+        throw InputError(entry.where, entry.name + ": " + message, hint);
+    }
+
+    static void require_one_meaning(const PathEntry& entry) {
+        const bool has_place = entry.place || entry.geographic;
+        if (entry.length_m.has_value() != entry.course_deg.has_value())
+            refuse(entry, "length_m and course_deg belong together", "give both");
+        if (has_place && entry.length_m)
+            refuse(entry, "has a place and a length", "a leg goes to a place, or so far on a course: give one of them");
+        if (entry.circles && entry.length_m)
+            refuse(entry, "has a length and circles", "write the circles as the next entry");
+        if (entry.circles.has_value() != entry.radius_m.has_value())
+            refuse(entry, "circles and radius_m belong together", "give both");
+        if (entry.duration_s && (!has_place || entry.circles)) {
+            refuse(
+                entry, "duration_s is how long the way to a place took",
+                "give the place and no circles; hold_s waits, and circles are timed by their radius and the airspeed");
+        }
+        if (!has_place && !entry.length_m && !entry.circles && !entry.hold_s) {
+            refuse(entry, "says nothing to fly",
+                   "give a place (east_m and north_m, or latitude_deg and longitude_deg), length_m and course_deg, "
+                   "circles and radius_m, or hold_s");
+        }
+    }
+
+    double altitude_change_m(const PathEntry& entry) {
+        if (!entry.altitude_m) return 0.0;
+        if (!altitude_m_ && is_at_start(entry)) altitude_m_ = entry.altitude_m;
+        if (!altitude_m_) {
+            refuse(entry, "states an altitude, and the path has none at its start",
+                   "add altitude_m to [path]: that of the cruise as it begins");
+        }
+        const double change_m = *entry.altitude_m - *altitude_m_;
+        altitude_m_ = entry.altitude_m;
+        return change_m;
+    }
+
+    /// A first waypoint that is the start says how high that is.
+    bool is_at_start(const PathEntry& entry) const {
+        if (!path_.elements.empty() || entry.circles || entry.length_m) return false;
+        const auto place = place_of(entry);
+        return place && std::hypot(place->east_m - place_.east_m, place->north_m - place_.north_m) <= same_place_m;
+    }
+
+    std::optional<LocalPlace> place_of(const PathEntry& entry) const {
+        if (entry.place && origin_)
+            refuse(entry, "is in metres, on a path that has latitudes", "give all places in the same coordinates");
+        if (entry.geographic && !origin_)
+            refuse(entry, "has a latitude, on a path in metres", "give all places in the same coordinates");
+        if (!entry.place && !entry.geographic) return std::nullopt;
+        const auto place = entry.place ? *entry.place : local_place(*entry.geographic, *origin_);
+        const double distance_m = std::hypot(place.east_m - start_.east_m, place.north_m - start_.north_m);
+        if (!(distance_m < furthest_m)) {
+            refuse(entry, fmt::format("is {:.4g} km from the start", distance_m / 1000.0),
+                   fmt::format("expected less than {:.0f} km: are latitude and longitude the right way round?",
+                               furthest_m / 1000.0));
+        }
+        return place;
+    }
+
+    void fly_to(const PathEntry& entry, const LocalPlace& there) {
+        const double east_m = there.east_m - place_.east_m;
+        const double north_m = there.north_m - place_.north_m;
+        const double length_m = std::hypot(east_m, north_m);
+        const double course_deg = std::atan2(east_m, north_m) * units::degree_per_rad;
+        if (entry.duration_s) {
+            add_element(entry, Hold{*entry.duration_s});
+            if (length_m > same_place_m) course_deg_ = course_deg;
+        } else if (length_m > same_place_m) {
+            fly_leg(entry, length_m, course_deg);
+        }
+        place_ = there;
+    }
+
+    void fly_leg(const PathEntry& entry, double length_m, double course_deg) {
+        course_deg_ = std::fmod(course_deg + 360.0, 360.0);
+        const double course_rad = course_deg / units::degree_per_rad;
+        place_.east_m += length_m * std::sin(course_rad);
+        place_.north_m += length_m * std::cos(course_rad);
+        add_element(entry, Leg{length_m, course_deg_});
+    }
+
+    /// Straight towards the centre, or from it, to the edge.
+    void fly_to_circle(const PathEntry& entry, const LocalPlace& centre) {
+        const double east_m = place_.east_m - centre.east_m;
+        const double north_m = place_.north_m - centre.north_m;
+        const double distance_m = std::hypot(east_m, north_m);
+        const double course_rad = course_deg_ / units::degree_per_rad;
+        const double out_east = distance_m > same_place_m ? east_m / distance_m : std::sin(course_rad);
+        const double out_north = distance_m > same_place_m ? north_m / distance_m : std::cos(course_rad);
+        auto edge = entry;
+        edge.duration_s.reset();
+        fly_to(edge, {centre.east_m + *entry.radius_m * out_east, centre.north_m + *entry.radius_m * out_north});
+        const double bearing_deg = std::atan2(out_east, out_north) * units::degree_per_rad;
+        course_deg_ = std::fmod(bearing_deg + (entry.to_right ? 90.0 : 270.0) + 360.0, 360.0);
+    }
+
+    void circle(const PathEntry& entry, const std::optional<LocalPlace>& centre) {
+        const double side = entry.to_right ? 1.0 : -1.0;
+        const double radius_m = *entry.radius_m;
+        const double start_rad = course_deg_ / units::degree_per_rad;
+        const auto middle = centre.value_or(LocalPlace{place_.east_m + side * radius_m * std::cos(start_rad),
+                                                       place_.north_m - side * radius_m * std::sin(start_rad)});
+        add_element(entry, Circles{radius_m, *entry.circles, entry.to_right, course_deg_});
+        const double turned_deg = 360.0 * std::fmod(*entry.circles, 1.0);
+        course_deg_ = std::fmod(course_deg_ + side * turned_deg + 360.0, 360.0);
+        const double end_rad = course_deg_ / units::degree_per_rad;
+        place_ = {middle.east_m - side * radius_m * std::cos(end_rad),
+                  middle.north_m + side * radius_m * std::sin(end_rad)};
+    }
+
+    /// Adds an element; the first of an entry takes the change of height.
+    template <typename Shape>
+    void add_element(const PathEntry& entry, const Shape& shape) {
+        PathElement element;
+        element.shape = shape;
+        element.airspeed_m_per_s = entry.airspeed_m_per_s.value_or(defaults_.airspeed_m_per_s);
+        element.altitude_change_m = change_m_;
+        element.climb_rate_m_per_s = rate_of(entry);
+        element.name = entry.name;
+        element.where = entry.where;
+        path_.elements.push_back(std::move(element));
+        change_m_ = 0.0;
+    }
+
+    std::optional<double> rate_of(const PathEntry& entry) const {
+        if (change_m_ == 0.0) return std::nullopt;
+        if (change_m_ > 0.0)
+            return entry.rates.climb_m_per_s ? entry.rates.climb_m_per_s : defaults_.rates.climb_m_per_s;
+        return entry.rates.descent_m_per_s ? entry.rates.descent_m_per_s : defaults_.rates.descent_m_per_s;
+    }
+
+    /// On the spot: the place was reached already.
+    void change_height(const PathEntry& entry) {
+        const auto rate = rate_of(entry);
+        if (!rate) {
+            refuse(entry, fmt::format("changes the altitude by {:.4g} m where the aircraft is already", change_m_),
+                   "say how fast: climb_m_per_s or descent_m_per_s; or for how long: hold_s");
+        }
+        add_element(entry, Hold{std::abs(change_m_) / *rate});
+    }
+
+    const PathDefaults& defaults_;
+    std::optional<GeographicPlace> origin_;
+    std::optional<double> altitude_m_;
+    LocalPlace start_;
+    LocalPlace place_;
+    double course_deg_ = 0.0;
+    double change_m_ = 0.0;  ///< of the height, that the entry's elements have not flown yet
+    FlightPath path_;
+};
+
+/// Of the plane in which a geographic path is flown.
+std::optional<GeographicPlace> origin_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
+    if (defaults.geographic_start || defaults.start) return defaults.geographic_start;
+    for (const auto& entry : entries) {
+        if (entry.geographic) return entry.geographic;
+        if (entry.place) break;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+LocalPlace local_place(const GeographicPlace& place, const GeographicPlace& origin) {
+    const auto from = earth_centred_m(origin);
+    const auto to = earth_centred_m(place);
+    const double x = to[0] - from[0];
+    const double y = to[1] - from[1];
+    const double z = to[2] - from[2];
+    const double latitude = origin.latitude_deg / units::degree_per_rad;
+    const double longitude = origin.longitude_deg / units::degree_per_rad;
+    const double outward = std::cos(longitude) * x + std::sin(longitude) * y;
+    return {-std::sin(longitude) * x + std::cos(longitude) * y, -std::sin(latitude) * outward + std::cos(latitude) * z};
+}
+
+FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
+    PathBuilder builder(defaults, origin_of(entries, defaults));
+    for (const auto& entry : entries) builder.add(entry);
+    auto path = builder.finish();
+    if (path.elements.empty()) throw InputError(defaults.where, "the path leads nowhere", "add legs or waypoints");
+    return path;
+}
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "mission/path.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt::mission {
+
+// What the numbers of a path may be: beyond, a unit was mistaken.
+inline constexpr double fastest_m_per_s = 300.0;
+inline constexpr double largest_circle_count = 1e4;
+inline constexpr double least_radius_m = 1.0;
+inline constexpr double most_radius_m = 1e5;
+inline constexpr double longest_leg_m = 1e6;
+
+/// From an origin [m], towards east and north.
+struct LocalPlace {
+    double east_m = 0.0;
+    double north_m = 0.0;
+};
+
+/// On the WGS84 ellipsoid.
+struct GeographicPlace {
+    double latitude_deg = 0.0;
+    double longitude_deg = 0.0;
+};
+
+/// The place in the plane that touches the ellipsoid at `origin`: exact to 1e-6 of distances within 10 km of it.
+LocalPlace local_place(const GeographicPlace& place, const GeographicPlace& origin);
+
+/// One entry of a path as it was written: where to fly, and what to do there. What is not stated is as before.
+struct PathEntry {
+    std::string name;  ///< "leg 3"
+    Location where;
+    std::optional<LocalPlace> place;
+    std::optional<GeographicPlace> geographic;
+    std::optional<double> length_m;  ///< with course_deg, instead of a place
+    std::optional<double> course_deg;
+    std::optional<double> duration_s;  ///< the way there took so long: no wind triangle
+    std::optional<double> altitude_m;  ///< at the end
+    std::optional<double> airspeed_m_per_s;
+    ClimbRates rates;
+    std::optional<double> circles;  ///< around the place, or from where the aircraft is
+    std::optional<double> radius_m;
+    bool to_right = true;
+    std::optional<double> hold_s;
+};
+
+/// What holds for a whole path unless an entry says otherwise.
+struct PathDefaults {
+    double airspeed_m_per_s = 0.0;
+    std::optional<double> altitude_m;  ///< at the start
+    ClimbRates rates;
+    std::optional<LocalPlace> start;  ///< none: the origin, or the first entry if that is geographic
+    std::optional<GeographicPlace> geographic_start;
+    bool return_to_start = false;
+    Location where;
+};
+
+/// The path that the entries make: to a place a leg; to circles around a place the leg to their edge; then circles, then
+/// the hold. Throws InputError, placed at the entry, for a place in other coordinates than the path's, one that is 300 km
+/// and more from the start, an altitude where the path has none at its start, and an entry that is nothing or two things.
+FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,121 @@
+#include "mission/path_limits.h"
+
+#include "mission/planning/planner.h"
+#include "mission/sampling/landing_quantile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double most_circles_tried = 1e4;
+
+/// Looks for the greatest extent that keeps the reserve. Short ones may not fit the schedule.
+class ExtentSearch {
+  public:
+    ExtentSearch(const MissionOfExtent& mission_of, const std::optional<double>& probability)
+        : mission_of_(mission_of), probability_(probability) {}
+
+    Mission mission(double extent) const { return with_minimum_energy_schedule(mission_of_(extent)); }
+
+    /// What is left above the reserve; none where the schedule does not fit.
+    std::optional<double> spare_percent(double extent) {
+        try {
+            const auto flown = mission(extent);
+            if (!probability_) return mission::spare_percent(flown);
+            require_known_spread(flown);
+            return landing_chance(flown, find_spreads(flown), *probability_).spare_percent(*probability_);
+        } catch (const InputError& error) {
+            misfit_ = error;
+            return std::nullopt;
+        }
+    }
+
+    /// Halves what lies between an extent that is too short or good and one that is too long, until they are `apart`.
+    std::optional<double> last_good(double low, double high, double apart) {
+        std::optional<double> good;
+        while (high - low > apart) {
+            const double middle = apart == 1.0 ? std::floor(std::midpoint(low, high)) : std::midpoint(low, high);
+            const auto spare = spare_percent(middle);
+            if (spare && *spare < 0.0) {
+                high = middle;
+            } else {
+                low = middle;
+                if (spare) good = middle;
+            }
+        }
+        return good;
+    }
+
+    FeasibilityLimit limit(double extent, double beyond) const {
+        const auto at = mission(extent);
+        double margin_percent = 0.0;
+        std::optional<DrawnSources> sources;
+        if (probability_) {
+            const auto spreads = find_spreads(at);
+            margin_percent = std::max(0.0, landing_quantile(at, spreads, *probability_).margin_percent);
+            sources = spreads.sources;
+        }
+        auto most = limit_at(extent, margin_percent, at, mission(beyond));
+        most.sources = std::move(sources);
+        return most;
+    }
+
+    [[noreturn]] void refuse(const std::string& message) const {
+        if (misfit_) throw *misfit_;
+        throw NoAnswerError(message);
+    }
+
+  private:
+    const MissionOfExtent& mission_of_;
+    std::optional<double> probability_;
+    std::optional<InputError> misfit_;
+};
+
+}  // namespace
+
+PathQuestion question_of(const FlightPath& path) {
+    const bool circles = std::ranges::any_of(
+        path.elements, [](const auto& element) { return std::holds_alternative<Circles>(element.shape); });
+    return circles ? PathQuestion::circles : PathQuestion::way_back;
+}
+
+FeasibilityLimit most_circles(const MissionOfExtent& mission_of, const std::optional<double>& probability) {
+    ExtentSearch search(mission_of, probability);
+    double low = 0.0;
+    std::optional<double> good;
+    double high = 1.0;
+    for (; high <= most_circles_tried; high *= 2.0) {
+        const auto spare = search.spare_percent(high);
+        if (spare && *spare < 0.0) break;
+        low = high;
+        if (spare) good = high;
+    }
+    if (high > most_circles_tried) {
+        if (good) throw NoAnswerError(fmt::format("{:.0f} circles still land with the reserve", *good));
+        search.refuse("the mission does not land with its reserve");
+    }
+    if (const auto better = search.last_good(low, high, 1.0)) good = better;
+    if (!good) throw NoAnswerError("the fewest circles that fit do not land with the reserve");
+    return search.limit(*good, *good + 1.0);
+}
+
+FeasibilityLimit farthest_return(const MissionOfExtent& mission_of, double length_m,
+                                 const std::optional<double>& probability) {
+    constexpr double accuracy = 1e-9;
+    constexpr double accuracy_of_chance = 1e-4;
+    ExtentSearch search(mission_of, probability);
+    const auto spare = search.spare_percent(length_m);
+    if (!spare) search.refuse("the path cannot be flown there and back");
+    if (*spare >= 0.0) return search.limit(length_m, length_m);
+    const double apart_m = length_m * (probability ? accuracy_of_chance : accuracy);
+    const auto good = search.last_good(0.0, length_m, apart_m);
+    if (!good) throw NoAnswerError("from nowhere along the path does the mission return with its reserve");
+    return search.limit(*good, std::min(length_m, *good + apart_m));
+}
+
+}  // namespace flightwatt::mission

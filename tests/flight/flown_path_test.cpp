@@ -1,0 +1,78 @@
+#include "flight/flown_path.h"
+
+#include "flight/chosen_track.h"
+#include "helpers/rejected.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+Track track(const std::string& name, const std::vector<double>& time_s, const std::vector<double>& value) {
+    Track made;
+    made.name = name;
+    made.source = "TEST";
+    made.time_s = time_s;
+    made.value = value;
+    return made;
+}
+
+PhaseSpan cruise(double start_s, double end_s) {
+    PhaseSpan span;
+    span.start.time_s = start_s;
+    span.end.time_s = end_s;
+    return span;
+}
+
+/// To the east at 10 m/s, climbing at 0.5 m/s, from 1000 m east of the origin.
+FlightSeries eastward() {
+    FlightSeries series;
+    series.file = "e.csv";
+    const std::vector<double> times_s{0.0, 50.0, 100.0, 200.0};
+    series.tracks = {track("altitude_m", times_s, {100.0, 125.0, 150.0, 200.0}),
+                     track("east_m", times_s, {1000.0, 1500.0, 2000.0, 3000.0}),
+                     track("north_m", times_s, {7.0, 7.0, 7.0, 7.5}),
+                     track("airspeed_m_per_s", {0.0, 99.999, 100.0, 200.0}, {12.0, 12.0, 14.0, 14.0})};
+    return series;
+}
+
+TEST(FlownPath, HasAPlaceEveryThirtySeconds) {
+    const auto path = flown_path(eastward(), cruise(20.0, 200.0));
+    EXPECT_FALSE(path.is_geographic);
+    ASSERT_EQ(path.places.size(), 7U);
+    EXPECT_DOUBLE_EQ(path.places.front().east_m, 0.0);
+    EXPECT_DOUBLE_EQ(path.places.front().duration_s, 0.0);
+    EXPECT_DOUBLE_EQ(path.places.front().altitude_m, 110.0);
+    double duration_s = 0.0;
+    for (const auto& place : path.places) duration_s += place.duration_s;
+    EXPECT_NEAR(duration_s, 180.0, 1e-9);
+    EXPECT_NEAR(path.places[2].east_m, 600.0, 1e-9);
+    EXPECT_NEAR(path.places[2].altitude_m, 140.0, 1e-9);
+    EXPECT_NEAR(path.places[2].airspeed_m_per_s, 12.0, 1e-9);
+    // From 80 to 110 s: two thirds at 12 m/s, a third at 14 m/s, by their cubes.
+    EXPECT_NEAR(path.places[3].airspeed_m_per_s, std::cbrt((2.0 * 1728.0 + 2744.0) / 3.0), 1e-3);
+    // One that is short has its ends.
+    EXPECT_EQ(flown_path(eastward(), cruise(20.0, 30.0)).places.size(), 2U);
+}
+
+TEST(FlownPath, IsInDegreesWhereTheLogIs) {
+    auto series = eastward();
+    series.tracks[1].name = "latitude_deg";
+    series.tracks[2].name = "longitude_deg";
+    const auto path = flown_path(series, cruise(0.0, 60.0));
+    EXPECT_TRUE(path.is_geographic);
+    EXPECT_DOUBLE_EQ(path.places.front().east_m, 1000.0);
+}
+
+TEST(FlownPath, NeedsAirspeedAltitudeAndPosition) {
+    for (const std::string missing : {"airspeed_m_per_s", "altitude_m", "north_m"}) {
+        auto series = eastward();
+        std::erase_if(series.tracks, [&](const Track& is) { return is.name == missing; });
+        EXPECT_EQ(test::rejected([&] { flown_path(series, cruise(0.0, 60.0)); }).find("e.csv: has no " + missing), 0U);
+    }
+}
+
+}  // namespace
+}  // namespace flightwatt::flight

@@ -1,0 +1,174 @@
+#include "helpers/path_missions.h"
+#include "helpers/rejected.h"
+#include "mission/mission_file.h"
+#include "mission/simulation.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+using test::rejected;
+using test::scratch_dir;
+using test::write_text;
+
+/// A folder with a model that knows motion, one that knows airspeed cubed from 10^3 to 14^3, and one that knows neither.
+std::filesystem::path path_folder() {
+    auto folder = scratch_dir();
+    auto model = mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
+    write_text(folder / "plain.toml", mechanical::to_toml(model));
+    model.phases[flight::Phase::cruise].airspeed_law =
+        mechanical::LevelLaw{mechanical::Covariate::airspeed_cubed, 4, 1800.0, 700.0, 1000.0, 2744.0, 18.0, 7.0, 0.9};
+    write_text(folder / "airspeed.toml", mechanical::to_toml(model));
+    model.physical = test::made_up_wing();
+    model.physical->bins = 100;
+    model.physical->bin_s = 30.0;
+    model.physical->correlation_s = 60.0;
+    write_text(folder / "wing.toml", mechanical::to_toml(model));
+    return folder;
+}
+
+const std::string battery = "battery = { voltage_v = 11.1, resistance_ohm = 0.05, capacity_ah = 3 }\n";
+
+Mission read(const std::filesystem::path& folder, const std::string& model, const std::string& keys,
+             const MissionReading& reading = {}) {
+    return std::get<Mission>(
+        parse_mission("mechanical = \"" + model + "\"\n" + battery + keys, folder / "m.toml", reading));
+}
+
+const std::string out_and_back = R"([path]
+airspeed_m_per_s = 13
+altitude_m = 100
+[[path.leg]]
+length_m = 900
+course_deg = 0
+[[path.leg]]
+length_m = 900
+course_deg = 180
+altitude_m = 130
+[wind]
+speed_m_per_s = 4
+from_deg = 0
+)";
+
+TEST(PathToml, DurationAndPowerFollowFromThePath) {
+    const auto folder = path_folder();
+    const auto mission = read(folder, "wing.toml", out_and_back);
+    const double climb = 30.0 / (900.0 / 17.0);  // nearly: the climb takes a little of the airspeed
+    EXPECT_NEAR(mission.duration_s[Phase::cruise], 900.0 / 9.0 + 900.0 / 17.0, 0.05);
+    EXPECT_TRUE(mission.duration_is_stated[Phase::cruise]);
+    ASSERT_TRUE(mission.cruise_path && mission.cruise_level);
+    const auto& pieces = *mission.cruise_path->pieces;
+    ASSERT_EQ(pieces.size(), 2U);
+    EXPECT_NEAR(pieces[0].power_w, 21.97, 1e-9);
+    EXPECT_NEAR(pieces[1].power_w, 21.97 + 8.0 * climb, 0.01);
+    EXPECT_NEAR(mission.cruise_level->mean_w, mean_power_w(*mission.cruise_path), 1e-12);
+    EXPECT_NEAR(*mission.cruise_level->sd_w, 0.04 * mission.cruise_level->mean_w, 0.02);
+    EXPECT_TRUE(mission.notes.empty());
+    const auto flown = simulate(mission);
+    const double takeoff_and_landing_wh =
+        simulate(read(folder, "wing.toml", "duration_s = { cruise = 0 }\n")).summary.mechanical_energy_wh;
+    EXPECT_NEAR(flown.summary.mechanical_energy_wh, takeoff_and_landing_wh + energy_j(*mission.cruise_path) / 3600.0,
+                1e-9);
+}
+
+TEST(PathToml, FliesByTheLawOfAirspeedWhereThePathIsLevel) {
+    const auto folder = path_folder();
+    const std::string level = "[path]\nairspeed_m_per_s = 12\nleg = [{ length_m = 1200, course_deg = 0 }]\n";
+    const auto mission = read(folder, "airspeed.toml", level);
+    EXPECT_NEAR(mean_power_w(*mission.cruise_path), 0.01 * 1728.0, 1e-9);
+    EXPECT_NEAR(mission.duration_s[Phase::cruise], 100.0, 1e-9);
+    EXPECT_NE(rejected([&] { read(folder, "airspeed.toml", out_and_back); }).find("knows airspeed and not climb"),
+              std::string::npos);
+    EXPECT_EQ(
+        rejected([&] { read(folder, "plain.toml", level); }, folder),
+        "m.toml:3:1: the mechanical model 'opterra-table1' does not know what motion takes: it has no [physical]; "
+        "fit one: flightwatt fit --model physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
+}
+
+TEST(PathToml, ReadsWaypointsFromFiles) {
+    const auto folder = path_folder();
+    write_text(folder / "w.csv", "east_m,north_m,altitude_m\n0,0,100\n1300,0,100\n1300,1300,\n");
+    write_text(folder / "w.geojson", R"({"type": "LineString", "coordinates": [[5.0, 45.0], [5.0, 45.01]]})");
+    write_text(folder / "plan.xml", R"(<flight_plan lat0="43" lon0="1" alt="200"><waypoints>
+        <waypoint name="A" x="500" y="0"/><waypoint name="B" x="500" y="650"/></waypoints></flight_plan>)");
+    const std::string path = "[path]\nairspeed_m_per_s = 13\n";
+    EXPECT_NEAR(read(folder, "wing.toml", path + "waypoints = \"w.csv\"\n").duration_s[Phase::cruise], 200.0, 1e-9);
+    EXPECT_NEAR(read(folder, "wing.toml", path + "waypoints = \"w.geojson\"\n").duration_s[Phase::cruise],
+                1111.32 / 13.0, 0.01);
+    const std::string plan = "altitude_m = 200\nflight_plan = \"plan.xml\"\nwaypoint_order = [\"A\", \"B\"]\n";
+    EXPECT_NEAR(read(folder, "wing.toml", path + plan).duration_s[Phase::cruise], 1150.0 / 13.0, 1e-9);
+    EXPECT_NE(rejected([&] {
+                  read(folder, "wing.toml", path + "flight_plan = \"plan.xml\"\n");
+              }).find("flight_plan and waypoint_order belong together"),
+              std::string::npos);
+    EXPECT_NE(rejected([&] {
+                  read(folder, "wing.toml", path + "waypoints = \"none.csv\"\n");
+              }).find("m.toml:5:1: waypoints: there is no file"),
+              std::string::npos);
+}
+
+TEST(PathToml, FliesOtherExtents) {
+    const auto folder = path_folder();
+    const std::string circles = "[path]\nairspeed_m_per_s = 13\nleg = [{ circles = 2, radius_m = 65 }]\n";
+    const double one_s = read(folder, "wing.toml", circles).duration_s[Phase::cruise] / 2.0;
+    EXPECT_NEAR(read(folder, "wing.toml", circles, {.circles = 7.0}).duration_s[Phase::cruise], 7.0 * one_s, 1e-9);
+    const std::string home =
+        "[path]\nairspeed_m_per_s = 13\nreturn_to_start = true\nleg = [{ length_m = 1300, course_deg = 0 }]\n";
+    EXPECT_NEAR(read(folder, "wing.toml", home).duration_s[Phase::cruise], 200.0, 1e-9);
+    EXPECT_NEAR(read(folder, "wing.toml", home, {.return_after_m = 650.0}).duration_s[Phase::cruise], 100.0, 1e-9);
+    EXPECT_THROW(read(folder, "wing.toml", home, {.cruise_s = 100.0}), NoAnswerError);
+}
+
+TEST(PathToml, RefusesWhatContradictsThePath) {
+    const auto folder = path_folder();
+    const auto refusal = [&](const std::string& before, const std::string& path) {
+        return rejected([&] { read(folder, "wing.toml", before + path); }, folder);
+    };
+    EXPECT_EQ(refusal("duration_s = { cruise = 600 }\n", out_and_back),
+              "m.toml:3:16: the duration of the cruise follows from [path]; leave it out, or the path");
+    EXPECT_NE(refusal("airspeed_m_per_s = 12\n", out_and_back).find("both say how the cruise is flown"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal("uncertainty = { duration_sd_s = { cruise = 5 } }\n", out_and_back).find("state how the wind differs"),
+        std::string::npos);
+    EXPECT_NE(refusal("[wind]\nspeed_m_per_s = 3\nfrom_deg = 10\n", "").find("[wind] belongs to a [path]"),
+              std::string::npos);
+    EXPECT_NE(refusal("[path]\nairspeed_m_per_s = 13\n", "").find("the path has no legs"), std::string::npos);
+    EXPECT_NE(refusal("[path]\nairspeed_m_per_s = 13\nleg = [{ length = 3 }]\n", "").find("unknown key 'length'"),
+              std::string::npos);
+    EXPECT_NE(refusal("[path]\nairspeed_m_per_s = 3\nleg = [{ length_m = 30, course_deg = 1 }]\n",
+                      "[wind]\n"
+                      "speed_m_per_s = 9\nfrom_deg = 1\n")
+                  .find("m.toml:5:8: leg 1: the wind of 9 m/s from 1 degrees forbids"),
+              std::string::npos);
+    EXPECT_NE(refusal("[path]\nairspeed_m_per_s = 3\nleg = [{ circles = 1, radius_m = 9, turn = \"up\" }]\n", "")
+                  .find("there is no turn 'up'"),
+              std::string::npos);
+}
+
+TEST(PathToml, SaysWhatIsExtrapolated) {
+    const auto mission = read(path_folder(), "wing.toml",
+                              "[path]\nairspeed_m_per_s = 19\nleg = [{ length_m = 1200, course_deg = 0 }]\n");
+    ASSERT_EQ(mission.notes.size(), 1U);
+    EXPECT_NE(mission.notes.front().find("beyond what the model's flights flew"), std::string::npos);
+}
+
+TEST(PathToml, APlannedMissionFindsItsWaypoints) {
+    const auto folder = path_folder();
+    write_text(folder / "w.csv", "east_m,north_m\n900,0\n");
+    const auto text =
+        "mechanical = \"wing.toml\"\n" + battery + "[path]\nairspeed_m_per_s = 13\nwaypoints = \"w.csv\"\n";
+    const auto mission = std::get<Mission>(parse_mission(text, folder / "m.toml"));
+    std::filesystem::create_directories(folder / "below");
+    const auto planned =
+        planned_mission_toml(text, folder / "m.toml", mission.compute, mission.schedule, folder / "below");
+    EXPECT_NE(planned.find("../w.csv"), std::string::npos) << planned;
+    const auto again = std::get<Mission>(parse_mission(planned, folder / "below" / "p.toml"));
+    EXPECT_EQ(again.duration_s[Phase::cruise], mission.duration_s[Phase::cruise]);
+}
+
+}  // namespace
+}  // namespace flightwatt::mission

@@ -1,0 +1,108 @@
+#include "mission/path/waypoint_files.h"
+
+#include "helpers/rejected.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+using test::rejected;
+
+TEST(WaypointFiles, AreCsvInEitherCoordinates) {
+    const auto local = parse_waypoint_csv("east_m,north_m,altitude_m,hold_s\n0,0,100,\n300,400,,20\n", "w.csv");
+    ASSERT_EQ(local.size(), 2U);
+    EXPECT_EQ(local[0].altitude_m, std::optional(100.0));
+    EXPECT_FALSE(local[0].hold_s || local[1].altitude_m);
+    EXPECT_DOUBLE_EQ(local[1].place->north_m, 400.0);
+    EXPECT_EQ(local[1].hold_s, std::optional(20.0));
+    EXPECT_EQ(local[1].where.line, 3U);
+    const auto geographic =
+        parse_waypoint_csv("longitude_deg,latitude_deg,circles,radius_m,airspeed_m_per_s\n1.5,43.5,3,60,14\n", "w.csv");
+    EXPECT_DOUBLE_EQ(geographic[0].geographic->latitude_deg, 43.5);
+    EXPECT_EQ(geographic[0].circles, std::optional(3.0));
+    EXPECT_EQ(geographic[0].airspeed_m_per_s, std::optional(14.0));
+}
+
+TEST(WaypointFiles, RefuseOtherCsv) {
+    const auto refusal = [](std::string_view text) { return rejected([&] { parse_waypoint_csv(text, "w.csv"); }); };
+    EXPECT_EQ(refusal("lat,lon\n1,2\n").substr(0, 31), "w.csv:1: unknown column 'lat'; ");
+    EXPECT_EQ(refusal("altitude_m\n1\n"),
+              "w.csv:1: has no places; expected the columns east_m and north_m, or latitude_deg and longitude_deg");
+    EXPECT_NE(refusal("east_m,north_m\n1,x\n").find("w.csv:2:3: north_m is not a finite number: 'x'"),
+              std::string::npos);
+    EXPECT_NE(refusal("latitude_deg,longitude_deg\n91,2\n").find("w.csv:2: latitude_deg = 91"), std::string::npos);
+    EXPECT_NE(refusal("east_m,north_m,airspeed_m_per_s\n1,1,-3\n").find("w.csv:2:5: airspeed_m_per_s = -3"),
+              std::string::npos);
+    EXPECT_EQ(refusal("east_m,north_m\n"), "w.csv: has no waypoints");
+}
+
+TEST(WaypointFiles, AreGeoJson) {
+    const auto line =
+        parse_geojson(R"({"type": "LineString", "coordinates": [[1.5, 43.5, 100], [1.6, 43.6, 120]]})", "a.geojson");
+    ASSERT_EQ(line.size(), 2U);
+    EXPECT_DOUBLE_EQ(line[1].geographic->latitude_deg, 43.6);
+    EXPECT_DOUBLE_EQ(line[1].geographic->longitude_deg, 1.6);
+    EXPECT_EQ(line[1].altitude_m, std::optional(120.0));
+    const auto points = parse_geojson(R"({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"name": "home"}, "geometry": {"type": "Point", "coordinates": [1.5, 43.5]}},
+        {"type": "Feature", "properties": {"hold_s": 30, "circles": null},
+         "geometry": {"type": "Point", "coordinates": [1.6, 43.5]}}]})",
+                                      "a.geojson");
+    ASSERT_EQ(points.size(), 2U);
+    EXPECT_EQ(points[1].hold_s, std::optional(30.0));
+    EXPECT_FALSE(points[1].circles);
+}
+
+TEST(WaypointFiles, RefuseOtherJson) {
+    const auto refusal = [](std::string_view text) { return rejected([&] { parse_geojson(text, "a.json"); }); };
+    EXPECT_EQ(refusal("{\n \"type\": }"), "a.json:2: is not JSON; expected GeoJSON: Points and LineStrings");
+    EXPECT_NE(refusal("[1, 2]").find("is no object"), std::string::npos);
+    EXPECT_NE(refusal(R"({"type": "Polygon", "coordinates": []})").find("is a Polygon, which is no path"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"({"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": null}]})")
+                  .find("a.json: feature 1 has no 'geometry'"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"({"type": "Point", "coordinates": [1]})").find("is not [longitude, latitude]"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"({"type": "Point", "coordinates": [1.5, 143.5]})").find("latitude_deg = 143.5"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"({"type": "LineString", "coordinates": []})").find("has no waypoints"), std::string::npos);
+    EXPECT_NE(refusal(R"({"type": "FeatureCollection", "crs": {"name": "EPSG:2154"}, "features": []})")
+                  .find("another reference than WGS84"),
+              std::string::npos);
+}
+
+constexpr std::string_view flight_plan = R"(<!DOCTYPE flight_plan SYSTEM "flight_plan.dtd">
+<flight_plan alt="260" ground_alt="185" lat0="43.46223" lon0="1.27289" name="test">
+  <waypoints>
+    <waypoint name="HOME" x="0" y="0"/>
+    <waypoint name="1" x="100.5" y="-20" height="50"/>
+    <waypoint name="2" lat="43.46323" lon="1.27289" alt="300"/>
+    <waypoint name="bad" x="a" y="0"/>
+  </waypoints>
+  <blocks/>
+</flight_plan>
+)";
+
+TEST(WaypointFiles, AreFlightPlansWithNamesInOrder) {
+    const auto entries = parse_flight_plan(flight_plan, "p.xml", {"1", "2", "HOME"});
+    ASSERT_EQ(entries.size(), 3U);
+    EXPECT_DOUBLE_EQ(entries[0].place->east_m, 100.5);
+    EXPECT_EQ(entries[0].altitude_m, std::optional(235.0));
+    EXPECT_NEAR(entries[1].place->north_m, 111.1, 0.05);
+    EXPECT_EQ(entries[1].altitude_m, std::optional(300.0));
+    EXPECT_EQ(entries[2].altitude_m, std::optional(260.0));
+    EXPECT_EQ(entries[2].where.line, 4U);
+    const auto refusal = [](std::string_view text, const std::string& name) {
+        return rejected([&] { parse_flight_plan(text, "p.xml", {name}); });
+    };
+    EXPECT_EQ(refusal(flight_plan, "3"), "p.xml: has no waypoint '3'; it has HOME, 1, 2, bad");
+    EXPECT_EQ(refusal(flight_plan, "bad"),
+              "p.xml:7: x of <waypoint> is no number: 'a'; expected decimal degrees or metres");
+    EXPECT_NE(refusal("<flight_plan>", "1").find("p.xml:1: is not XML"), std::string::npos);
+    EXPECT_NE(refusal("<plan/>", "1").find("has no <flight_plan>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace flightwatt::mission

@@ -1,0 +1,224 @@
+#include "mission/path.h"
+
+#include "helpers/rejected.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <boost/math/special_functions/ellint_2.hpp>
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double gravity = 9.80665;
+
+PathElement element_of(std::variant<Leg, Circles, Hold> shape, double airspeed = 13.0) {
+    PathElement element;
+    element.shape = shape;
+    element.airspeed_m_per_s = airspeed;
+    element.name = "leg 1";
+    element.where = {"m.toml", 7, 1};
+    return element;
+}
+
+PathElement climbing(PathElement element, double change_m, std::optional<double> rate = {}) {
+    element.altitude_change_m = change_m;
+    element.climb_rate_m_per_s = rate;
+    return element;
+}
+
+double time_s(const PathElement& element, const Wind& wind = {}) { return fly_path({{element}}, wind).duration_s; }
+
+double climbed_m(const FlownPath& flown) {
+    double sum_m = 0.0;
+    for (const auto& piece : flown.pieces) sum_m += piece.time_s * piece.motion.climb_m_per_s;
+    return sum_m;
+}
+
+TEST(Path, GroundSpeedsFollowTheWindTriangle) {
+    const Wind wind{5.0, 270.0};  // from the west
+    EXPECT_DOUBLE_EQ(ground_speed_m_per_s(13.0, 90.0, wind).value(), 18.0);
+    EXPECT_DOUBLE_EQ(ground_speed_m_per_s(13.0, 270.0, wind).value(), 8.0);
+    EXPECT_DOUBLE_EQ(ground_speed_m_per_s(13.0, 0.0, wind).value(), 12.0);  // 5, 12, 13
+    EXPECT_NEAR(ground_speed_m_per_s(13.0, 180.0, wind).value(), 12.0, 1e-12);
+    EXPECT_FALSE(ground_speed_m_per_s(5.0, 0.0, wind));
+    EXPECT_FALSE(ground_speed_m_per_s(5.0, 270.0, wind));
+    EXPECT_FALSE(ground_speed_m_per_s(6.0, 320.0, {8.0, 270.0}));
+    EXPECT_NEAR(time_s(element_of(Leg{1200.0, 0.0}), wind), 100.0, 1e-9);
+}
+
+/// The heading that a ground speed implies moves the aircraft as its airspeed and the wind do.
+TEST(Path, GroundSpeedsAddUpAsVectors) {
+    std::mt19937 random(20261);
+    std::uniform_real_distribution<double> angle(0.0, 360.0);
+    std::uniform_real_distribution<double> speed(0.0, 12.0);
+    for (int i = 0; i < 200; ++i) {
+        const Wind wind{speed(random), angle(random)};
+        const double course_rad = angle(random) * pi / 180.0;
+        const double ground = ground_speed_m_per_s(12.5, course_rad * 180.0 / pi, wind).value();
+        const double from_rad = wind.from_deg * pi / 180.0;
+        const double east = ground * std::sin(course_rad) + wind.speed_m_per_s * std::sin(from_rad);
+        const double north = ground * std::cos(course_rad) + wind.speed_m_per_s * std::cos(from_rad);
+        EXPECT_NEAR(std::hypot(east, north), 12.5, 1e-9);
+    }
+}
+
+TEST(Path, CirclesInCalmAirTakeTheirLength) {
+    const auto flown = fly_path({{element_of(Circles{75.0, 2.5})}}, {});
+    ASSERT_EQ(flown.pieces.size(), 1U);
+    EXPECT_NEAR(flown.duration_s, 2.5 * 2.0 * pi * 75.0 / 13.0, 1e-9);
+    const double tangent = 13.0 * 13.0 / (gravity * 75.0);
+    EXPECT_NEAR(flown.pieces.front().motion.load_factor, std::sqrt(1.0 + tangent * tangent), 1e-12);
+}
+
+/// 1 / g = (sqrt(V^2 - w^2 sin^2) - w cos) / (V^2 - w^2): around a circle the complete elliptic integral.
+TEST(Path, CirclesInWindTakeTheEllipticIntegral) {
+    for (const double wind : {0.5, 3.0, 8.0, 12.5}) {
+        const double airspeed = 13.0;
+        const double exact_s =
+            60.0 * 4.0 * airspeed * boost::math::ellint_2(wind / airspeed) / (airspeed * airspeed - wind * wind);
+        for (const double start_deg : {0.0, 77.0, 200.0})
+            for (const bool to_right : {true, false})
+                EXPECT_NEAR(time_s(element_of(Circles{60.0, 3.0, to_right, start_deg}), {wind, 40.0}) / (3.0 * exact_s),
+                            1.0, 1e-9)
+                    << wind;
+    }
+}
+
+/// A turn in small steps: the heading's rate of change is what the bank has to give.
+TEST(Path, LoadFactorsInWindAreThoseOfTheTurn) {
+    const double airspeed = 13.0;
+    const double radius_m = 50.0;
+    const double wind = 4.0;
+    const auto flown = fly_path({{element_of(Circles{radius_m, 1.0}, airspeed)}}, {wind, 180.0});
+    double mean_square = 0.0;
+    for (const auto& piece : flown.pieces)
+        mean_square += std::pow(piece.motion.load_factor, 2) * piece.time_s / flown.duration_s;
+    const int steps = 200000;
+    double sum = 0.0;
+    double total_s = 0.0;
+    const auto heading = [&](double course) { return course + std::asin(wind * std::sin(course) / airspeed); };
+    for (int k = 0; k < steps; ++k) {
+        const double course = 2.0 * pi * (k + 0.5) / steps;
+        const double step = 2.0 * pi / steps;
+        const double ground = wind * std::cos(course) +
+                              std::sqrt(airspeed * airspeed - std::pow(wind * std::sin(course), 2));  // tailwind at 0
+        const double step_s = radius_m * step / ground;
+        const double turn_rate = (heading(course + step / 2.0) - heading(course - step / 2.0)) / step_s;
+        sum += (1.0 + std::pow(airspeed * turn_rate / gravity, 2)) * step_s;
+        total_s += step_s;
+    }
+    EXPECT_NEAR(flown.duration_s, total_s, 1e-6);
+    EXPECT_NEAR(mean_square, sum / total_s, 1e-6);
+    EXPECT_GT(flown.pieces.size(), 8U);
+}
+
+TEST(Path, PartsOfCirclesAddUpToTheWhole) {
+    const Wind wind{6.0, 300.0};
+    const double whole_s = time_s(element_of(Circles{80.0, 1.0, true, 30.0}), wind);
+    double sum_s = 0.0;
+    for (int part = 0; part < 5; ++part)
+        sum_s += time_s(element_of(Circles{80.0, 0.2, true, 30.0 + 72.0 * part}), wind);
+    EXPECT_NEAR(sum_s, whole_s, 1e-8);
+    // Very many circles have longer pieces, and the same sums.
+    const auto many = fly_path({{element_of(Circles{80.0, 5000.5, true, 30.0})}}, wind);
+    EXPECT_LT(many.pieces.size(), 300U);
+    EXPECT_NEAR(many.duration_s, 5000.0 * whole_s + time_s(element_of(Circles{80.0, 0.5, true, 30.0}), wind), 1e-4);
+}
+
+TEST(Path, AnyWindMakesARoundTripLonger) {
+    std::mt19937 random(20262);
+    std::uniform_real_distribution<double> angle(0.0, 360.0);
+    std::uniform_real_distribution<double> speed(0.1, 11.0);
+    const FlightPath square{{element_of(Leg{500.0, 0.0}), element_of(Leg{500.0, 90.0}), element_of(Leg{500.0, 180.0}),
+                             element_of(Leg{500.0, 270.0}), element_of(Circles{60.0, 2.0})}};
+    const double calm_s = fly_path(square, {}).duration_s;
+    for (int i = 0; i < 50; ++i) EXPECT_GT(fly_path(square, {speed(random), angle(random)}).duration_s, calm_s);
+}
+
+TEST(Path, ClimbsSpreadOverALegArriveAtItsEnd) {
+    // Calm: along the slope.
+    EXPECT_NEAR(time_s(climbing(element_of(Leg{400.0, 0.0}), 300.0)), 500.0 / 13.0, 1e-9);
+    for (const Wind wind : {Wind{6.0, 10.0}, Wind{6.0, 100.0}, Wind{6.0, 190.0}}) {
+        const auto flown = fly_path({{climbing(element_of(Leg{900.0, 0.0}), -120.0)}}, wind);
+        ASSERT_EQ(flown.pieces.size(), 1U);
+        const double climb = flown.pieces.front().motion.climb_m_per_s;
+        const double horizontal = std::sqrt(13.0 * 13.0 - climb * climb);
+        EXPECT_NEAR(climb * flown.duration_s, -120.0, 1e-7);
+        EXPECT_NEAR(flown.duration_s, 900.0 / ground_speed_m_per_s(horizontal, 0.0, wind).value(), 1e-7);
+    }
+    const auto circling = fly_path({{climbing(element_of(Circles{80.0, 4.0}), 60.0)}}, {5.0, 0.0});
+    EXPECT_NEAR(climbed_m(circling), 60.0, 1e-6);
+}
+
+TEST(Path, ClimbsAtARateComeFirst) {
+    const Wind wind{4.0, 0.0};
+    const auto flown = fly_path({{climbing(element_of(Leg{1000.0, 0.0}), 60.0, 2.0)}}, wind);
+    ASSERT_EQ(flown.pieces.size(), 2U);
+    EXPECT_NEAR(flown.pieces[0].time_s, 30.0, 1e-9);
+    const double climbed_over_m = 30.0 * (std::sqrt(13.0 * 13.0 - 4.0) - 4.0);
+    EXPECT_NEAR(flown.pieces[1].time_s, (1000.0 - climbed_over_m) / 9.0, 1e-9);
+    EXPECT_EQ(flown.pieces[1].motion.climb_m_per_s, 0.0);
+    const auto circling = fly_path({{climbing(element_of(Circles{80.0, 3.0}), -60.0, 1.5)}}, wind);
+    EXPECT_NEAR(climbed_m(circling), -60.0, 1e-6);
+    const auto holding = fly_path({{climbing(element_of(Hold{100.0}), 60.0, 2.0)}}, wind);
+    EXPECT_NEAR(holding.duration_s, 100.0, 1e-12);
+    EXPECT_NEAR(climbed_m(holding), 60.0, 1e-9);
+}
+
+TEST(Path, RefusesWhatCannotBeFlown) {
+    const auto refusal = [](const PathElement& element, const Wind& wind = {}) {
+        return test::rejected([&] { fly_path({{element}}, wind); });
+    };
+    EXPECT_EQ(
+        refusal(element_of(Leg{100.0, 0.0}), {14.0, 90.0}),
+        "m.toml:7:1: leg 1: the wind of 14 m/s from 90 degrees forbids the course of 0 degrees at an airspeed of 13 "
+        "m/s: 14 m/s of it blow across, which no drift angle holds; fly it faster, on another course, or on "
+        "another day");
+    EXPECT_NE(refusal(element_of(Leg{100.0, 0.0}), {13.5, 10.0}).find("13.29 m/s of it blow against it"),
+              std::string::npos);
+    EXPECT_EQ(refusal(element_of(Leg{100.0, 0.0}), {14.0, 180.0}), "");  // a tailwind is none
+    EXPECT_NE(refusal(element_of(Circles{50.0, 1.0}), {13.0, 0.0}).find("no circle over ground"), std::string::npos);
+    EXPECT_NE(refusal(climbing(element_of(Leg{100.0, 0.0}), 60.0, 2.0)).find("takes 30 s, and is flown in 7.7"),
+              std::string::npos);
+    EXPECT_NE(refusal(climbing(element_of(Leg{100.0, 0.0}), 60.0, 14.0)).find("changes its height at 14 m/s"),
+              std::string::npos);
+    EXPECT_NE(refusal(climbing(element_of(Leg{10.0, 0.0}), 900.0), {6.0, 180.0}).find("too steep"), std::string::npos);
+    EXPECT_NE(refusal(climbing(element_of(Hold{10.0}), 60.0, 2.0)).find("need 30 s"), std::string::npos);
+    EXPECT_NE(refusal(element_of(Leg{1e6, 0.0}), {12.9999999, 0.0}).find("more than 1e+07"), std::string::npos);
+}
+
+TEST(Path, CrawlsAgainstAWindThatWasDrawn) {
+    const FlightPath path{{element_of(Leg{100.0, 180.0}), element_of(Leg{100.0, 0.0})}};
+    const auto flown = fly_path(path, {14.0, 0.0}, ForbiddenLeg::crawl);
+    EXPECT_EQ(flown.blown, std::optional<std::size_t>(1));
+    EXPECT_NEAR(flown.element_s[1], 100.0 / (0.02 * 13.0), 1e-9);
+    // A leg that a tailwind makes too short for its climb is climbed on the spot.
+    const auto climbed =
+        fly_path({{climbing(element_of(Leg{300.0, 0.0}), 40.0, 2.0)}}, {10.0, 180.0}, ForbiddenLeg::crawl);
+    EXPECT_FALSE(climbed.blown);
+    EXPECT_NEAR(climbed.duration_s, 20.0, 1e-9);
+}
+
+TEST(Path, LeadsThereAndBack) {
+    FlightPath path{
+        {element_of(Leg{300.0, 90.0}), element_of(Circles{50.0, 1.0}), climbing(element_of(Leg{400.0, 0.0}), 40.0)}};
+    EXPECT_DOUBLE_EQ(length_of_legs_m(path), 700.0);
+    const auto turned = there_and_back(path, 400.0, {});
+    ASSERT_EQ(turned.elements.size(), 5U);
+    const auto& back = turned.elements;
+    EXPECT_DOUBLE_EQ(std::get<Leg>(back[2].shape).length_m, 100.0);
+    EXPECT_DOUBLE_EQ(back[2].altitude_change_m, 10.0);
+    EXPECT_DOUBLE_EQ(std::get<Leg>(back[3].shape).course_deg, 180.0);
+    EXPECT_DOUBLE_EQ(back[3].altitude_change_m, -10.0);
+    EXPECT_DOUBLE_EQ(std::get<Leg>(back[4].shape).course_deg, 270.0);
+    EXPECT_DOUBLE_EQ(std::get<Leg>(back[4].shape).length_m, 300.0);
+    EXPECT_EQ(there_and_back(path, 300.0, {}).elements.size(), 2U);
+}
+
+}  // namespace
+}  // namespace flightwatt::mission

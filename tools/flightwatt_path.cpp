@@ -1,0 +1,127 @@
+// The path of a mission as it is flown, leg by leg; or the path that was flown in a log, as waypoints for a mission.
+
+#include "base/csv.h"
+#include "base/error.h"
+#include "base/units.h"
+#include "cli/output/flight_options.h"
+#include "cli/output/json_text.h"
+#include "cli/output/mission_output.h"
+#include "cli/stage.h"
+#include "flight/flown_path.h"
+#include "mission/mission_file.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace {
+
+using namespace flightwatt;
+
+constexpr int digits = 10;
+
+void print_summary(const cli::StageCall& call, const mission::MissionSetup& mission, double length_m) {
+    const auto& cruise = *mission.cruise_path;
+    const double duration_s = mission::duration_s(cruise);
+    const double energy_wh = units::wh_from_joule(energy_j(cruise));
+    if (!call.json) {
+        cli::note(call, fmt::format("{}: {:.2f} km over ground in {:.1f} s; {:.3f} Wh, {:.2f} W on average",
+                                    mission.name, length_m / 1000.0, duration_s, energy_wh, mean_power_w(cruise)));
+        return;
+    }
+    nlohmann::ordered_json json;
+    json["mission"] = mission.name;
+    json["length_m"] = length_m;
+    json["duration_s"] = duration_s;
+    json["mechanical_energy_wh"] = energy_wh;
+    json["mechanical_w"] = mean_power_w(cruise);
+    cli::print(cli::json_text(json));
+}
+
+int show_path(const cli::StageCall& call) {
+    mission::MissionReading reading;
+    reading.may_lack_schedule = true;
+    const auto mission = mission::read_mission(call.inputs.front(), reading);
+    const auto& setup = setup_of(mission);
+    if (!setup.cruise_path) {
+        throw InputError({call.inputs.front()}, "the mission has no [path]",
+                         "say where it flies (docs/missions.md, path); of a log --path-from makes one");
+    }
+    cli::warn_of_setup(call, setup);
+    CsvWriter csv({"leg", "kind", "start_s", "duration_s", "length_m", "course_deg", "airspeed_m_per_s",
+                   "climb_m_per_s", "load_factor", "mechanical_w"},
+                  digits);
+    double length_m = 0.0;
+    for (const auto& leg : flown_elements(*setup.cruise_path->plan)) {
+        csv.add(leg.name, leg.kind, leg.start_s, leg.duration_s, leg.length_m, leg.course_deg, leg.airspeed_m_per_s,
+                leg.climb_m_per_s, leg.load_factor, leg.mechanical_w);
+        length_m += leg.length_m.value_or(0.0);
+    }
+    cli::write_result(call, csv.text());
+    print_summary(call, setup, length_m);
+    return cli::ok;
+}
+
+const flight::PhaseSpan& cruise_of(const flight::LoadedFlight& flight, const std::string& file) {
+    const auto& sorties = flight.phases.sorties;
+    if (sorties.size() != 1)
+        throw InputError({file}, fmt::format("has {} flights", sorties.size()), "choose one: --sortie N");
+    for (const auto& phase : sorties.front().phases)
+        if (phase.phase == flight::Phase::cruise) return phase;
+    throw InputError({file}, "has no cruise");
+}
+
+int take_path(const cli::StageCall& call, const std::string& file) {
+    auto options = cli::read_flight_options(call);
+    options.power_required = false;
+    const auto loaded = cli::load_flight(call, file, options);
+    const auto path = flown_path(loaded.series, cruise_of(loaded, file));
+    CsvWriter csv({path.is_geographic ? "latitude_deg" : "east_m", path.is_geographic ? "longitude_deg" : "north_m",
+                   "altitude_m", "airspeed_m_per_s", "duration_s"},
+                  digits);
+    double duration_s = 0.0;
+    for (const auto& place : path.places) {
+        const bool is_first = place.duration_s == 0.0;
+        csv.add(place.east_m, place.north_m, place.altitude_m,
+                is_first ? std::nullopt : std::optional(place.airspeed_m_per_s),
+                is_first ? std::nullopt : std::optional(place.duration_s));
+        duration_s += place.duration_s;
+    }
+    cli::write_result(call, csv.text());
+    if (call.json) {
+        nlohmann::ordered_json json;
+        json["flight"] = loaded.series.flight;
+        json["waypoints"] = path.places.size();
+        json["duration_s"] = duration_s;
+        cli::print(cli::json_text(json));
+    } else {
+        cli::note(call,
+                  fmt::format("{}: {} waypoints of a cruise of {:.1f} s, each with how long the way there took: a "
+                              "mission that is to fly them in another wind leaves duration_s out",
+                              loaded.series.flight, path.places.size(), duration_s));
+    }
+    return cli::ok;
+}
+
+int path_stage(const cli::StageCall& call) {
+    const auto log = call.maybe<std::string>("path-from");
+    if (log.has_value() == !call.inputs.empty()) throw UsageError("give a mission, or a log with --path-from");
+    return log ? take_path(call, *log) : show_path(call);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "path", "[MISSION.toml]",
+        R"(Shows how the cruise of a mission with a [path] is flown, an element a row: leg, kind, start_s, duration_s,
+length_m, course_deg, airspeed_m_per_s, climb_m_per_s, load_factor, mechanical_w.
+With --path-from the path of a log's cruise instead, as waypoints for a mission (waypoints = "FILE" in
+[path]): a place every 30 s, with the airspeed on the way there and how long it took.)"};
+    stage.min_inputs = 0;
+    stage.max_inputs = 1;
+    stage.options.add_options()("path-from", cli::input_file("LOG"),
+                                "write the path that was flown in LOG as waypoints");
+    cli::add_flight_options(stage.options);
+    return cli::run_stage(argc, argv, stage, path_stage);
+}
