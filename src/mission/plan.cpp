@@ -15,8 +15,7 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr int max_reserve_rounds = 20;
-constexpr int max_simulation_rounds = 16;
-constexpr double gap_that_is_none = 1e-5;
+constexpr int max_search_rounds = 5;
 constexpr int max_margin_rounds = 8;
 constexpr double slack_part = 2e-3;  // of the flights' deviation: 0.0002 of a chance of 0.05
 
@@ -46,93 +45,50 @@ Trial fly(const PlanningProblem& problem, Schedule schedule) {
     return trial;
 }
 
-bool is_better(const Trial& a, const Trial& b) {
-    return a.lands() && a.summary.utility.value_or(0.0) > b.summary.utility.value_or(0.0);
-}
-
-/// How much to plan for, by what the plans before came to.
-class PlannedReserve {
-  public:
-    PlannedReserve(double wanted_percent, double most_percent)
-        : wanted_percent_(wanted_percent), most_percent_(most_percent), percent_(wanted_percent) {}
-
-    double percent() const { return percent_; }
-
-    /// `tabled_percent` is what the table said that the trial would leave.
-    void learn(const Trial& trial, double tabled_percent) {
-        if (trial.summary.feasible) {
-            // The table's error at this schedule is about that at the next.
-            const double error_percent = tabled_percent - *trial.summary.final_soc_percent;
-            percent_ = wanted_percent_ + error_percent + rounding_percent;
-            if (trial.lands()) most_percent_ = std::min(most_percent_, std::max(percent_, tabled_percent));
-        } else if (trial.summary.cut_off_at_s) {
-            too_low_percent_ = std::max(percent_, too_low_percent_);
-            percent_ = std::midpoint(too_low_percent_, std::max(most_percent_, too_low_percent_));
-        } else {
-            percent_ += trial.deficit_percent;
-        }
-        percent_ = std::max(percent_, too_low_percent_);
-    }
-
-    /// The table knows no plan with so much.
-    void ask_for_less() { percent_ = std::midpoint(percent_, std::max(wanted_percent_, too_low_percent_)); }
-
-  private:
-    static constexpr double rounding_percent = 1e-9;
-    double wanted_percent_;
-    double most_percent_;  ///< with it a plan landed
-    double percent_;
-    double too_low_percent_ = 0.0;  ///< with it a plan was cut off
-};
-
 PlanStart start_of(const PlanningProblem& problem) { return {0.0, problem.initial_soc_percent}; }
 
-/// No schedule that lands has more utility. Errors of the table are given away twice a slot.
-double proven_bound(const PlanningProblem& problem, const Planner& highest) {
-    const double slack_percent = 2.0 * static_cast<double>(slots_of(problem).size()) * highest.depletions.error_percent;
-    return plan_rest(problem, highest, start_of(problem), problem.reserve_soc_percent - slack_percent).bound;
+/// What the search is asked anew where the simulation says that a schedule does not land, by a rounding error: for a
+/// little more than that.
+void make_stricter(const Trial& trial, double part, PlanningProblem& problem) {
+    constexpr double search_slack_percent = 1e-6;
+    if (trial.summary.undeliverable)
+        problem.battery.resistance_ohm *= 1.0 + part;
+    else if (trial.summary.cut_off_at_s)
+        problem.cutoff_voltage_v *= 1.0 + part;
+    else
+        problem.reserve_soc_percent += std::max(trial.deficit_percent, 0.0) + search_slack_percent;
 }
 
-/// The best trial of some rounds.
-Trial best_trial(const PlanningProblem& problem, const Trial& least, double bound, const Planner& highest) {
-    Trial best = least;
-    auto planner = highest;
-    PlannedReserve reserve(problem.reserve_soc_percent, *least.summary.final_soc_percent);
-    Schedule last;
-    for (int round = 0; round < max_simulation_rounds; ++round) {
-        const auto plan = plan_rest(problem, planner, start_of(problem), reserve.percent());
-        if (!plan.feasible) {
-            if (!plan.deliverable) planner = highest;
-            reserve.ask_for_less();
-            continue;
+/// The best schedule found by the search that lands, and into `plan` the bound of the problem as stated.
+Trial searched(const PlanningProblem& problem, const Planner& planner, const Trial& least, Plan& plan) {
+    auto stricter = problem;
+    double part = 1e-8;
+    for (int round = 0; round < max_search_rounds; ++round) {
+        const auto found = plan_rest(stricter, planner, start_of(problem), stricter.reserve_soc_percent);
+        if (round == 0) {
+            plan.bound = found.bound;
+            plan.bound_is_proven = found.bound_is_proven;
         }
-        const auto trial = fly(problem, plan.schedule);
-        if (is_better(trial, best)) best = trial;
-        if (best.summary.utility.value_or(0.0) >= bound * (1.0 - gap_that_is_none)) break;
-        if (trial.lands() && trial.schedule == last) break;
-        last = trial.schedule;
-        reserve.learn(trial, plan.final_soc_percent);
-        if (const auto course = voltage_course_of(problem, trial.schedule))
-            planner = with_voltage_course(problem, planner, &*course);
+        if (!found.feasible) break;
+        auto trial = fly(problem, found.schedule);
+        if (trial.lands()) return trial;
+        make_stricter(trial, part *= 10.0, stricter);
     }
-    return best;
+    return least;
 }
 
 /// For a battery whose source follows its charge, or that may be cut off: the depletion by a slot then depends on what
-/// ran before it. Tables are made along the voltage of the last plan simulated, until a plan lands and the next is no
-/// better; the bound is that of the highest voltage that any schedule keeps. If the schedule of least energy demand
-/// does not land, none does, as it keeps the most charge and the highest voltage at any time.
-MissionPlan plan_by_simulation(const PlanningProblem& problem) {
+/// ran before it. If the schedule of least energy demand does not land, none does, as it keeps the most charge and the
+/// highest voltage at any time.
+MissionPlan plan_by_search(const PlanningProblem& problem) {
     const auto planner = make_planner(problem);
     MissionPlan result;
     auto& plan = result.plan;
-    plan.bound_is_proven = !(problem.battery.thevenin && planner.depletions.charges);
     auto found = fly(problem, minimum_energy_schedule(problem));
     plan.deliverable = !found.summary.undeliverable;
     plan.feasible = found.lands();
     if (plan.feasible) {
-        plan.bound = proven_bound(problem, planner);
-        found = best_trial(problem, found, plan.bound, planner);
+        found = searched(problem, planner, found, plan);
         plan.utility = found.summary.utility.value_or(0.0);
         plan.bound = std::max(plan.bound, plan.utility);
     }
@@ -170,8 +126,8 @@ MissionPlan plan_by_tables(const PlanningProblem& problem) {
 
 /// The plan of a mission whose flights do not differ.
 MissionPlan plan_certain(const PlanningProblem& problem) {
-    const bool by_simulation = problem.battery.thevenin || problem.cutoff_voltage_v > 0.0;
-    return by_simulation ? plan_by_simulation(problem) : plan_by_tables(problem);
+    const bool state_counts = problem.battery.thevenin || problem.cutoff_voltage_v > 0.0;
+    return state_counts ? plan_by_search(problem) : plan_by_tables(problem);
 }
 
 /// The schedule of least energy demand as a plan.

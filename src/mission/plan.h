@@ -6,7 +6,7 @@
 
 namespace flightwatt::mission {
 
-/// A schedule for the rest of a mission, by depletion tables.
+/// A schedule for the rest of a mission: by depletion tables, or where the battery's state counts, by search.
 struct Plan {
     bool feasible = false;
     bool deliverable = false;  ///< the battery can deliver the power of some schedule
@@ -14,23 +14,23 @@ struct Plan {
     Schedule schedule;
     double utility = 0.0;            ///< mean utility a second of the rest of the mission
     double bound = 0.0;              ///< no schedule that keeps the reserve has more; 0 if infeasible
-    bool bound_is_proven = true;     ///< false: something charges a battery whose source follows its charge
+    bool bound_is_proven = true;     ///< false: something charges a battery whose state counts
     double final_soc_percent = 0.0;  ///< as if the battery went on below empty
 };
 
 /// A plan of a whole mission that Runge-Kutta has flown.
 struct MissionPlan {
-    Plan plan;                                           ///< its bound is of the tables, whatever Runge-Kutta says
-    Mission flown;                                       ///< the mission with the plan's schedule
-    MissionSummary summary;                              ///< of that, simulated
-    double margin_percent = 0.0;                         ///< kept above the reserve for the sake of the probability
-    double chance_standard_error = 0.0;                  ///< of the chance to keep the reserve, as it is computed
+    Plan plan;                           ///< its bound is of the mission as stated, whatever Runge-Kutta says
+    Mission flown;                       ///< the mission with the plan's schedule
+    MissionSummary summary;              ///< of that, simulated
+    double margin_percent = 0.0;         ///< kept above the reserve for the sake of the probability
+    double chance_standard_error = 0.0;  ///< of the chance to keep the reserve, as it is computed
     std::optional<DrawnSources> sources = std::nullopt;  ///< what may differ with that probability
 };
 
 /// Plans a mission and simulates the result; where that ends below the reserve (by rounding, or because a full battery
-/// refused charge, which tables do not know), plans anew with more to spare. The bound holds nevertheless, as tables
-/// deplete the battery no more than the simulation.
+/// refused charge, which tables do not know), plans anew with more to spare. The bound holds nevertheless, as the first
+/// plan depletes the battery no more than the simulation.
 ///
 /// With `probability`, the reserve is kept by that part of the flights which flight_of makes of the plan
 /// (sampling/flight_draws.h), battery failures counted as below it: margins above the reserve are tried until the

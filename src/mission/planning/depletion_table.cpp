@@ -1,8 +1,6 @@
 #include "mission/planning/depletion_table.h"
 
-#include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "mission/simulation.h"
 #include "mission/simulation/load_segments.h"
 
 #include <algorithm>
@@ -16,35 +14,22 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double wanted_error_percent = 1e-8;
-constexpr double wanted_error_along_source_percent = 1e-6;  // straight lines between the course's points
 constexpr std::size_t fewest_cells = 16;
 constexpr std::size_t first_cells_at_most = 4096;
 constexpr std::size_t most_cells = 65536;
 
-constexpr double point_every_s = 0.1;
-constexpr double repeated_time_s = 1e-9;
-
 /// The load of one configuration in one phase.
 struct PhaseLoad {
-    battery::Battery battery;     ///< the paper's
-    const VoltageCourse* course;  ///< none: the battery's own
+    const battery::Battery& battery;
     double cutoff_voltage_v;
-    double phase_start_s;
     std::optional<mechanical::FourierModel> mechanical;
     double compute_w;
 
-    /// Its RC voltage takes the battery's constant source to where the course is.
-    battery::BatteryState state(double time_s) const {
-        if (!course) return {};
-        return {100.0,
-                battery.voltage_v - interpolate_clamped(course->time_s, course->voltage_v, phase_start_s + time_s)};
-    }
     bool is_deliverable(double time_s) const {
-        const auto now = state(time_s);
         const double demand_w = power_w(time_s);
-        if (demand_w > power_limit_w(battery, now)) return false;
+        if (demand_w > power_limit_w(battery)) return false;
         return cutoff_voltage_v == 0.0 ||
-               terminal_voltage_v(battery, now, internal_current_a(battery, demand_w, now)) >= cutoff_voltage_v;
+               terminal_voltage_v(battery, {}, internal_current_a(battery, demand_w)) >= cutoff_voltage_v;
     }
 
     double power_w(double time_s) const {
@@ -54,14 +39,12 @@ struct PhaseLoad {
         return (mechanical ? mechanical::energy_j(*mechanical, time_s) : 0.0) + compute_w * time_s;
     }
     double percent_per_s(double time_s) const {
-        const auto now = state(time_s);
-        const double current_a =
-            internal_current_a(battery, std::min(power_w(time_s), power_limit_w(battery, now)), now);
+        const double current_a = internal_current_a(battery, std::min(power_w(time_s), power_limit_w(battery)));
         return units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
     }
     /// The depletion from one time to another.
     double percent(double start_s, double end_s) const {
-        if (battery.resistance_ohm == 0.0 && !course) {
+        if (battery.resistance_ohm == 0.0) {
             const double charge_as = (energy_j(end_s) - energy_j(start_s)) / battery.voltage_v;
             return units::percent_of(charge_as, units::coulomb_from_ah(battery.capacity_ah));
         }
@@ -132,8 +115,7 @@ PhaseDepletion tabulate(const PhaseLoad& load, double duration_s, std::size_t ce
 PhaseDepletion tabulate(const PhaseLoad& load, double duration_s) {
     auto cells = std::clamp(static_cast<std::size_t>(std::ceil(duration_s)), fewest_cells, first_cells_at_most);
     auto depletion = tabulate(load, duration_s, cells);
-    const double wanted_percent = load.course ? wanted_error_along_source_percent : wanted_error_percent;
-    while (depletion.error_percent > wanted_percent && cells < most_cells && depletion.deliverable) {
+    while (depletion.error_percent > wanted_error_percent && cells < most_cells && depletion.deliverable) {
         cells *= 2;
         depletion = tabulate(load, duration_s, cells);
     }
@@ -144,11 +126,9 @@ PhaseDepletion tabulate(const PhaseLoad& load, double duration_s) {
 PhaseDepletion tabulate(PhaseLoad load, const PowerPieces& pieces) {
     PhaseDepletion depletion;
     depletion.duration_s = pieces.back().end_s;
-    const double phase_start_s = load.phase_start_s;
     double depleted = 0.0;
     for (const auto& [start_s, end_s, power_w, energy_before_j] : pieces) {
         load.mechanical = mechanical::FourierModel{0.0, power_w, {}, {}};
-        load.phase_start_s = phase_start_s + start_s;
         auto of_piece = tabulate(load, end_s - start_s);
         depletion.deliverable = depletion.deliverable && of_piece.deliverable;
         depletion.error_percent += of_piece.error_percent;
@@ -184,61 +164,20 @@ bool is_undeliverable(const PhaseDepletion& depletion, double start_s, double en
            depletion.undeliverable_cells[std::min(first, cells - 1)];
 }
 
-/// The paper's battery with the source that the mission's has at the start.
-battery::Battery with_constant_source(const MissionSetup& mission) {
-    auto battery = mission.battery;
-    battery.voltage_v = open_circuit_voltage_v(battery, mission.initial_soc_percent);
-    battery.thevenin.reset();
-    return battery;
-}
-
-/// How much the lines bend, in voltage over the longer of two neighbours: an interpolated smooth curve is off
-/// by an eighth of that, one with a corner by less than all of it.
-double greatest_bend_v(const VoltageCourse& course) {
-    double bend_v = 0.0;
-    for (std::size_t i = 2; i < course.time_s.size(); ++i) {
-        const double before_s = course.time_s[i - 1] - course.time_s[i - 2];
-        const double after_s = course.time_s[i] - course.time_s[i - 1];
-        const double before_v_per_s = (course.voltage_v[i - 1] - course.voltage_v[i - 2]) / before_s;
-        const double after_v_per_s = (course.voltage_v[i] - course.voltage_v[i - 1]) / after_s;
-        bend_v = std::max(bend_v, std::abs(after_v_per_s - before_v_per_s) * std::max(before_s, after_s));
-    }
-    return bend_v;
-}
-
 }  // namespace
 
-std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission, const Schedule& schedule) {
-    const auto simulation = simulate(mission, schedule, {point_every_s, point_every_s, false});
-    if (!simulation.summary.feasible) return std::nullopt;
-    VoltageCourse course;
-    for (const auto& row : simulation.curve.rows) {
-        // At a jump the current changes, the source does not.
-        if (!course.time_s.empty() && row.time_s - course.time_s.back() < repeated_time_s) continue;
-        course.time_s.push_back(row.time_s);
-        course.voltage_v.push_back(row.terminal_voltage_v + mission.battery.resistance_ohm * row.current_a);
-    }
-    course.error_v = greatest_bend_v(course);
-    return course;
-}
-
-DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<compute::Configuration> configurations,
-                                    const VoltageCourse* course) {
+DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<compute::Configuration> configurations) {
+    if (mission.battery.thevenin)
+        throw std::invalid_argument("make_depletion_table: the source follows the charge, sums do not tell the end");
     DepletionTable table;
     table.initial_soc_percent = mission.initial_soc_percent;
-    table.depends_on_state = mission.battery.thevenin.has_value();
     table.configurations = std::move(configurations);
     table.depletions.resize(table.configurations.size());
-    const auto battery = with_constant_source(mission);
     const auto flown = load_of(mission);
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
         for (std::size_t c = 0; c < table.configurations.size(); ++c) {
-            const PhaseLoad load{battery,
-                                 course,
-                                 mission.cutoff_voltage_v,
-                                 flown.timeline.start_s[phase],
-                                 flown.mechanical[phase],
+            const PhaseLoad load{mission.battery, mission.cutoff_voltage_v, flown.mechanical[phase],
                                  power_w(mission.compute, table.configurations[c])};
             auto& depletion = table.depletions[c][phase];
             depletion = phase == Phase::cruise && flown.cruise_pieces ? tabulate(load, *flown.cruise_pieces)
@@ -275,7 +214,7 @@ double soc_depletion_percent(const DepletionTable& table, const TabledSegment& s
 }
 
 std::optional<double> soc_after(const DepletionTable& table, std::span<const TabledSegment> schedule) {
-    if (table.charges || table.depends_on_state) return std::nullopt;
+    if (table.charges) return std::nullopt;
     double soc_percent = table.initial_soc_percent;
     for (const auto& segment : schedule) soc_percent -= soc_depletion_percent(table, segment);
     if (!std::isfinite(soc_percent)) return std::nullopt;

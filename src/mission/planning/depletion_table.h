@@ -10,16 +10,6 @@
 
 namespace flightwatt::mission {
 
-/// The voltage before the series resistor over a mission: straight lines between points, the ends' values beyond them.
-struct VoltageCourse {
-    std::vector<double> time_s;  ///< of the mission, rising strictly
-    std::vector<double> voltage_v;
-    double error_v = 0.0;  ///< what the straight lines may be off, by how they bend from one to the next
-};
-
-/// The course of a mission with a schedule, simulated as if there was no cut-off; none if the battery does not last.
-std::optional<VoltageCourse> voltage_course_of(const MissionSetup& mission, const Schedule& schedule);
-
 /// State of charge [points] that the battery has lost since a phase began, at evenly spread times, while one
 /// configuration runs; with its rate, so that cubics between the nodes are smooth.
 struct PhaseDepletion {
@@ -45,15 +35,13 @@ struct PhaseDepletion::Piece {
 };
 
 /// Cumulative depletion by every configuration over every phase of a mission. Where the current depends on the power
-/// alone, a schedule depletes a sum of differences of its entries; with a battery whose source follows its charge, that
-/// holds along one course of the source's voltage only.
+/// alone, a schedule depletes a sum of differences of its entries.
 struct DepletionTable {
     std::vector<compute::Configuration> configurations;
     std::vector<PerPhase<PhaseDepletion>> depletions;  ///< one a configuration
     double initial_soc_percent = 100.0;
-    bool charges = false;           ///< somewhere: what a full battery then refuses depends on the state of charge
-    bool depends_on_state = false;  ///< the source follows the charge: sums do not tell the end
-    double error_percent = 0.0;     ///< the greatest of the phases'
+    bool charges = false;        ///< somewhere: what a full battery then refuses depends on the state of charge
+    double error_percent = 0.0;  ///< the greatest of the phases'
 };
 
 /// A part of a phase in which one of the table's configurations runs.
@@ -63,11 +51,9 @@ struct TabledSegment : PhaseSegment {
 
 /// Tabulates the mission's phases for the configurations. Without resistance entries are the closed integral of
 /// Eq. 1; with it, Gauss quadrature. Cells are halved until the error is under 1e-8 points (or there are 2^16 of
-/// them). What the cut-off voltage forbids counts as undeliverable. A battery whose source follows its charge is
-/// tabled along `course`, with an error under 1e-6 points; or without one along its voltage at the start, which
-/// depletes it no more than the truth if nothing charges.
-DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<compute::Configuration> configurations,
-                                    const VoltageCourse* course = nullptr);
+/// them). What the cut-off voltage forbids counts as undeliverable. Throws std::invalid_argument for a battery whose
+/// source follows its charge.
+DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<compute::Configuration> configurations);
 
 /// None if the table does not hold the configuration.
 std::optional<std::size_t> index_of(const DepletionTable& table, const compute::Configuration& run);
@@ -79,7 +65,7 @@ std::vector<TabledSegment> tabled(const Schedule& schedule, const DepletionTable
 double soc_depletion_percent(const DepletionTable& table, const TabledSegment& segment);
 
 /// State of charge after a whole schedule, as if the battery went on below empty. None where the table does not hold:
-/// it charges, depends on the state, or cannot be delivered.
+/// it charges, or cannot be delivered.
 std::optional<double> soc_after(const DepletionTable& table, std::span<const TabledSegment> schedule);
 
 }  // namespace flightwatt::mission

@@ -1,5 +1,7 @@
 #include "mission/planning/planner.h"
 
+#include "mission/planning/schedule_search.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -109,8 +111,9 @@ void require_few_slots(const PlanningProblem& problem, double duration_s) {
                      "make slot_s in [plan] longer");
 }
 
-MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
-                                   const std::vector<MissionSlot>& slots) {
+/// All but the costs.
+MultipleChoiceKnapsack choices_of(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
+                                  const std::vector<MissionSlot>& slots) {
     MultipleChoiceKnapsack knapsack;
     knapsack.utility_per_s = planner.utility_per_s;
     knapsack.free_choices = planner.free_choices;
@@ -120,18 +123,39 @@ MultipleChoiceKnapsack knapsack_of(const PlanningProblem& problem, const Planner
             knapsack.running = {*choice, start.running_for_s};
     }
     for (const auto& slot : slots) {
-        KnapsackSlot choices{slot.duration_s(), std::nullopt, {}};
-        if (slot.fixed) choices.fixed = index_of(planner.depletions, *slot.fixed).value();
-        double more_percent = 0.0;
-        if (start.mechanical_factor != 1.0) {
-            more_percent =
-                (start.mechanical_factor - 1.0) * soc_depletion_percent(planner.mechanical_depletion, {slot, 0});
-        }
-        for (std::size_t c = 0; c < planner.utility_per_s.size(); ++c)
-            choices.cost.push_back(soc_depletion_percent(planner.depletions, {slot, c}) + more_percent);
-        knapsack.slots.push_back(std::move(choices));
+        knapsack.slots.push_back({slot.duration_s(), std::nullopt, {}});
+        if (slot.fixed) knapsack.slots.back().fixed = index_of(planner.depletions, *slot.fixed).value();
     }
     return knapsack;
+}
+
+void set_costs(const Planner& planner, double mechanical_factor, const std::vector<MissionSlot>& slots,
+               MultipleChoiceKnapsack& knapsack) {
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        double more_percent = 0.0;
+        if (mechanical_factor != 1.0) {
+            more_percent =
+                (mechanical_factor - 1.0) * soc_depletion_percent(planner.mechanical_depletion, {slots[i], 0});
+        }
+        for (std::size_t c = 0; c < planner.utility_per_s.size(); ++c)
+            knapsack.slots[i].cost.push_back(soc_depletion_percent(planner.depletions, {slots[i], c}) + more_percent);
+    }
+}
+
+std::vector<PhaseSegment> parts_of(const std::vector<MissionSlot>& slots) { return {slots.begin(), slots.end()}; }
+
+std::vector<double> compute_w_of(const PlanningProblem& problem, const Planner& planner) {
+    std::vector<double> compute_w;
+    for (const auto& run : planner.depletions.configurations) compute_w.push_back(power_w(problem.compute, run));
+    return compute_w;
+}
+
+bool charges(const SlotDynamics& dynamics) {
+    constexpr double rounding_of_power_w = 1e-6;  // as refuse_charging has it
+    const double least_compute_w = std::ranges::min(dynamics.compute_w);
+    return std::ranges::any_of(dynamics.slots, [&](const auto& slot) {
+        return slot.least_mechanical_w + least_compute_w < -rounding_of_power_w;
+    });
 }
 
 Schedule schedule_of(const Planner& planner, const std::vector<MissionSlot>& slots,
@@ -170,16 +194,12 @@ Planner make_planner(const PlanningProblem& problem) {
         configurations.push_back(run);
         planner.utility_per_s.push_back(utility_per_s(problem.utilities, run));
     }
-    std::optional<VoltageCourse> highest;
-    if (problem.battery.thevenin) highest = voltage_course_of(problem, minimum_energy_schedule(problem));
-    if (highest)
-        for (auto& voltage_v : highest->voltage_v) voltage_v += highest->error_v;
-    return with_voltage_course(problem, std::move(planner), highest ? &*highest : nullptr);
-}
-
-Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse* course) {
-    planner.depletions = make_depletion_table(problem, std::move(planner.depletions.configurations), course);
-    planner.mechanical_depletion = make_depletion_table(problem, {{}}, course);
+    if (problem.battery.thevenin || problem.cutoff_voltage_v > 0.0) {
+        planner.step_s = step_for(problem, parts_of(slots_of(problem)), compute_w_of(problem, planner));
+        return planner;
+    }
+    planner.depletions = make_depletion_table(problem, std::move(configurations));
+    planner.mechanical_depletion = make_depletion_table(problem, {{}});
     return planner;
 }
 
@@ -220,11 +240,26 @@ Mission with_minimum_energy_schedule(const AnyMission& mission) {
 
 Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
                double reserve_soc_percent, const KnapsackEffort& effort) {
+    constexpr double rounding_percent = 1e-6;  // of the search's battery against the simulation's
+    constexpr double least_gap = 3e-5;
     const auto slots = slots_of(problem, start.time_s);
-    auto knapsack = knapsack_of(problem, planner, start, slots);
-    knapsack.budget = start.soc_percent - reserve_soc_percent;
-    const auto chosen = solve_knapsack(knapsack, effort);
+    auto knapsack = choices_of(problem, planner, start, slots);
     Plan plan;
+    KnapsackSolution chosen;
+    if (planner.step_s) {
+        const auto dynamics = make_slot_dynamics(problem, parts_of(slots), compute_w_of(problem, planner),
+                                                 *planner.step_s, start.mechanical_factor);
+        plan.bound_is_proven = !charges(dynamics);
+        auto coarser = effort;
+        coarser.relative_gap = std::max(effort.relative_gap, least_gap);
+        chosen = search_schedule(
+            {dynamics, knapsack, {start.soc_percent, start.rc_voltage_v}, reserve_soc_percent - rounding_percent},
+            coarser);
+    } else {
+        set_costs(planner, start.mechanical_factor, slots, knapsack);
+        knapsack.budget = start.soc_percent - reserve_soc_percent;
+        chosen = solve_knapsack(knapsack, effort);
+    }
     plan.feasible = chosen.feasible;
     plan.deliverable = chosen.possible;
     if (!chosen.possible) return plan;

@@ -16,18 +16,15 @@ struct Planner {
     std::vector<double> utility_per_s;    ///< of each of them
     std::size_t free_choices = 0;         ///< the first so many may be chosen; the others are only fixed
     DepletionTable mechanical_depletion;  ///< of one configuration, in which nothing runs
+    /// The step of schedule_search.h, for batteries whose depletion by a slot depends on what ran before: their source
+    /// follows their charge, or they may be cut off. Such a planner's tables hold configurations alone.
+    std::optional<double> step_s = std::nullopt;
 };
 
 /// The configurations that [plan] allows, without those that draw more than another one of as much utility, and those
 /// that the fixed segments run. Throws InputError if the mission states no utility, or has more than a million
 /// combinations.
-/// Of a battery whose source follows its charge, the tables are along the voltage that the schedule of least energy
-/// demand keeps, raised by the course's error. Where nothing charges, no schedule keeps more, and none depletes the
-/// battery less than this table says.
 Planner make_planner(const PlanningProblem& problem);
-
-/// The same choices, with their depletion along a course of the source's voltage, as make_depletion_table.
-Planner with_voltage_course(const PlanningProblem& problem, Planner planner, const VoltageCourse* course);
 
 /// The schedule that demands least energy: the configuration that draws least wherever nothing is fixed (which
 /// any dwell time allows). Throws InputError as make_planner does for too many combinations.
@@ -55,10 +52,12 @@ struct PlanStart {
     /// For the dwell time; ignored if it is none of the planner's.
     std::optional<compute::Configuration> running = std::nullopt;
     double running_for_s = 0.0;
-    double mechanical_factor = 1.0;  ///< of mechanical depletion to what the model predicts
+    double mechanical_factor = 1.0;  ///< of mechanical power to what the model predicts
+    double rc_voltage_v = 0.0;       ///< of a Thévenin battery
 };
 
-/// The schedule of most utility of those that end with the reserve; takes milliseconds, for calls in flight.
+/// The schedule of most utility of those that end with the reserve; takes milliseconds, or with little effort on a
+/// battery whose state counts, for calls in flight.
 Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
                double reserve_soc_percent, const KnapsackEffort& effort = {});
 

@@ -14,21 +14,16 @@
 namespace flightwatt::mission {
 namespace {
 
-/// The relaxation's plan leaves at most what one slot could spend, and the next decision spends it; only near
-/// the end does a search pay.
-KnapsackEffort effort_for(double slots_left) {
+/// Of tables: the relaxation's plan leaves at most what one slot could spend, and the next decision spends it; only near
+/// the end does a search pay. Where the battery's state counts, a few labels follow it all the way.
+KnapsackEffort effort_for(const Planner& planner, double slots_left) {
     constexpr double searched_slots = 8.0;
-    return {slots_left <= searched_slots ? 1e-4 : 1.0, 200};
+    const bool searches = slots_left <= searched_slots;
+    if (planner.step_s) return {1e-4, searches ? std::size_t{200} : std::size_t{20}, 16};
+    return {searches ? 1e-4 : 1.0, 200};
 }
 
 constexpr double jump_factor = 2.0;  ///< of the depletion predicted: beyond, charge was lost otherwise
-
-/// Charge as its energy at the planner's constant voltage [points]: the integral of the known
-/// open-circuit voltage over it. The state of charge itself where that is constant.
-double energy_equivalent_soc_percent(const AdaptivePlanner& planner, double soc_percent) {
-    if (!planner.open_circuit) return soc_percent;
-    return voltage_integral(*planner.open_circuit, soc_percent) / planner.known.battery.voltage_v;
-}
 
 void require_few_decisions(const PlanningProblem& known) {
     constexpr double most = 20000.0;
@@ -70,6 +65,29 @@ struct Learned {
     }
 };
 
+/// What a part of a flight depletes [points], as predicted.
+struct PredictedDepletion {
+    double percent = 0.0;
+    double mechanical_percent = 0.0;  ///< how much more by mechanical power of twice as much
+};
+
+/// The same of a battery whose state counts, from that state on.
+PredictedDepletion predicted_by_state(const MissionLoad& known, const Schedule& run,
+                                      const battery::BatteryState& state) {
+    constexpr double more = 0.01;
+    const auto lost_percent = [&](double mechanical_factor) {
+        Disturbance wind;
+        wind.mechanical_factor = mechanical_factor;
+        battery::Discharge now{state};
+        for (const auto& scheduled : run)
+            for (const auto& segment : disturbed({load_segment(known, scheduled)}, {wind}))
+                now = after_segment(known.mission.battery, 0.0, segment, now);
+        return state.soc_percent - now.soc_percent;
+    };
+    const double percent = lost_percent(1.0);
+    return {percent, (lost_percent(1.0 + more) - percent) / more};
+}
+
 /// One flight in the air.
 class Flight {
   public:
@@ -80,28 +98,28 @@ class Flight {
           disturbances_(disturbances),
           battery_(disturbed(actual.battery, disturbances)),
           planned_(timeline_of(known_.duration_s)),
+          known_load_(load_of(known_)),
           load_(load_of(actual)) {
         charge_.soc_percent = actual.initial_soc_percent;
-        reserve_percent_ = energy_equivalent_soc_percent(planner, known_.reserve_soc_percent);
         const auto& policy = *known_.adaptive;
         reach_ = policy.mechanical_sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
+        if (state_counts()) return;
         for (const auto phase : all_phases)
             if (known_.duration_s[phase] > 0.0)
                 rest_mechanical_percent_ += mechanical_percent({phase, 0.0, known_.duration_s[phase]});
     }
 
     void fly(const PhaseSegment& interval) {
-        const double before_percent = soc_left_percent();
-        double predicted_percent = 0.0;
+        Schedule run;
         for (const auto& planned : decide(interval)) {
             if (planned.phase != interval.phase || planned.start_s >= interval.end_s) break;
-            auto segment = planned;
-            segment.end_s = std::min(planned.end_s, interval.end_s);
-            const auto& table = adaptive_.planner.depletions;
-            predicted_percent += soc_depletion_percent(table, tabled({segment}, table).front());
-            run(segment);
+            run.push_back(planned);
+            run.back().end_s = std::min(planned.end_s, interval.end_s);
         }
-        learn(interval, before_percent - soc_left_percent(), predicted_percent);
+        const auto predicted = predict(interval, run);
+        const double before_percent = charge_.soc_percent;
+        for (const auto& segment : run) fly(segment);
+        learn(interval, before_percent - charge_.soc_percent, predicted);
     }
 
     AdaptiveFlight landed() {
@@ -116,17 +134,36 @@ class Flight {
         return soc_depletion_percent(adaptive_.planner.mechanical_depletion, {time, 0});
     }
 
+    bool state_counts() const { return adaptive_.planner.step_s.has_value(); }
+
+    PredictedDepletion predict(const PhaseSegment& interval, const Schedule& run) const {
+        if (state_counts()) return predicted_by_state(known_load_, run, charge_);
+        PredictedDepletion predicted{0.0, mechanical_percent(interval)};
+        const auto& table = adaptive_.planner.depletions;
+        for (const auto& segment : tabled(run, table)) predicted.percent += soc_depletion_percent(table, segment);
+        return predicted;
+    }
+
     Schedule decide(const PhaseSegment& interval) {
         const auto& policy = *known_.adaptive;
-        PlanStart start{planned_.start_s[interval.phase] + interval.start_s, soc_left_percent(), running_,
-                        running_for_s_};
-        start.mechanical_factor = learned_.factor(policy);
+        PlanStart start{planned_.start_s[interval.phase] + interval.start_s,
+                        charge_.soc_percent,
+                        running_,
+                        running_for_s_,
+                        learned_.factor(policy),
+                        charge_.rc_voltage_v};
         const double seen =
             policy.learning_time_s > 0.0 ? policy.learning_time_s / (learned_.time_s + policy.learning_time_s) : 0.0;
         const double to_come = policy.learning_time_s / (planned_.duration_s - start.time_s);
-        const double margin_percent = reach_ * rest_mechanical_percent_ * std::sqrt(seen + to_come);
-        const auto plan = plan_rest(known_, adaptive_.planner, start, reserve_percent_ + margin_percent,
-                                    effort_for((planned_.duration_s - start.time_s) / known_.plan.slot_s));
+        const double margin = reach_ * std::sqrt(seen + to_come);  // of the mechanical power that is left
+        double reserve_percent = known_.reserve_soc_percent;
+        if (state_counts())
+            start.mechanical_factor += margin;  // its voltage falls as well
+        else
+            reserve_percent += margin * rest_mechanical_percent_;
+        const auto plan =
+            plan_rest(known_, adaptive_.planner, start, reserve_percent,
+                      effort_for(adaptive_.planner, (planned_.duration_s - start.time_s) / known_.plan.slot_s));
         ++flight_.decisions.made;
         if (!plan.feasible) ++flight_.decisions.without_plan;
         if (!plan.schedule.empty()) return plan.schedule;
@@ -140,7 +177,7 @@ class Flight {
     }
 
     /// Runs a segment of the plan in the flight as it is.
-    void run(const ScheduleSegment& planned) {
+    void fly(const ScheduleSegment& planned) {
         if (!running_ || *running_ != planned.run) running_for_s_ = 0.0;
         running_for_s_ += planned.duration_s();
         running_ = planned.run;
@@ -150,17 +187,15 @@ class Flight {
             charge_ = after_segment(battery_, actual_.cutoff_voltage_v, segment, charge_);
     }
 
-    void learn(const PhaseSegment& interval, double observed_percent, double predicted_percent) {
-        const double mechanical = mechanical_percent(interval);
-        rest_mechanical_percent_ = std::max(0.0, rest_mechanical_percent_ - mechanical);
-        if (observed_percent < 0.0 || observed_percent > jump_factor * predicted_percent) return;
+    void learn(const PhaseSegment& interval, double observed_percent, const PredictedDepletion& predicted) {
+        if (!state_counts())
+            rest_mechanical_percent_ = std::max(0.0, rest_mechanical_percent_ - predicted.mechanical_percent);
+        if (observed_percent < 0.0 || observed_percent > jump_factor * predicted.percent) return;
         learned_.time_s += interval.duration_s();
         learned_.observed_percent += observed_percent;
-        learned_.predicted_percent += predicted_percent;
-        learned_.mechanical_percent += mechanical;
+        learned_.predicted_percent += predicted.percent;
+        learned_.mechanical_percent += predicted.mechanical_percent;
     }
-
-    double soc_left_percent() const { return energy_equivalent_soc_percent(adaptive_, charge_.soc_percent); }
 
     const AdaptivePlanner& adaptive_;
     const PlanningProblem& known_;
@@ -168,15 +203,15 @@ class Flight {
     const Disturbances& disturbances_;
     battery::Battery battery_;  ///< as it really is
     MissionTimeline planned_;
+    MissionLoad known_load_;
     MissionLoad load_;  ///< of the mission as it really is
     AdaptiveFlight flight_;
     battery::Discharge charge_;
     Learned learned_;
     std::optional<compute::Configuration> running_;
     double running_for_s_ = 0.0;
-    double reserve_percent_ = 0.0;  ///< as soc_left_percent()
-    double reach_ = 0.0;            ///< what the reserve is kept against, as a part of mechanical power
-    double rest_mechanical_percent_ = 0.0;
+    double reach_ = 0.0;                    ///< what the reserve is kept against, as a part of mechanical power
+    double rest_mechanical_percent_ = 0.0;  ///< of tables
 };
 
 }  // namespace
@@ -184,18 +219,7 @@ class Flight {
 AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     if (!problem.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
     require_few_decisions(problem);
-    AdaptivePlanner planner{problem, std::nullopt, {}};
-    auto& battery = planner.known.battery;
-    if (battery.thevenin) {
-        battery.voltage_v =
-            open_circuit_voltage_v(battery, (problem.initial_soc_percent + problem.reserve_soc_percent) / 2.0);
-        battery.resistance_ohm += battery.thevenin->rc_resistance_ohm;
-        planner.open_circuit = battery.thevenin->open_circuit;
-        battery.thevenin.reset();
-    }
-    planner.known.cutoff_voltage_v = 0.0;
-    planner.planner = make_planner(planner.known);
-    return planner;
+    return {problem, make_planner(problem)};
 }
 
 AdaptiveFlight fly_adaptively(const AdaptivePlanner& planner, const MissionSetup& actual,

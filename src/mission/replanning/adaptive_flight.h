@@ -4,16 +4,11 @@
 #include "mission/planning/planner.h"
 #include "mission/simulation.h"
 
-#include <optional>
-
 namespace flightwatt::mission {
 
 /// What a flight controller knows beforehand: the mission as it was stated, and how that depletes the battery.
 struct AdaptivePlanner {
-    /// A Thévenin battery is a constant source here, at the voltage midway between the initial state of
-    /// charge and the reserve; charge then counts as its energy at that voltage.
     PlanningProblem known;
-    std::optional<battery::OpenCircuitVoltage> open_circuit;  ///< of a Thévenin battery
     Planner planner;
 };
 
@@ -26,10 +21,11 @@ struct AdaptiveFlight {
 };
 
 /// Flies `actual`, the mission as it really is (other durations, battery, powers), under disturbances that the policy
-/// does not know. At each decision it makes the best plan of the rest anew, from the state of charge reached, the
-/// part of the phase flown (an aircraft knows how much of its way lies behind it), and the factor of mechanical power
-/// learned (docs/methods.md, Eqs. 36 and 37). Where no plan keeps the reserve with its margin, what demands least
-/// energy is run; fixed segments are kept in any case. A cut-off voltage is not taken into account.
+/// does not know. At each decision it makes the best plan of the rest anew, from the state of charge reached, the RC
+/// voltage (which charge, voltage and current tell), the part of the phase flown (an aircraft knows how much of its way
+/// lies behind it), and the factor of mechanical power learned (docs/methods.md, Eqs. 36 and 37). Where no plan keeps the
+/// reserve, and stays above the cut-off voltage, with its margin, what demands least energy is run; fixed segments are
+/// kept in any case.
 AdaptiveFlight fly_adaptively(const AdaptivePlanner& planner, const MissionSetup& actual,
                               const Disturbances& disturbances);
 

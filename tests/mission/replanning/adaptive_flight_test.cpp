@@ -123,5 +123,23 @@ TEST(AdaptiveFlight, FliesAPackWhoseVoltageFalls) {
     }
 }
 
+TEST(AdaptiveFlight, ForeseesACutOff) {
+    auto mission = paper_problem("adaptive-replanned");
+    mission.battery = battery::read_battery(test::source_dir() / "fits" / "battery" / "synthetic-3s.toml");
+    mission.battery.capacity_ah = 1.05;
+    mission.cutoff_voltage_v = 10.9;
+    mission.fixed.clear();
+    auto careless = mission;
+    careless.cutoff_voltage_v = 0.0;
+    for (const double factor : {0.95, 1.0, 1.05}) {
+        const auto summary = flown(mission, {headwind(factor)});
+        EXPECT_FALSE(summary.cut_off_at_s) << factor;
+        EXPECT_TRUE(summary.keeps_reserve) << factor;
+        const auto schedule = fly(prepare(careless), {}, {headwind(factor)}).schedule;
+        EXPECT_TRUE(simulate(mission, schedule, {}, {headwind(factor)}).summary.cut_off_at_s)
+            << factor << ": without foresight it is cut off";
+    }
+}
+
 }  // namespace
 }  // namespace flightwatt::mission

@@ -1,0 +1,274 @@
+#include "mission/planning/schedule_value.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double never = -std::numeric_limits<double>::infinity();
+constexpr double between_samples = 0.01;  // of a power: what it may be beyond its samples
+
+/// Compute power that a slot runs at least and at most.
+struct ComputeRange {
+    double least_w = 0.0;
+    double greatest_w = 0.0;
+    std::size_t least_choice = 0;
+};
+
+ComputeRange range_of(const ScheduleQuestion& question, std::size_t slot) {
+    const auto& compute_w = question.dynamics.compute_w;
+    if (const auto fixed = question.choices.slots[slot].fixed) return {compute_w[*fixed], compute_w[*fixed], *fixed};
+    ComputeRange range{compute_w[0], compute_w[0], 0};
+    for (std::size_t c = 0; c < compute_w.size(); ++c) {
+        const bool is_free = c < question.choices.free_choices;
+        const bool goes_on = question.choices.running && question.choices.running->choice == c;
+        if (!is_free && !goes_on) continue;
+        if (compute_w[c] < range.least_w) {
+            range.least_w = compute_w[c];
+            range.least_choice = c;
+        }
+        range.greatest_w = std::max(range.greatest_w, compute_w[c]);
+    }
+    return range;
+}
+
+/// The lines of the open-circuit voltage that a range of charge touches.
+struct SlopeRange {
+    double least = 0.0;
+    double greatest = 0.0;
+};
+
+SlopeRange slopes_in(const SlotDynamics& dynamics, double from_percent, double to_percent) {
+    const auto& knots = dynamics.knot_percent;
+    SlopeRange slopes{std::numeric_limits<double>::infinity(), 0.0};
+    for (std::size_t k = 0; k < dynamics.slope_v_per_percent.size(); ++k) {
+        if (knots[k] > to_percent || knots[k + 1] < from_percent) continue;
+        slopes.least = std::min(slopes.least, dynamics.slope_v_per_percent[k]);
+        slopes.greatest = std::max(slopes.greatest, dynamics.slope_v_per_percent[k]);
+    }
+    if (!(from_percent >= knots.front()) || !std::isfinite(slopes.least)) slopes.least = 0.0;
+    return slopes;
+}
+
+bool fly_least(const ScheduleQuestion& question, ScheduleValue& value) {
+    value.highest = {question.start};
+    for (std::size_t i = 0; i < question.dynamics.slots.size(); ++i) {
+        const auto after = after_slot(question.dynamics, i, range_of(question, i).least_choice, value.highest.back());
+        if (!after) return false;
+        value.highest.push_back(*after);
+    }
+    value.spare_percent = value.highest.back().soc_percent - question.reserve_soc_percent;
+    return value.spare_percent >= 0.0;
+}
+
+double lowest_percent(const ScheduleValue& value, std::size_t slot) {
+    return value.highest[slot].soc_percent - value.spare_percent;
+}
+
+/// After a time in which da/dt = rate - decay a.
+double relaxed(double a, double rate, double decay_per_s, double time_s) {
+    const double kept = std::exp(-decay_per_s * time_s);
+    return a * kept + (decay_per_s > 0.0 ? rate / decay_per_s * (1.0 - kept) : rate * time_s);
+}
+
+/// A volt of RC voltage costs current of at least P / U^2 for as long as it lasts; with it goes a part of the charge, whose
+/// slope makes up for some of it.
+void set_rc_low(const ScheduleQuestion& question, ScheduleValue& value) {
+    const auto& dynamics = question.dynamics;
+    value.rc_low.assign(dynamics.slots.size() + 1, 0.0);
+    if (dynamics.rc_resistance_ohm == 0.0) return;
+    const double steepest =
+        slopes_in(dynamics, lowest_percent(value, dynamics.slots.size()), value.highest.front().soc_percent).greatest;
+    for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
+        const auto& slot = dynamics.slots[i];
+        const double power_w = slot.least_mechanical_w + range_of(question, i).least_w;
+        const double source_v = open_circuit_voltage_v(dynamics, value.highest[i].soc_percent);
+        const double percent_per_vs =
+            (1.0 - between_samples) * std::max(0.0, power_w) / (source_v * source_v) * dynamics.percent_per_as;
+        const double decay_per_s = 1.0 / dynamics.rc_time_constant_s + steepest * percent_per_vs;
+        value.rc_low[i] = relaxed(value.rc_low[i + 1], percent_per_vs, decay_per_s, slot.duration_s);
+    }
+}
+
+/// The greatest current, and how it rises as the source's voltage falls; none if the limit is near.
+struct CurrentBound {
+    double current_a = 0.0;
+    double current_a_per_v = 0.0;
+};
+
+std::optional<CurrentBound> current_bound(double power_w, double source_v, double resistance_ohm) {
+    const double discriminant = source_v * source_v - 4.0 * resistance_ohm * power_w;
+    if (!(source_v > 0.0) || !(discriminant > 0.0)) return std::nullopt;
+    const double root = std::sqrt(discriminant);
+    const double current_a = 2.0 * power_w / (source_v + root);
+    return CurrentBound{current_a, current_a / root};
+}
+
+double greatest_w(const ScheduleQuestion& question, std::size_t slot) {
+    return (1.0 + between_samples) *
+           std::max(0.0, question.dynamics.slots[slot].greatest_mechanical_w + range_of(question, slot).greatest_w);
+}
+
+/// The greatest RC voltage of what lands; none if the power limit is near.
+std::optional<double> greatest_rc_v(const ScheduleQuestion& question, const ScheduleValue& value) {
+    const auto& dynamics = question.dynamics;
+    double power_w = 0.0;
+    for (std::size_t i = 0; i < dynamics.slots.size(); ++i) power_w = std::max(power_w, greatest_w(question, i));
+    const double rest_v = open_circuit_voltage_v(dynamics, lowest_percent(value, dynamics.slots.size()));
+    double rc_v = question.start.rc_voltage_v;
+    constexpr int rounds = 50;  // to where the current's own voltage holds it
+    for (int round = 0; round < rounds; ++round) {
+        const auto bound = current_bound(power_w, rest_v - rc_v, dynamics.resistance_ohm);
+        if (!bound) return std::nullopt;
+        const double next_v = std::max(question.start.rc_voltage_v, dynamics.rc_resistance_ohm * bound->current_a);
+        if (next_v <= rc_v * (1.0 + 1e-9)) return next_v * (1.0 + 1e-6);
+        rc_v = next_v;
+    }
+    return std::nullopt;
+}
+
+/// Charge that outweighs a volt of RC voltage at once: it keeps the voltage before the resistor higher, and with that the
+/// current lower, for ever.
+double outweighing_percent_per_v(const SlotDynamics& dynamics, double from_percent, double to_percent) {
+    const double least = slopes_in(dynamics, from_percent, to_percent).least;
+    return least > 0.0 ? 1.0 / least : std::numeric_limits<double>::infinity();
+}
+
+/// The same as set_rc_low from above: what a volt costs at most, as long as a cut-off or the power limit cannot end what
+/// lands otherwise; where they can, what outweighs it.
+void set_rc_high(const ScheduleQuestion& question, ScheduleValue& value) {
+    const auto& dynamics = question.dynamics;
+    value.rc_usual.assign(dynamics.slots.size() + 1, 0.0);
+    value.rc_high.assign(dynamics.slots.size() + 1, 0.0);
+    if (dynamics.rc_resistance_ohm == 0.0) return;
+    const auto rc_v = greatest_rc_v(question, value);
+    const double end_percent = lowest_percent(value, dynamics.slots.size());
+    bool may_end = false;
+    for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
+        const double source_v = open_circuit_voltage_v(dynamics, lowest_percent(value, i + 1)) - rc_v.value_or(0.0);
+        const auto bound = current_bound(greatest_w(question, i), source_v, dynamics.resistance_ohm);
+        const double outweighs = outweighing_percent_per_v(dynamics, end_percent, value.highest[i].soc_percent);
+        double usual = outweighs;
+        if (bound && dynamics.rc_resistance_ohm * bound->current_a_per_v < 1.0) {
+            const double decay_per_s =
+                (1.0 - dynamics.rc_resistance_ohm * bound->current_a_per_v) / dynamics.rc_time_constant_s;
+            usual = std::min(outweighs, relaxed(value.rc_usual[i + 1], bound->current_a_per_v * dynamics.percent_per_as,
+                                                decay_per_s, dynamics.slots[i].duration_s));
+        }
+        may_end = may_end || !rc_v || !bound ||
+                  source_v - dynamics.resistance_ohm * bound->current_a < dynamics.cutoff_voltage_v;
+        value.rc_usual[i] = usual;
+        value.rc_high[i] = may_end ? outweighs : usual;
+    }
+}
+
+double cell_percent(const ScheduleValue& value) {
+    return std::max(value.spare_percent, 1e-9) / static_cast<double>(value.cells);
+}
+
+std::optional<battery::BatteryState> after_run(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun& run,
+                                               battery::BatteryState state) {
+    for (std::size_t i = from; i < run.to; ++i) {
+        const auto after = after_slot(dynamics, i, run.choice, state);
+        if (!after) return std::nullopt;
+        state = *after;
+    }
+    return state;
+}
+
+double energy_j(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun& run) {
+    double sum_j = 0.0;
+    for (std::size_t i = from; i < run.to; ++i)
+        sum_j += dynamics.slots[i].mechanical_energy_j + dynamics.compute_w[run.choice] * dynamics.slots[i].duration_s;
+    return sum_j;
+}
+
+/// Two charges part by what the higher one's voltage saves: of a slope m at least m P / U^2 points a second for each.
+RunReach reach_of(const SlotDynamics& dynamics, const ScheduleValue& value, std::size_t from, const ChoiceRun& run) {
+    RunReach reach{std::vector<double>(value.cells + 1, never), std::vector<double>(value.cells + 1, 1.0)};
+    const double run_j = energy_j(dynamics, from, run);
+    std::optional<double> lower_end;
+    for (std::size_t j = 0; j <= value.cells; ++j) {
+        const double start_percent = lowest_percent(value, from) + cell_percent(value) * static_cast<double>(j);
+        const auto end = after_run(dynamics, from, run, {start_percent, value.highest[from].rc_voltage_v});
+        if (!end) continue;
+        reach.end_percent[j] = effective_percent(value, run.to, *end);
+        if (lower_end) {
+            const double source_v = open_circuit_voltage_v(dynamics, start_percent);
+            reach.growth[j] += slopes_in(dynamics, *lower_end, start_percent).least * dynamics.percent_per_as *
+                               std::max(0.0, run_j) / (source_v * source_v);
+        }
+        lower_end = end->soc_percent;
+    }
+    return reach;
+}
+
+void add_run_points(const ScheduleValue& value, std::size_t from, const ChoiceRun& run, const RunReach& reach,
+                    std::vector<CurvePoint>& points) {
+    const auto& next = curve_with(value, run.to, run.choice);
+    const double step = cell_percent(value);
+    for (std::size_t j = 1; j <= value.cells; ++j) {
+        const double end_percent = lowest_percent(value, from) + step * static_cast<double>(j);
+        add_mapped(next, {end_percent - step, end_percent, reach.end_percent[j], reach.growth[j]}, run.sum.utility,
+                   points);
+    }
+}
+
+/// The curves of one slot, of those behind it.
+void set_curves(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t i, ScheduleValue& value) {
+    std::vector<CurvePoint> points;
+    for (const auto& run : graph.runs[i]) {
+        value.runs[i].push_back(reach_of(question.dynamics, value, i, run));
+        add_run_points(value, i, run, value.runs[i].back(), points);
+    }
+    value.any[i] = concave_hull(std::move(points));
+    if (graph.one_more[i].empty()) return;
+    value.with[i].resize(graph.choices);
+    for (const auto& run : graph.one_more[i]) {
+        auto own = value.any[i].points;
+        value.one_more[i].push_back(reach_of(question.dynamics, value, i, run));
+        add_run_points(value, i, run, value.one_more[i].back(), own);
+        value.with[i][run.choice] = concave_hull(std::move(own));
+    }
+}
+
+}  // namespace
+
+ScheduleValue make_schedule_value(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t cells) {
+    ScheduleValue value;
+    value.cells = cells;
+    value.possible = fly_least(question, value);
+    if (!value.possible) return value;
+    set_rc_low(question, value);
+    set_rc_high(question, value);
+    value.any.resize(graph.slots + 1);
+    value.with.resize(graph.slots + 1);
+    value.runs.resize(graph.slots);
+    value.one_more.resize(graph.slots);
+    value.any.back().points = {{question.reserve_soc_percent, 0.0}};
+    for (std::size_t i = graph.slots; i-- > graph.begin;) set_curves(question, graph, i, value);
+    return value;
+}
+
+double effective_percent(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state) {
+    return state.soc_percent - value.rc_low[slot] * (state.rc_voltage_v - value.highest[slot].rc_voltage_v);
+}
+
+const ConcaveCurve& curve_with(const ScheduleValue& value, std::size_t slot, std::size_t choice) {
+    const auto& with = value.with[slot];
+    return choice < with.size() && !with[choice].points.empty() ? with[choice] : value.any[slot];
+}
+
+double reached_percent(const ScheduleValue& value, std::size_t slot, const RunReach& reach, double effective_percent) {
+    const double step = cell_percent(value);
+    const double lowest = lowest_percent(value, slot);
+    const double position = std::ceil((effective_percent - lowest) / step);
+    const auto j = static_cast<std::size_t>(std::clamp(position, 1.0, static_cast<double>(value.cells)));
+    const double below_percent = lowest + step * static_cast<double>(j) - effective_percent;
+    return reach.end_percent[j] - reach.growth[j] * below_percent;
+}
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "mission/planning/concave_curve.h"
+#include "mission/planning/knapsack_graph.h"
+#include "mission/planning/slot_dynamics.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace flightwatt::mission {
+
+/// A question to search schedules for: which choice to run in each slot, so that the battery lands with the reserve.
+struct ScheduleQuestion {
+    const SlotDynamics& dynamics;
+    const MultipleChoiceKnapsack& choices;  ///< its costs and its budget count for nothing
+    battery::BatteryState start;
+    double reserve_soc_percent = 0.0;
+};
+
+/// Where runs lead to from evenly spread charges at a slot, with the least RC voltage there can be.
+struct RunReach {
+    std::vector<double> end_percent;  ///< effective (below), a charge each; minus infinity: the battery does not do it
+    std::vector<double> growth;       ///< by which the end rises at least with the start, from a charge to the next
+};
+
+/// An upper bound of the utility that can follow from any state in which a slot may be reached.
+///
+/// If nothing charges, more charge and less RC voltage are better at any later time: with y = -U_rc the right sides of
+/// Eqs. 26 and 29 rise with the other variable (a cooperative system). So no schedule has more charge or less RC voltage
+/// than the one of least power, the difference of two charges never shrinks, and RC voltage above the least can be
+/// traded for charge: `rc_low` points a volt are no loss, `rc_high` are no gain.
+struct ScheduleValue {
+    /// Of the course of least power at each slot's start, and the mission's end.
+    std::vector<battery::BatteryState> highest;
+    double spare_percent = 0.0;  ///< that course lands with so much above the reserve; no state that lands is lower
+    std::size_t cells = 0;       ///< the charges from there up to the course
+    std::vector<double> rc_low;  ///< [points/V] at each slot's start
+    std::vector<double> rc_high;
+    std::vector<double> rc_usual;   ///< rc_high, if neither a cut-off nor the power limit ends what lands otherwise
+    std::vector<ConcaveCurve> any;  ///< over effective charge; free to begin a run
+    std::vector<std::vector<ConcaveCurve>> with;  ///< while a choice runs that may go on; none: as any
+    std::vector<std::vector<RunReach>> runs;      ///< as the graph's
+    std::vector<std::vector<RunReach>> one_more;
+    bool possible = true;  ///< the course of least power lands with the reserve
+};
+
+ScheduleValue make_schedule_value(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t cells);
+
+/// The state's charge less what its RC voltage above the least costs at least.
+double effective_percent(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state);
+
+const ConcaveCurve& curve_with(const ScheduleValue& value, std::size_t slot, std::size_t choice);
+
+/// No more than this effective charge is left of one at `slot` after a run.
+double reached_percent(const ScheduleValue& value, std::size_t slot, const RunReach& reach, double effective_percent);
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "mission/mission.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace flightwatt::mission {
+
+/// The state of charge and the RC voltage, followed through slots in which one choice runs. `simulate` has the last
+/// word; this is for the many thousand parts of schedules that a search tries: the power is looked up, and steps are as
+/// long as the accuracy allows.
+struct SlotDynamics {
+    /// A slot's mechanical power at the starts, middles and ends of its Runge-Kutta steps.
+    struct Slot {
+        double step_s = 0.0;
+        std::vector<double> mechanical_w;  ///< 2 steps + 1
+        double least_mechanical_w = 0.0;
+        double greatest_mechanical_w = 0.0;
+        double mechanical_energy_j = 0.0;
+        double duration_s = 0.0;
+    };
+
+    std::vector<Slot> slots;
+    std::vector<double> compute_w;  ///< of each choice
+    // The open-circuit voltage: straight lines from knot to knot. A constant source has two knots of equal voltage.
+    std::vector<double> knot_percent;
+    std::vector<double> knot_v;
+    std::vector<double> slope_v_per_percent;  ///< of each line
+    double resistance_ohm = 0.0;
+    double rc_resistance_ohm = 0.0;
+    double rc_time_constant_s = 1.0;
+    double percent_per_as = 0.0;    ///< points that one ampere takes in one second
+    double cutoff_voltage_v = 0.0;  ///< 0: never
+};
+
+/// The dynamics of parts of a mission's phases, with the mechanical power times a factor. Steps are at most `step_s`.
+SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
+                                std::vector<double> compute_w, double step_s, double mechanical_factor = 1.0);
+
+/// The longest step [s] whose halving moves the end of neither the schedule of least power nor that of most by 1e-7
+/// points, of the steps tried: 4 s (or half the RC time constant), and halves of that down to 0.05 s.
+double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
+                const std::vector<double>& compute_w);
+
+/// The battery at the end of a slot; none if it was cut off (by a parabola through the voltages at the start,
+/// middle and end of each step), or could not deliver at the start or the end of a step. State of charge goes on below
+/// 0, and not above 100.
+std::optional<battery::BatteryState> after_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
+                                                const battery::BatteryState& state);
+
+/// [V] at rest.
+double open_circuit_voltage_v(const SlotDynamics& dynamics, double soc_percent);
+
+}  // namespace flightwatt::mission
