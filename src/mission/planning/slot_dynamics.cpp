@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flightwatt::mission {
 namespace {
@@ -81,19 +82,30 @@ class CutOffWatch {
     double middle_v_ = NAN;
 };
 
+SlotDynamics::Part part_of(const LoadSegment& segment, double step_s, double mechanical_factor) {
+    SlotDynamics::Part part;
+    const double duration_s = segment.end_s - segment.start_s;
+    const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(duration_s / step_s * (1.0 - 1e-12))));
+    part.step_s = duration_s / static_cast<double>(steps);
+    part.mechanical_w.resize(2 * steps + 1);
+    for (std::size_t k = 0; k < part.mechanical_w.size(); ++k) {
+        const double time_s = segment.start_s + part.step_s / 2.0 * static_cast<double>(k);
+        part.mechanical_w[k] = mechanical_factor * mechanical_w(segment, time_s);
+    }
+    return part;
+}
+
 SlotDynamics::Slot slot_of(const LoadSegment& segment, double step_s, double mechanical_factor) {
     SlotDynamics::Slot slot;
     slot.duration_s = segment.end_s - segment.start_s;
-    const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(slot.duration_s / step_s * (1.0 - 1e-12))));
-    slot.step_s = slot.duration_s / static_cast<double>(steps);
-    slot.mechanical_w.resize(2 * steps + 1);
-    for (std::size_t k = 0; k < slot.mechanical_w.size(); ++k) {
-        const double time_s = segment.start_s + slot.step_s / 2.0 * static_cast<double>(k);
-        slot.mechanical_w[k] = mechanical_factor * mechanical_w(segment, time_s);
+    slot.least_mechanical_w = std::numeric_limits<double>::infinity();
+    slot.greatest_mechanical_w = -slot.least_mechanical_w;
+    for (const auto& smooth : smooth_parts(segment)) {
+        slot.parts.push_back(part_of(smooth, step_s, mechanical_factor));
+        const auto [least, greatest] = std::ranges::minmax_element(slot.parts.back().mechanical_w);
+        slot.least_mechanical_w = std::min(slot.least_mechanical_w, *least);
+        slot.greatest_mechanical_w = std::max(slot.greatest_mechanical_w, *greatest);
     }
-    const auto [least, greatest] = std::ranges::minmax_element(slot.mechanical_w);
-    slot.least_mechanical_w = *least;
-    slot.greatest_mechanical_w = *greatest;
     slot.mechanical_energy_j = mechanical_factor * mechanical_energy_j(segment, segment.end_s);
     return slot;
 }
@@ -113,6 +125,31 @@ void set_circuit(const battery::Battery& battery, SlotDynamics& dynamics) {
     for (std::size_t k = 1; k < dynamics.knot_v.size(); ++k) {
         dynamics.slope_v_per_percent.push_back((dynamics.knot_v[k] - dynamics.knot_v[k - 1]) /
                                                (dynamics.knot_percent[k] - dynamics.knot_percent[k - 1]));
+    }
+}
+
+std::optional<battery::BatteryState> after_part(const SlotDynamics& dynamics, const SlotDynamics::Part& part,
+                                                SlotRates& rates, const battery::BatteryState& state) {
+    const double step_s = part.step_s;
+    const auto& mechanical_w = part.mechanical_w;
+    CutOffWatch watch(dynamics.cutoff_voltage_v);
+    double soc = state.soc_percent;
+    double rc = state.rc_voltage_v;
+    for (std::size_t k = 0;; k += 2) {
+        const auto first = rates.at(soc, rc, mechanical_w[k]);
+        if (!first.is_deliverable || watch.is_cut_off(rates.terminal_v(first))) return std::nullopt;
+        if (k + 1 == mechanical_w.size()) return battery::BatteryState{soc, rc};
+        const double half_s = step_s / 2.0;
+        const double middle_w = mechanical_w[k + 1];
+        const auto second = rates.at(soc + half_s * first.percent_per_s, rc + half_s * first.rc_v_per_s, middle_w);
+        const auto third = rates.at(soc + half_s * second.percent_per_s, rc + half_s * second.rc_v_per_s, middle_w);
+        const auto fourth =
+            rates.at(soc + step_s * third.percent_per_s, rc + step_s * third.rc_v_per_s, mechanical_w[k + 2]);
+        watch.see_middle(rates.terminal_v(third));
+        soc += step_s / 6.0 *
+               (first.percent_per_s + 2.0 * (second.percent_per_s + third.percent_per_s) + fourth.percent_per_s);
+        rc += step_s / 6.0 * (first.rc_v_per_s + 2.0 * (second.rc_v_per_s + third.rc_v_per_s) + fourth.rc_v_per_s);
+        soc = std::min(soc, units::percent_per_whole);
     }
 }
 
@@ -169,28 +206,11 @@ double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& sl
 
 std::optional<battery::BatteryState> after_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
                                                 const battery::BatteryState& state) {
-    const double step_s = dynamics.slots[slot].step_s;
-    const auto& mechanical_w = dynamics.slots[slot].mechanical_w;
     SlotRates rates(dynamics, dynamics.compute_w[choice]);
-    CutOffWatch watch(dynamics.cutoff_voltage_v);
-    double soc = state.soc_percent;
-    double rc = state.rc_voltage_v;
-    for (std::size_t k = 0;; k += 2) {
-        const auto first = rates.at(soc, rc, mechanical_w[k]);
-        if (!first.is_deliverable || watch.is_cut_off(rates.terminal_v(first))) return std::nullopt;
-        if (k + 1 == mechanical_w.size()) return battery::BatteryState{soc, rc};
-        const double half_s = step_s / 2.0;
-        const double middle_w = mechanical_w[k + 1];
-        const auto second = rates.at(soc + half_s * first.percent_per_s, rc + half_s * first.rc_v_per_s, middle_w);
-        const auto third = rates.at(soc + half_s * second.percent_per_s, rc + half_s * second.rc_v_per_s, middle_w);
-        const auto fourth =
-            rates.at(soc + step_s * third.percent_per_s, rc + step_s * third.rc_v_per_s, mechanical_w[k + 2]);
-        watch.see_middle(rates.terminal_v(third));
-        soc += step_s / 6.0 *
-               (first.percent_per_s + 2.0 * (second.percent_per_s + third.percent_per_s) + fourth.percent_per_s);
-        rc += step_s / 6.0 * (first.rc_v_per_s + 2.0 * (second.rc_v_per_s + third.rc_v_per_s) + fourth.rc_v_per_s);
-        soc = std::min(soc, units::percent_per_whole);
-    }
+    std::optional<battery::BatteryState> after = state;
+    for (const auto& part : dynamics.slots[slot].parts)
+        if (after) after = after_part(dynamics, part, rates, *after);
+    return after;
 }
 
 double open_circuit_voltage_v(const SlotDynamics& dynamics, double soc_percent) {

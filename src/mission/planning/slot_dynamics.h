@@ -12,10 +12,14 @@ namespace flightwatt::mission {
 /// word; this is for the many thousand parts of schedules that a search tries: the power is looked up, and steps are as
 /// long as the accuracy allows.
 struct SlotDynamics {
-    /// A slot's mechanical power at the starts, middles and ends of its Runge-Kutta steps.
-    struct Slot {
+    /// A part of a slot without a jump of power: the mechanical power at the starts, middles and ends of its
+    /// Runge-Kutta steps.
+    struct Part {
         double step_s = 0.0;
         std::vector<double> mechanical_w;  ///< 2 steps + 1
+    };
+    struct Slot {
+        std::vector<Part> parts;  ///< one, but on a path
         double least_mechanical_w = 0.0;
         double greatest_mechanical_w = 0.0;
         double mechanical_energy_j = 0.0;
