@@ -60,6 +60,14 @@ LevelLaw wanted_law(std::span<const PhaseSamples> flights, Covariate covariate) 
         needed));
 }
 
+/// Without the flights that weights by hand exclude.
+std::vector<PhaseSamples> counted(std::span<const PhaseSamples> flights, std::span<const double> weights) {
+    std::vector<PhaseSamples> samples;
+    for (std::size_t i = 0; i < flights.size(); ++i)
+        if (weights[i] > 0.0) samples.push_back(flights[i]);
+    return samples;
+}
+
 }  // namespace
 
 std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, flight::Phase phase) {
@@ -81,7 +89,7 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     fitted.weights = flight_weights(fitted.fit, phase, options.weights);
     fitted.model = average_phase(fitted.fit, fitted.weights);
     refuse_what_is_no_number(phase, fitted.model.fourier);
-    fitted.model.level_spread = level_spread(fitted.model, flights);
+    fitted.model.level_spread = level_spread(fitted.model, counted(flights, fitted.weights));
     if (phase == flight::Phase::cruise) {
         fitted.model.airspeed_law = fit_level_law(flights, Covariate::airspeed_cubed);
         if (options.level_covariate) fitted.model.level_law = wanted_law(flights, *options.level_covariate);
@@ -107,8 +115,8 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
         for (std::size_t owner = 0; owner < flights.size(); ++owner) {
             if (!flights[owner].phases[phase]) continue;
             const auto& curve = fitted.fit.flights[i];
-            model.flights[owner].phases[phase] =
-                PhaseContribution{fitted.weights[i], curve.duration_s, curve.rms_w, curve.samples};
+            model.flights[owner].phases[phase] = PhaseContribution{
+                fitted.weights[i], curve.duration_s, curve.rms_w, curve.samples, mean_power_w(parts.samples[phase][i])};
             ++i;
         }
         parts.fits[phase] = std::move(fitted.fit);
