@@ -102,6 +102,7 @@ struct PhaseContribution {
     double duration_s = 0.0;
     double rms_w = 0.0;
     std::size_t samples = 0;
+    std::optional<double> mean_power_w = {};  ///< absent if published without
 };
 
 struct FlightContribution {

@@ -191,6 +191,7 @@ PhaseModel read_phase(const TomlTable& table) {
 PhaseContribution read_contribution(const TomlTable& table) {
     PhaseContribution part{number_in(between(0.0, 1.0), table, "weight", "the weights of a phase are parts of 1"),
                            positive(table, "duration_s"), not_negative(table, "rms_w"), count_in(table, "samples")};
+    if (table.has("mean_power_w")) part.mean_power_w = table.number("mean_power_w");
     table.refuse_unknown_keys();
     return part;
 }
@@ -245,9 +246,11 @@ std::string flight_toml(const FlightContribution& flight) {
     std::string text = fmt::format("\n[[flights]]\nflight = {}\n", toml_string(flight.flight));
     for (const auto phase : flight::all_phases) {
         if (const auto& part = flight.phases[phase]) {
-            text += fmt::format("{} = {{ weight = {}, duration_s = {}, rms_w = {}, samples = {} }}\n", to_string(phase),
+            text += fmt::format("{} = {{ weight = {}, duration_s = {}, rms_w = {}, samples = {}", to_string(phase),
                                 toml_real(part->weight), toml_real(part->duration_s), toml_real(part->rms_w),
                                 part->samples);
+            if (part->mean_power_w) text += fmt::format(", mean_power_w = {}", toml_real(*part->mean_power_w));
+            text += " }\n";
         }
     }
     return text;

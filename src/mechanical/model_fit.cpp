@@ -74,6 +74,14 @@ std::vector<double> mean_airspeed_cubed_parts(std::span<const PhaseSamples> flig
     return sum;
 }
 
+/// Without the flights that weights by hand exclude.
+std::vector<PhaseSamples> counted(std::span<const PhaseSamples> flights, std::span<const double> weights) {
+    std::vector<PhaseSamples> samples;
+    for (std::size_t i = 0; i < flights.size(); ++i)
+        if (weights[i] > 0.0) samples.push_back(flights[i]);
+    return samples;
+}
+
 }  // namespace
 
 std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, flight::Phase phase) {
@@ -95,7 +103,7 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     fitted.weights = flight_weights(fitted.fit, phase, options.weights);
     fitted.model = average_phase(fitted.fit, fitted.weights);
     refuse_what_is_no_number(phase, fitted.model.fourier);
-    fitted.model.level_spread = level_spread(fitted.model, flights);
+    fitted.model.level_spread = level_spread(fitted.model, counted(flights, fitted.weights));
     if (phase == flight::Phase::cruise) {
         fitted.model.airspeed_law = fit_level_law(flights, Covariate::airspeed_cubed);
         fitted.model.airspeed_cubed_parts_m3_per_s3 = mean_airspeed_cubed_parts(flights);
@@ -122,8 +130,8 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
         for (std::size_t owner = 0; owner < flights.size(); ++owner) {
             if (!flights[owner].phases[phase]) continue;
             const auto& curve = fitted.fit.flights[i];
-            model.flights[owner].phases[phase] =
-                PhaseContribution{fitted.weights[i], curve.duration_s, curve.rms_w, curve.samples};
+            model.flights[owner].phases[phase] = PhaseContribution{
+                fitted.weights[i], curve.duration_s, curve.rms_w, curve.samples, mean_power_w(parts.samples[phase][i])};
             ++i;
         }
         parts.fits[phase] = std::move(fitted.fit);

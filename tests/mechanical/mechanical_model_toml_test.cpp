@@ -82,7 +82,7 @@ MechanicalModel made_up_model() {
     model.phases[flight::Phase::cruise].flights = 2;
     model.flights = {{"first", {}}, {"second", {}}};
     model.flights[0].phases[flight::Phase::cruise] = PhaseContribution{0.25, 580.0, 0.5, 300};
-    model.flights[1].phases[flight::Phase::cruise] = PhaseContribution{0.75, 610.0, 1.0 / 3.0, 245};
+    model.flights[1].phases[flight::Phase::cruise] = PhaseContribution{0.75, 610.0, 1.0 / 3.0, 245, 25.0 / 3.0};
     return model;
 }
 
@@ -108,6 +108,8 @@ TEST(MechanicalModelToml, ReadsBackWhatItWrote) {
     ASSERT_EQ(again.flights.size(), 2U);
     EXPECT_EQ(again.flights[1].flight, "second");
     EXPECT_FALSE(again.flights[1].phases[flight::Phase::takeoff]);
+    EXPECT_FALSE(again.flights[0].phases[flight::Phase::cruise]->mean_power_w);
+    EXPECT_EQ(again.flights[1].phases[flight::Phase::cruise]->mean_power_w, 25.0 / 3.0);
     EXPECT_EQ(again.flights[1].phases[flight::Phase::cruise]->rms_w, 1.0 / 3.0);
     EXPECT_EQ(to_toml(again), text);
 }

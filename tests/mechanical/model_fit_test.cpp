@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/statistics.h"
 #include "helpers/made_up_flights.h"
 #include "mechanical/mechanical_model.h"
 
@@ -148,8 +149,20 @@ TEST(ModelFit, WeightsByHandReachTheAverage) {
     EXPECT_EQ(model.weighting, "by hand");
     EXPECT_EQ(model.phases[flight::Phase::takeoff].duration_s, flights[0].phases[flight::Phase::takeoff]->duration_s);
     EXPECT_EQ(model.flights[1].phases[flight::Phase::cruise]->weight, 0.75);
+    EXPECT_FALSE(model.phases[flight::Phase::takeoff].level_spread) << "one flight counts";
+    EXPECT_EQ(model.phases[flight::Phase::cruise].level_spread->flights, 2U);
     options.weights.by_hand.push_back({"flight3", {}, 1.0});
     EXPECT_THAT(message_of<UsageError>(flights, options), HasSubstr("'flight3'"));
+}
+
+TEST(ModelFit, KeepsWhatItsSpreadIsOf) {
+    const auto flights = made_up_flights(3, 0.2, 8);
+    const auto model = fit_model(flights).model;
+    for (const auto phase : flight::all_phases) {
+        std::vector<double> levels_w;
+        for (const auto& flight : model.flights) levels_w.push_back(flight.phases[phase]->mean_power_w.value());
+        EXPECT_NEAR(sample_sd(levels_w), model.phases[phase].level_spread->level_sd_w, 1e-9);
+    }
 }
 
 TEST(ModelFit, RefusesWhatHasNoAnswer) {
