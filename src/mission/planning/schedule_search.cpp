@@ -22,8 +22,9 @@ struct RunStep {
 struct StateLabel : RunStep {
     battery::BatteryState state;
     double utility = 0.0;
-    double effective_percent = 0.0;  ///< schedule_value.h
-    double bound = 0.0;              ///< nothing that begins so has more utility
+    EffectiveCharge charge = {};
+    double weighed_percent = 0.0;  ///< the charge less what its RC voltage costs at least
+    double bound = 0.0;            ///< nothing that begins so has more utility
 };
 
 struct FoundSchedule {
@@ -42,9 +43,10 @@ bool follow(const SlotDynamics& dynamics, std::size_t from, StateLabel& label) {
     return true;
 }
 
-double bound_of(const ScheduleValue& value, const StateLabel& label) {
-    return label.utility +
-           value_at(curve_with(value, label.to, label.choice), effective_percent(value, label.to, label.state));
+void set_bound(const ScheduleValue& value, StateLabel& label) {
+    label.charge = effective_charge(value, label.to, label.state);
+    label.weighed_percent = label.state.soc_percent - value.rc_low[label.to] * label.state.rc_voltage_v;
+    label.bound = label.utility + utility_to_go(value, label.to, label.choice, label.charge);
 }
 
 /// Utilities by keys, of which none is less than another one's with both less key and less utility.
@@ -86,10 +88,8 @@ class StatePass {
         enough_utility_ = best.utility + limits_.utility_gap / 2.0;
         std::vector<Layer> at(graph_.slots + 1);
         for (auto& layer : at) layer.resize(graph_.choices + 1);
-        if (auto label = first_; set_bound(label)) {
-            trail_.push_back(label);
-            at[graph_.begin][std::min(graph_.begin_choice, graph_.choices)].push_back(label);
-        }
+        trail_.push_back(first_);
+        at[graph_.begin][std::min(graph_.begin_choice, graph_.choices)].push_back(first_);
         for (std::size_t i = graph_.begin; i < graph_.slots; ++i) {
             expand(i, at);
             at[i].clear();
@@ -104,13 +104,6 @@ class StatePass {
 
   private:
     using Layer = std::vector<std::vector<StateLabel>>;
-
-    /// Whether the label may still win.
-    bool set_bound(StateLabel& label) {
-        label.bound = bound_of(value_, label);
-        label.effective_percent = effective_percent(value_, label.to, label.state);
-        return is_wanted(label.bound);
-    }
 
     bool is_wanted(double bound) {
         if (bound > enough_utility_) return true;
@@ -152,23 +145,24 @@ class StatePass {
     /// Appends what a run makes of the labels.
     void carry(std::size_t i, const std::vector<StateLabel>& labels, const ChoiceRun& run, const RunReach& reach,
                std::vector<StateLabel>& to) {
-        const auto& curve = curve_with(value_, run.to, run.choice);
         for (const auto& label : labels) {
             const double utility = label.utility + run.sum.utility;
             // What is known of the run beforehand saves most integrations.
-            const double reached = reached_percent(value_, i, reach, label.effective_percent);
-            if (!is_wanted(utility + value_at(curve, reached))) continue;
+            const auto end = reached(value_, i, reach, label.charge);
+            if (!is_wanted(utility + utility_to_go(value_, run.to, run.choice, end))) continue;
             StateLabel next{{label.before, run.choice, run.to}, label.state, utility};
-            if (follow(question_.dynamics, i, next) && set_bound(next)) to.push_back(next);
+            if (!follow(question_.dynamics, i, next)) continue;
+            set_bound(value_, next);
+            if (is_wanted(next.bound)) to.push_back(next);
         }
     }
 
     /// Leaves labels that no other one at the same slot dominates, or nearly, and of those the most promising.
-    /// A label is as good as another one in any case if it has as much effective charge and, with RC voltage weighed by
+    /// A label is as good as another one in any case if it has as much charge and, with RC voltage weighed by
     /// what it may cost at most, as much again; or no more RC voltage, where that may end a flight.
     void prune(std::size_t i, std::vector<StateLabel>& labels) {
         std::ranges::sort(labels, [](const StateLabel& a, const StateLabel& b) {
-            if (a.effective_percent != b.effective_percent) return a.effective_percent > b.effective_percent;
+            if (a.weighed_percent != b.weighed_percent) return a.weighed_percent > b.weighed_percent;
             return a.utility != b.utility ? a.utility > b.utility : a.state.soc_percent < b.state.soc_percent;
         });
         const double high = (limits_.is_proof ? value_.rc_high : value_.rc_usual)[i];
@@ -238,7 +232,7 @@ FoundSchedule least_schedule(const ScheduleQuestion& question, const KnapsackGra
 /// As much of the effort as time and memory allow for many slots, choices or long runs.
 KnapsackEffort affordable(KnapsackEffort effort, const KnapsackGraph& graph) {
     constexpr std::size_t most_slots_followed = 2000000;  // for the bound
-    constexpr std::size_t most_labels_made = 20000000;
+    constexpr std::size_t most_labels_made = 2000000;
     constexpr std::size_t fewest_labels = 50;
     constexpr std::size_t fewest_cells = 8;
     std::size_t work = 1;
@@ -274,15 +268,24 @@ KnapsackSolution search_schedule(const ScheduleQuestion& question, const Knapsac
     if (!value.possible || !follow(question.dynamics, 0, first)) return finish(least, false, 0.0);
     FoundSchedule best;
     if (least.end_percent >= question.reserve_soc_percent) best = least;
-    double bound = bound_of(value, first);
-    const bool may_be_cut_off = value.rc_high != value.rc_usual;
-    for (std::size_t labels = labels_at_first; std::isfinite(bound); labels *= times_more) {
+    set_bound(value, first);
+    double bound = first.bound;
+    // Where a cut-off may end flights, few labels dominate others: what is best but for that comes first.
+    bool is_proof = value.rc_high == value.rc_usual;
+    for (std::size_t labels = labels_at_first; std::isfinite(bound);) {
         const double gap = effort.relative_gap * std::max(std::abs(bound), 1e-9);
         if (bound - best.utility <= gap) break;
         const auto most = std::min(labels, effort.most_labels);
-        if (may_be_cut_off) StatePass(question, graph, value, first, {most, gap, false}).run(best);
-        bound = std::min(bound, StatePass(question, graph, value, first, {most, gap, true}).run(best));
-        if (labels >= effort.most_labels) break;
+        const double found = StatePass(question, graph, value, first, {most, gap, is_proof}).run(best);
+        if (is_proof) bound = std::min(bound, found);
+        const bool is_last = labels >= effort.most_labels;
+        if (is_proof && is_last) break;
+        if (!is_proof && (is_last || found - best.utility <= gap)) {
+            is_proof = true;
+            labels = effort.most_labels;
+        } else {
+            labels *= times_more;
+        }
     }
     if (!std::isfinite(best.utility)) return finish(least, false, 0.0);
     return finish(best, true, std::max(bound, best.utility));

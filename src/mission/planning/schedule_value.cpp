@@ -74,26 +74,8 @@ double relaxed(double a, double rate, double decay_per_s, double time_s) {
     return a * kept + (decay_per_s > 0.0 ? rate / decay_per_s * (1.0 - kept) : rate * time_s);
 }
 
-/// A volt of RC voltage costs current of at least P / U^2 for as long as it lasts; with it goes a part of the charge, whose
-/// slope makes up for some of it.
-void set_rc_low(const ScheduleQuestion& question, ScheduleValue& value) {
-    const auto& dynamics = question.dynamics;
-    value.rc_low.assign(dynamics.slots.size() + 1, 0.0);
-    if (dynamics.rc_resistance_ohm == 0.0) return;
-    const double steepest =
-        slopes_in(dynamics, lowest_percent(value, dynamics.slots.size()), value.highest.front().soc_percent).greatest;
-    for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
-        const auto& slot = dynamics.slots[i];
-        const double power_w = slot.least_mechanical_w + range_of(question, i).least_w;
-        const double source_v = open_circuit_voltage_v(dynamics, value.highest[i].soc_percent);
-        const double percent_per_vs =
-            (1.0 - between_samples) * std::max(0.0, power_w) / (source_v * source_v) * dynamics.percent_per_as;
-        const double decay_per_s = 1.0 / dynamics.rc_time_constant_s + steepest * percent_per_vs;
-        value.rc_low[i] = relaxed(value.rc_low[i + 1], percent_per_vs, decay_per_s, slot.duration_s);
-    }
-}
-
-/// The greatest current, and how it rises as the source's voltage falls; none if the limit is near.
+/// The current at a voltage before the resistor, and how it rises as that falls; none beyond the limit. Both grow with
+/// the power and fall with the voltage.
 struct CurrentBound {
     double current_a = 0.0;
     double current_a_per_v = 0.0;
@@ -105,6 +87,26 @@ std::optional<CurrentBound> current_bound(double power_w, double source_v, doubl
     const double root = std::sqrt(discriminant);
     const double current_a = 2.0 * power_w / (source_v + root);
     return CurrentBound{current_a, current_a / root};
+}
+
+/// A volt of RC voltage costs current, the least at the least power, for as long as it lasts; with it goes a part of the charge, whose
+/// slope makes up for some of it.
+void set_rc_low(const ScheduleQuestion& question, ScheduleValue& value) {
+    const auto& dynamics = question.dynamics;
+    value.rc_low.assign(dynamics.slots.size() + 1, 0.0);
+    if (dynamics.rc_resistance_ohm == 0.0) return;
+    const double steepest =
+        slopes_in(dynamics, lowest_percent(value, dynamics.slots.size()), value.highest.front().soc_percent).greatest;
+    for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
+        const auto& slot = dynamics.slots[i];
+        const double power_w = slot.least_mechanical_w + range_of(question, i).least_w;
+        const double source_v = open_circuit_voltage_v(dynamics, value.highest[i].soc_percent);
+        const auto bound = current_bound(std::max(0.0, power_w), source_v, dynamics.resistance_ohm);
+        const double percent_per_vs =
+            bound ? (1.0 - between_samples) * bound->current_a_per_v * dynamics.percent_per_as : 0.0;
+        const double decay_per_s = 1.0 / dynamics.rc_time_constant_s + steepest * percent_per_vs;
+        value.rc_low[i] = relaxed(value.rc_low[i + 1], percent_per_vs, decay_per_s, slot.duration_s);
+    }
 }
 
 double greatest_w(const ScheduleQuestion& question, std::size_t slot) {
@@ -186,52 +188,88 @@ double energy_j(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun&
     return sum_j;
 }
 
+/// How far the RC voltage of what draws most gets above the least, in equal levels; what is above the last counts as there.
+void set_levels(const ScheduleQuestion& question, ScheduleValue& value) {
+    constexpr std::size_t levels = 5;
+    constexpr std::size_t cells_with_levels = 48;  // fewer cells are meant to be quick
+    const auto& dynamics = question.dynamics;
+    value.level_v.assign(dynamics.slots.size() + 1, 0.0);
+    if (dynamics.rc_resistance_ohm == 0.0 || value.cells < cells_with_levels) return;
+    value.levels = levels;
+    value.cells /= 3;
+    double above_v = 0.0;
+    for (std::size_t i = 0; i < dynamics.slots.size(); ++i) {
+        const auto range = range_of(question, i);
+        const double source_v = open_circuit_voltage_v(dynamics, value.highest[i].soc_percent);
+        const double steady_v = dynamics.rc_resistance_ohm * (range.greatest_w - range.least_w) / source_v;
+        above_v = relaxed(above_v, steady_v / dynamics.rc_time_constant_s, 1.0 / dynamics.rc_time_constant_s,
+                          dynamics.slots[i].duration_s);
+        value.level_v[i + 1] = above_v / static_cast<double>(levels);
+    }
+}
+
+double level_rc_v(const ScheduleValue& value, std::size_t slot, std::size_t level) {
+    return value.highest[slot].rc_voltage_v + value.level_v[slot] * static_cast<double>(level);
+}
+
+const std::vector<ConcaveCurve>& curves_with(const ScheduleValue& value, std::size_t slot, std::size_t choice) {
+    const auto& with = value.with[slot];
+    return choice < with.size() && !with[choice].empty() ? with[choice] : value.any[slot];
+}
+
 /// Two charges part by what the higher one's voltage saves: of a slope m at least m P / U^2 points a second for each.
 RunReach reach_of(const SlotDynamics& dynamics, const ScheduleValue& value, std::size_t from, const ChoiceRun& run) {
-    RunReach reach{std::vector<double>(value.cells + 1, never), std::vector<double>(value.cells + 1, 1.0)};
+    const std::size_t charges = value.cells + 1;
+    RunReach reach{std::vector<EffectiveCharge>(value.levels * charges, {never, 0}),
+                   std::vector<double>(value.levels * charges, 1.0)};
     const double run_j = energy_j(dynamics, from, run);
-    std::optional<double> lower_end;
-    for (std::size_t j = 0; j <= value.cells; ++j) {
-        const double start_percent = lowest_percent(value, from) + cell_percent(value) * static_cast<double>(j);
-        const auto end = after_run(dynamics, from, run, {start_percent, value.highest[from].rc_voltage_v});
-        if (!end) continue;
-        reach.end_percent[j] = effective_percent(value, run.to, *end);
-        if (lower_end) {
-            const double source_v = open_circuit_voltage_v(dynamics, start_percent);
-            reach.growth[j] += slopes_in(dynamics, *lower_end, start_percent).least * dynamics.percent_per_as *
-                               std::max(0.0, run_j) / (source_v * source_v);
+    for (std::size_t level = 0; level < value.levels; ++level) {
+        std::optional<double> lower_end;
+        for (std::size_t j = 0; j < charges; ++j) {
+            const double start_percent = lowest_percent(value, from) + cell_percent(value) * static_cast<double>(j);
+            const auto end = after_run(dynamics, from, run, {start_percent, level_rc_v(value, from, level)});
+            if (!end) continue;
+            reach.end[level * charges + j] = effective_charge(value, run.to, *end);
+            if (lower_end) {
+                const double source_v = open_circuit_voltage_v(dynamics, start_percent);
+                reach.growth[level * charges + j] += slopes_in(dynamics, *lower_end, start_percent).least *
+                                                     dynamics.percent_per_as * std::max(0.0, run_j) /
+                                                     (source_v * source_v);
+            }
+            lower_end = end->soc_percent;
         }
-        lower_end = end->soc_percent;
     }
     return reach;
 }
 
-void add_run_points(const ScheduleValue& value, std::size_t from, const ChoiceRun& run, const RunReach& reach,
-                    std::vector<CurvePoint>& points) {
-    const auto& next = curve_with(value, run.to, run.choice);
+/// Of one level.
+void add_run_points(const ScheduleValue& value, std::size_t from, std::size_t level, const ChoiceRun& run,
+                    const RunReach& reach, std::vector<CurvePoint>& points) {
+    const auto& next = curves_with(value, run.to, run.choice);
     const double step = cell_percent(value);
     for (std::size_t j = 1; j <= value.cells; ++j) {
+        const std::size_t at = level * (value.cells + 1) + j;
         const double end_percent = lowest_percent(value, from) + step * static_cast<double>(j);
-        add_mapped(next, {end_percent - step, end_percent, reach.end_percent[j], reach.growth[j]}, run.sum.utility,
-                   points);
+        add_mapped(next[reach.end[at].level],
+                   {end_percent - step, end_percent, reach.end[at].percent, reach.growth[at]}, run.sum.utility, points);
     }
 }
 
 /// The curves of one slot, of those behind it.
 void set_curves(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t i, ScheduleValue& value) {
-    std::vector<CurvePoint> points;
-    for (const auto& run : graph.runs[i]) {
-        value.runs[i].push_back(reach_of(question.dynamics, value, i, run));
-        add_run_points(value, i, run, value.runs[i].back(), points);
-    }
-    value.any[i] = concave_hull(std::move(points));
-    if (graph.one_more[i].empty()) return;
-    value.with[i].resize(graph.choices);
-    for (const auto& run : graph.one_more[i]) {
-        auto own = value.any[i].points;
-        value.one_more[i].push_back(reach_of(question.dynamics, value, i, run));
-        add_run_points(value, i, run, value.one_more[i].back(), own);
-        value.with[i][run.choice] = concave_hull(std::move(own));
+    for (const auto& run : graph.runs[i]) value.runs[i].push_back(reach_of(question.dynamics, value, i, run));
+    for (const auto& run : graph.one_more[i]) value.one_more[i].push_back(reach_of(question.dynamics, value, i, run));
+    if (!graph.one_more[i].empty()) value.with[i].resize(graph.choices);
+    for (std::size_t level = 0; level < value.levels; ++level) {
+        std::vector<CurvePoint> points;
+        for (std::size_t r = 0; r < graph.runs[i].size(); ++r)
+            add_run_points(value, i, level, graph.runs[i][r], value.runs[i][r], points);
+        value.any[i].push_back(concave_hull(std::move(points)));
+        for (std::size_t r = 0; r < graph.one_more[i].size(); ++r) {
+            auto own = value.any[i][level].points;
+            add_run_points(value, i, level, graph.one_more[i][r], value.one_more[i][r], own);
+            value.with[i][graph.one_more[i][r].choice].push_back(concave_hull(std::move(own)));
+        }
     }
 }
 
@@ -244,31 +282,37 @@ ScheduleValue make_schedule_value(const ScheduleQuestion& question, const Knapsa
     if (!value.possible) return value;
     set_rc_low(question, value);
     set_rc_high(question, value);
+    set_levels(question, value);
     value.any.resize(graph.slots + 1);
     value.with.resize(graph.slots + 1);
     value.runs.resize(graph.slots);
     value.one_more.resize(graph.slots);
-    value.any.back().points = {{question.reserve_soc_percent, 0.0}};
+    value.any.back().assign(value.levels, {{{question.reserve_soc_percent, 0.0}}});
     for (std::size_t i = graph.slots; i-- > graph.begin;) set_curves(question, graph, i, value);
     return value;
 }
 
-double effective_percent(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state) {
-    return state.soc_percent - value.rc_low[slot] * (state.rc_voltage_v - value.highest[slot].rc_voltage_v);
+EffectiveCharge effective_charge(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state) {
+    const double above_v = state.rc_voltage_v - value.highest[slot].rc_voltage_v;
+    const double level_v = value.level_v[slot];
+    const double highest_level = static_cast<double>(value.levels - 1);
+    const double level = level_v > 0.0 ? std::clamp(std::floor(above_v / level_v), 0.0, highest_level) : 0.0;
+    return {state.soc_percent - value.rc_low[slot] * (above_v - level * level_v), static_cast<std::size_t>(level)};
 }
 
-const ConcaveCurve& curve_with(const ScheduleValue& value, std::size_t slot, std::size_t choice) {
-    const auto& with = value.with[slot];
-    return choice < with.size() && !with[choice].points.empty() ? with[choice] : value.any[slot];
+double utility_to_go(const ScheduleValue& value, std::size_t slot, std::size_t choice, const EffectiveCharge& charge) {
+    return value_at(curves_with(value, slot, choice)[charge.level], charge.percent);
 }
 
-double reached_percent(const ScheduleValue& value, std::size_t slot, const RunReach& reach, double effective_percent) {
+EffectiveCharge reached(const ScheduleValue& value, std::size_t slot, const RunReach& reach,
+                        const EffectiveCharge& charge) {
     const double step = cell_percent(value);
     const double lowest = lowest_percent(value, slot);
-    const double position = std::ceil((effective_percent - lowest) / step);
+    const double position = std::ceil((charge.percent - lowest) / step);
     const auto j = static_cast<std::size_t>(std::clamp(position, 1.0, static_cast<double>(value.cells)));
-    const double below_percent = lowest + step * static_cast<double>(j) - effective_percent;
-    return reach.end_percent[j] - reach.growth[j] * below_percent;
+    const std::size_t at = charge.level * (value.cells + 1) + j;
+    const double below_percent = lowest + step * static_cast<double>(j) - charge.percent;
+    return {reach.end[at].percent - reach.growth[at] * below_percent, reach.end[at].level};
 }
 
 }  // namespace flightwatt::mission

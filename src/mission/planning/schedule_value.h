@@ -17,10 +17,16 @@ struct ScheduleQuestion {
     double reserve_soc_percent = 0.0;
 };
 
-/// Where runs lead to from evenly spread charges at a slot, with the least RC voltage there can be.
+/// A state of the battery at a slot as the bound knows it: a charge at one of a few RC voltages.
+struct EffectiveCharge {
+    double percent = 0.0;  ///< the state's charge, less what its RC voltage above the level's costs at least
+    std::size_t level = 0;
+};
+
+/// Where a run leads to from evenly spread charges at each level of RC voltage.
 struct RunReach {
-    std::vector<double> end_percent;  ///< effective (below), a charge each; minus infinity: the battery does not do it
-    std::vector<double> growth;       ///< by which the end rises at least with the start, from a charge to the next
+    std::vector<EffectiveCharge> end;  ///< level by level; minus infinity: the battery does not do it
+    std::vector<double> growth;        ///< by which the end rises at least with the start, from the charge below
 };
 
 /// An upper bound of the utility that can follow from any state in which a slot may be reached.
@@ -36,22 +42,25 @@ struct ScheduleValue {
     std::size_t cells = 0;       ///< the charges from there up to the course
     std::vector<double> rc_low;  ///< [points/V] at each slot's start
     std::vector<double> rc_high;
-    std::vector<double> rc_usual;   ///< rc_high, if neither a cut-off nor the power limit ends what lands otherwise
-    std::vector<ConcaveCurve> any;  ///< over effective charge; free to begin a run
-    std::vector<std::vector<ConcaveCurve>> with;  ///< while a choice runs that may go on; none: as any
-    std::vector<std::vector<RunReach>> runs;      ///< as the graph's
+    std::vector<double> rc_usual;  ///< rc_high, if neither a cut-off nor the power limit ends what lands otherwise
+    std::size_t levels = 1;        ///< of RC voltage, from the course's on
+    std::vector<double> level_v;   ///< from one to the next, at each slot's start
+    std::vector<std::vector<ConcaveCurve>> any;  ///< of each level, over effective charge; free to begin a run
+    std::vector<std::vector<std::vector<ConcaveCurve>>> with;  ///< while a choice runs that may go on; none: as any
+    std::vector<std::vector<RunReach>> runs;                   ///< as the graph's
     std::vector<std::vector<RunReach>> one_more;
     bool possible = true;  ///< the course of least power lands with the reserve
 };
 
 ScheduleValue make_schedule_value(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t cells);
 
-/// The state's charge less what its RC voltage above the least costs at least.
-double effective_percent(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state);
+EffectiveCharge effective_charge(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state);
 
-const ConcaveCurve& curve_with(const ScheduleValue& value, std::size_t slot, std::size_t choice);
+/// The bound of what can follow while a choice runs.
+double utility_to_go(const ScheduleValue& value, std::size_t slot, std::size_t choice, const EffectiveCharge& charge);
 
-/// No more than this effective charge is left of one at `slot` after a run.
-double reached_percent(const ScheduleValue& value, std::size_t slot, const RunReach& reach, double effective_percent);
+/// No more than this is left of a charge at `slot` after a run.
+EffectiveCharge reached(const ScheduleValue& value, std::size_t slot, const RunReach& reach,
+                        const EffectiveCharge& charge);
 
 }  // namespace flightwatt::mission

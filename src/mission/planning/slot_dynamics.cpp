@@ -17,7 +17,8 @@ constexpr double wanted_agreement_percent = 1e-7;
 /// One slot as it is integrated: the line of the open-circuit voltage in which the charge was last seen is remembered.
 class SlotRates {
   public:
-    SlotRates(const SlotDynamics& dynamics, double compute_w) : dynamics_(dynamics), compute_w_(compute_w) {}
+    SlotRates(const SlotDynamics& dynamics, double compute_w)
+        : dynamics_(dynamics), compute_w_(compute_w), rc_per_s_(1.0 / dynamics.rc_time_constant_s) {}
 
     /// What a state and a mechanical power lead to.
     struct Rate {
@@ -38,7 +39,7 @@ class SlotRates {
         const double twice_v = rate.source_v + std::sqrt(std::max(0.0, discriminant));
         rate.current_a = power_w == 0.0 ? 0.0 : 2.0 * power_w / twice_v;
         rate.percent_per_s = -dynamics_.percent_per_as * rate.current_a;
-        rate.rc_v_per_s = (dynamics_.rc_resistance_ohm * rate.current_a - rc_v) / dynamics_.rc_time_constant_s;
+        rate.rc_v_per_s = (dynamics_.rc_resistance_ohm * rate.current_a - rc_v) * rc_per_s_;
         return rate;
     }
 
@@ -55,6 +56,7 @@ class SlotRates {
 
     const SlotDynamics& dynamics_;
     double compute_w_;
+    double rc_per_s_;
     std::size_t line_ = 0;
 };
 
