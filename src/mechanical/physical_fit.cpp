@@ -13,15 +13,49 @@
 namespace flightwatt::mechanical {
 namespace {
 
-/// The grid's fits as one record.
-void summarise(PhysicalModel& model, const PowerPosterior& posterior) {
+/// How far the power of a flight with these mean terms (over column_scale) is off, for its level and the coefficients,
+/// at each node.
+std::vector<double> node_sds_w(const PowerPosterior& posterior, const ColumnVector& mean, const ColumnVector& terms) {
+    std::vector<double> sds;
+    for (std::size_t i = 0; i < posterior.fits.size(); ++i) {
+        const auto& fit = posterior.fits[i];
+        const double power_w = fit.coefficients.dot(terms);
+        const double level_w = posterior.nodes[i].level_sd * power_w;
+        const double off_w = power_w - mean.dot(terms);
+        sds.push_back(std::sqrt(level_w * level_w + terms.dot(fit.covariance * terms) + off_w * off_w));
+    }
+    return sds;
+}
+
+double weighted_square(const std::vector<double>& values, const std::vector<double>& weights) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) sum += weights[i] * values[i] * values[i];
+    return sum;
+}
+
+/// The grid's fits as one record: the means of coefficients and squared levels, and one scale and degrees of freedom
+/// which make a Student's t of a typical flight's mixture.
+void summarise(PhysicalModel& model, const PowerPosterior& posterior, const TermValues& typical) {
     const auto scale = column_scale();
     const auto count = model.terms.size();
     const ColumnVector mean = mean_coefficients(posterior);
+    ColumnVector terms(mean.size());
+    for (std::size_t i = 0; i < count; ++i)
+        terms[static_cast<Eigen::Index>(i)] = typical[model.terms[i]] / scale[static_cast<int>(model.terms[i])];
+    double shrink = 1.0;
+    if (model.flights.size() > 1) {
+        const auto sds_w = node_sds_w(posterior, mean, terms);
+        const auto t = student_t_of_mixture(sds_w, posterior.weights);
+        shrink = t.scale * t.scale / weighted_square(sds_w, posterior.weights);
+        std::vector<double> levels;
+        for (const auto& node : posterior.nodes) levels.push_back(node.level_sd);
+        model.level_sd = std::sqrt(shrink * weighted_square(levels, posterior.weights));
+        model.degrees_of_freedom = t.degrees_of_freedom;
+    }
     ColumnMatrix covariance = ColumnMatrix::Zero(mean.size(), mean.size());
     for (std::size_t n = 0; n < posterior.fits.size(); ++n) {
         const ColumnVector off = posterior.fits[n].coefficients - mean;
-        covariance += posterior.weights[n] * (posterior.fits[n].covariance + off * off.transpose());
+        covariance += shrink * posterior.weights[n] * (posterior.fits[n].covariance + off * off.transpose());
     }
     model.covariance.assign(count, std::vector<double>(count, 0.0));
     for (std::size_t i = 0; i < count; ++i) {
@@ -32,15 +66,15 @@ void summarise(PhysicalModel& model, const PowerPosterior& posterior) {
             model.covariance[i][j] =
                 covariance(row, static_cast<Eigen::Index>(j)) / row_scale / scale[static_cast<int>(model.terms[j])];
     }
-    const auto& likeliest = posterior.nodes[posterior.likeliest];
-    model.correlation_s = likeliest.correlation_s;
+    model.correlation_s = posterior.nodes[posterior.likeliest].correlation_s;
     model.drift_sd_w = std::sqrt(posterior.fits[posterior.likeliest].drift_variance_w2);
-    if (model.flights.size() < 2) return;
-    std::vector<double> sds;
-    for (const auto& node : posterior.nodes) sds.push_back(node.level_sd);
-    const auto level = student_t_of_mixture(sds, posterior.weights);
-    model.level_sd = level.scale;
-    model.degrees_of_freedom = level.degrees_of_freedom;
+}
+
+/// Means of the terms over all bins.
+TermValues typical_values(std::span<const FlightMotion> flights) {
+    std::vector<MotionBin> bins;
+    for (const auto& flight : flights) bins.insert(bins.end(), flight.bins.begin(), flight.bins.end());
+    return mean_values(bins);
 }
 
 void add_value(MotionRange& range, double value, bool first) {
@@ -93,7 +127,7 @@ PhysicalModel fit_terms(std::span<const FlightMotion> flights, const MotionRegre
     describe_flights(model, flights);
     const auto posterior = regression.posterior(columns_of(model.terms));
     if (!posterior) throw NoAnswerError("the flights' motion does not determine a power model: it hardly varies");
-    summarise(model, *posterior);
+    summarise(model, *posterior, typical_values(flights));
     model.drift_degrees_of_freedom = drift_degrees_of_freedom(model, posterior->drift_variances_w2);
     return model;
 }

@@ -38,7 +38,7 @@ inline constexpr double least_gain_of_term = 0.05;
 
 /// Fits power to the motion of flights of one aircraft (docs/methods.md, Power from airspeed and climb). The first term
 /// is the drag, or a constant where that predicts better by least_gain_of_term; then, one by one, the term that lowers
-/// the error most, if that is by least_gain_of_term or more, in more than half of the folds, and all coefficients are
+/// the error most, if that is by least_gain_of_term or more, in more than half of the flights, and all coefficients are
 /// what physics lets them be (none negative; a descent gives back at most what the climb took). Folds are the flights,
 /// each held back in turn (ten groups of more than ten), or fifths of a single flight's time. Throws NoAnswerError
 /// where no flight has bins, or they do not tell a single term.

@@ -142,11 +142,13 @@ struct Candidate {
     HeldBackError error;
 };
 
-bool is_better(const HeldBackError& error, const HeldBackError& before) {
+/// Of a single flight's fifths only one may hold a climb: there the sum alone counts.
+bool is_better(const Folds& of, const HeldBackError& error, const HeldBackError& before) {
+    if (error.mean_square > (1.0 - least_gain_of_term) * before.mean_square) return false;
     std::size_t won = 0;
     for (std::size_t i = 0; i < error.square.size(); ++i)
         if (error.square[i] < before.square[i]) ++won;
-    return error.mean_square <= (1.0 - least_gain_of_term) * before.mean_square && 2 * won > error.square.size();
+    return of.flights == 1 || 2 * won > error.square.size();
 }
 
 /// Tries a term beside those that were chosen, and says in the trial what came of it.
@@ -165,7 +167,7 @@ std::optional<Candidate> tried(const Folds& of, const std::vector<PowerTerm>& te
     }
     trial.rms_before_w = before.rms_w();
     trial.rms_after_w = error->rms_w();
-    if (!is_better(*error, before)) {
+    if (!is_better(of, *error, before)) {
         trial.reason = "does not predict what was held back";
         return std::nullopt;
     }
@@ -195,7 +197,7 @@ std::optional<Candidate> first_term(const Folds& of) {
     for (const auto term : {PowerTerm::drag, PowerTerm::constant}) {
         auto error = held_back_error(of, columns_of({term}));
         if (!error || !is_possible(of, {term})) continue;
-        if (!first || is_better(*error, first->error)) first = Candidate{term, std::move(*error)};
+        if (!first || is_better(of, *error, first->error)) first = Candidate{term, std::move(*error)};
     }
     return first;
 }
