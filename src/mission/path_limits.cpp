@@ -108,6 +108,8 @@ FeasibilityLimit farthest_return(const MissionOfExtent& mission_of, double lengt
                                  const std::optional<double>& probability) {
     constexpr double accuracy = 1e-9;
     constexpr double accuracy_of_chance = 1e-4;
+    if (!(length_m > 0.0))
+        throw NoAnswerError("the path has no legs to turn back on: ways that take a duration_s or a hold are none");
     ExtentSearch search(mission_of, probability);
     const auto spare = search.spare_percent(length_m);
     if (!spare) search.refuse("the path cannot be flown there and back");

@@ -30,6 +30,7 @@ std::string path_of(const char* below_source) { return (source_dir() / below_sou
 const std::string log_file = path_of("logs/opterra_synthetic_01.data");
 const std::string published = path_of("fits/mechanical/opterra-table1.toml");
 const std::string phased = path_of("missions/paper/phased.toml");
+const std::string survey_path = path_of("missions/synthetic/survey-path.toml");
 
 /// All sample logs.
 Words logs() {
@@ -90,6 +91,8 @@ TEST(WrittenColumns, AreDocumented) {
     output_of("simulate", {phased, "--samples", "10", "--samples-csv", "samples.csv", "-o", "soc.csv"}, folder);
     expect_columns(folder / "soc.csv", "State of charge");
     expect_columns(folder / "samples.csv", "Sampled state of charge");
+    output_of("path", {survey_path, "-o", "legs.csv"}, folder);
+    expect_columns(folder / "legs.csv", "Legs of a path");
     output_of("profile", {"specification.toml", "-o", "profiles"}, folder);
     expect_columns(folder / "profiles" / "runs.csv", "Runs");
     expect_columns(folder / "profiles" / "idle.csv", "Power profile");
@@ -184,6 +187,8 @@ TEST(WrittenKeys, OfMissionsAreDocumented) {
     expect_summary("plan", {path_of("missions/paper/plan.toml"), "-o", "planned.toml"}, folder);
     expect_summary("plan", {phased, "--longest-cruise"}, folder);
     expect_summary("plan", {phased, "--largest-payload"}, folder);
+    expect_summary("plan", {survey_path, "--longest-cruise"}, folder);
+    expect_summary("path", {survey_path, "-o", "legs.csv"}, folder);
 }
 
 TEST(WrittenKeys, OfAReportAreDocumented) {

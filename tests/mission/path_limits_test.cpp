@@ -54,6 +54,7 @@ TEST(PathLimits, FindTheFarthestPlaceToReturnFrom) {
     const auto all = farthest_return(
         [&](double after_m) { return with_reserve(path_mission(there_and_back(near, after_m, {})), 20.0); }, 600.0);
     EXPECT_EQ(all.value, 600.0);
+    EXPECT_THROW(farthest_return(mission_of, 0.0), NoAnswerError);
     // The wind forbids the way back.
     const auto downwind = [&](double after_m) {
         return with_reserve(path_mission(there_and_back(near, after_m, {}), {14.0, 180.0}), 20.0);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <boost/math/quadrature/gauss.hpp>
 
@@ -118,16 +119,21 @@ std::vector<LoadSegment> load_segments(const MissionSetup& mission, const Schedu
     const auto load = load_of(mission);
     std::vector<LoadSegment> segments;
     segments.reserve(schedule.size());
-    for (const auto& scheduled : schedule)
-        for (auto& part : smooth_parts(load_segment(load, scheduled))) segments.push_back(std::move(part));
+    for (const auto& scheduled : schedule) {
+        auto segment = load_segment(load, scheduled);
+        if (!segment.pieces)
+            segments.push_back(std::move(segment));
+        else
+            std::ranges::move(smooth_parts(segment), std::back_inserter(segments));
+    }
     return segments;
 }
 
 std::vector<LoadSegment> smooth_parts(const LoadSegment& segment) {
     if (!segment.pieces) return {segment};
     std::vector<LoadSegment> parts;
-    const auto last = static_cast<std::size_t>(segment.pieces->size() - 1);
-    const auto first_piece = &piece_at(*segment.pieces, segment.start_s - segment.phase_start_s + edge_tolerance_s);
+    const auto last = segment.pieces->size() - 1;
+    const auto* first_piece = &piece_at(*segment.pieces, segment.start_s - segment.phase_start_s + edge_tolerance_s);
     for (auto i = static_cast<std::size_t>(first_piece - segment.pieces->data()); i <= last; ++i) {
         const auto& piece = (*segment.pieces)[i];
         auto& part = parts.emplace_back(segment);
