@@ -4,9 +4,11 @@
 #include "base/units.h"
 #include "mechanical/prediction.h"
 #include "mission/sampling/level_deviation.h"
+#include "mission/sampling/student.h"
 #include "mission/simulation/least_power.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -18,6 +20,7 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double shortest_part = 0.1;    ///< of a planned duration
+constexpr double longest_part = 10.0;    ///< of it too
 constexpr double least_part = 1e-3;      ///< of what must stay positive
 constexpr double sd_per_half_95 = 1.96;  ///< half the width of a normal 95 % interval, in deviations
 
@@ -25,6 +28,11 @@ constexpr double sd_per_half_95 = 1.96;  ///< half the width of a normal 95 % in
 void note_source(FlightSpreads& spreads, bool is_drawn, const std::string& source, const std::string& basis) {
     auto& [drawn, not_drawn] = spreads.sources;
     (is_drawn ? drawn : not_drawn).push_back(fmt::format("{} ({})", source, basis));
+}
+
+std::string student_words(double degrees_of_freedom) {
+    return fmt::format("Student t with {:.4g} degree{} of freedom", degrees_of_freedom,
+                       degrees_of_freedom == 1.0 ? "" : "s");
 }
 
 std::string basis_of(const LevelDeviation& deviation) {
@@ -35,11 +43,12 @@ std::string basis_of(const LevelDeviation& deviation) {
         case DeviationSource::stated:
             return sd + "stated";
         case DeviationSource::conditions:
-            return sd + "of the flights about what the conditions say";
+            return sd + "of the flights about what the conditions say, " + student_words(deviation.degrees_of_freedom);
         case DeviationSource::path:
-            return sd + "of the flights about what their motion says";
+            return sd + "of the flights about what their motion says, " + student_words(deviation.degrees_of_freedom);
         case DeviationSource::flights:
-            return sd + fmt::format("of {} flights", deviation.flights);
+            return sd +
+                   fmt::format("of {} flights, {}", deviation.flights, student_words(deviation.degrees_of_freedom));
         case DeviationSource::fit_error:
             return sd + "the fit's standard error; not how flights differ";
     }
@@ -63,28 +72,72 @@ void find_wind(const MissionSetup& mission, FlightSpreads& spreads) {
     note(wind.direction_sd_deg, "wind direction", "degrees", "direction_sd_deg");
 }
 
+/// What each of the model's flights that count in a phase shows of it.
+template <typename Shown>
+std::vector<std::optional<double>> of_flights(const MissionSetup& mission, Phase phase, const Shown& shown) {
+    std::vector<std::optional<double>> values;
+    for (const auto& flight : mission.mechanical->flights) {
+        const auto& part = flight.phases[phase];
+        values.push_back(part && part->weight > 0.0 ? shown(*part) : std::nullopt);
+    }
+    return values;
+}
+
+/// Notes how often a level stands at 0, because a flight takes no power back, where one in 2000 flights or more does.
+std::string at_zero_words(const MissionSetup& mission, Phase phase, const LevelDeviation& deviation) {
+    constexpr double least_share = 5e-4;
+    const auto& model = mission.mechanical->phases[phase];
+    const auto curve = flown_model(model, mission.duration_s[phase], mission.phase_clock);
+    const double mean_w = energy_j(curve, mission.duration_s[phase]) / mission.duration_s[phase];
+    if (!(mean_w > 0.0) || !(deviation.sd_w > 0.0)) return "";
+    const double share = chance_beyond(normal_of_student(mean_w / deviation.sd_w, deviation.degrees_of_freedom));
+    return share < least_share ? "" : fmt::format(", 0 W in {:.2g} % of flights", units::percent_of(share, 1.0));
+}
+
+void find_level(const MissionSetup& mission, Phase phase, FlightSpreads& spreads,
+                std::vector<EstimatedSpread>& estimated) {
+    const auto deviation = level_deviation(mission, phase);
+    spreads.level_sd_w[phase] = deviation.sd_w;
+    auto basis = basis_of(deviation) + at_zero_words(mission, phase, deviation);
+    if (deviation.degrees_of_freedom < as_if_known) {
+        EstimatedSpread spread{level_of(phase), deviation.sd_w, deviation.degrees_of_freedom, {}};
+        if (deviation.source == DeviationSource::flights) {
+            spread.of_flights = of_flights(mission, phase, [](const auto& part) { return part.mean_power_w; });
+            if (!is_known_of_flights(spread)) basis += ", correlated with nothing: the model has no mean_power_w";
+        }
+        estimated.push_back(std::move(spread));
+    }
+    note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)), basis);
+}
+
 /// Throughout, what the mission states is fixed, and [uncertainty] alone gives it a spread.
-void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spreads) {
+void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spreads,
+                   std::vector<EstimatedSpread>& estimated) {
     const auto source = fmt::format("{} duration", to_string(phase));
     if (phase == Phase::cruise && mission.cruise_path)
         return note_source(spreads, has_wind_spread(mission), source, "as the path and the wind make it");
     auto& sd_s = spreads.duration_sd_s[phase];
-    std::vector<double> flown_s;
-    if (mission.mechanical) {
-        for (const auto& flight : mission.mechanical->flights)
-            if (const auto& part = flight.phases[phase]) flown_s.push_back(part->duration_s);
-    }
+    EstimatedSpread spread{duration_of(phase), 0.0, as_if_known, {}};
+    if (mission.mechanical)
+        spread.of_flights = of_flights(mission, phase, [](const auto& part) { return std::optional(part.duration_s); });
     std::string basis = "no flights that differ: state duration_sd_s";
     if (const auto stated_s = mission.uncertainty.duration_sd_s[phase]) {
         sd_s = *stated_s;
         basis = fmt::format("sd {:.4g} s, stated", sd_s);
     } else if (mission.duration_is_stated[phase]) {
         basis = "fixed, as the mission states it without duration_sd_s";
-    } else if (flown_s.size() >= 2) {
+    } else if (is_known_of_flights(spread)) {
+        std::vector<double> flown_s;
+        for (const auto& value : spread.of_flights)
+            if (value) flown_s.push_back(*value);
         const double relative = sample_sd(flown_s) / mean(flown_s);
         sd_s = mission.duration_s[phase] * relative *
                std::sqrt(1.0 + forecast_of(*mission.mechanical, phase).weight_square_sum);
-        basis = fmt::format("sd {:.4g} s, of {} flights", sd_s, flown_s.size());
+        spread.sd = sd_s;
+        spread.degrees_of_freedom = static_cast<double>(flown_s.size() - 1);
+        basis = fmt::format("sd {:.4g} s, of {} flights, {}", sd_s, flown_s.size(),
+                            student_words(spread.degrees_of_freedom));
+        estimated.push_back(std::move(spread));
     }
     note_source(spreads, sd_s > 0.0, source, basis);
 }
@@ -163,9 +216,8 @@ void move_level(mechanical::PhaseModel& phase, double moved_w, double shown_s) {
     const auto as_planned = curve;
     curve.a0_w += moved_w;
     if (moved_w >= 0.0) return;
-    const double least_w = least_power_w(curve, {0.0, shown_s}).power_w;
-    if (least_w >= 0.0 || least_w - moved_w < 0.0) return;
     const double mean_w = energy_j(as_planned, shown_s) / shown_s;
+    if (mean_w <= 0.0 || least_power_w(curve, {0.0, shown_s}).power_w >= 0.0) return;
     const double factor = std::max(0.0, (mean_w + moved_w) / mean_w);
     curve.a0_w = factor * as_planned.a0_w;
     for (auto* terms_w : {&curve.cos_w, &curve.sin_w})
@@ -182,6 +234,51 @@ void fly_drawn_path(double moved_w, double speed_z, double direction_z, const Mi
     const double factor = std::max(0.0, 1.0 + moved_w / mean_power_w(*planned.cruise_path));
     flight.cruise_path = fly_cruise(plan, wind, ForbiddenLeg::crawl, factor);
     flight.duration_s[Phase::cruise] = duration_s(*flight.cruise_path);
+}
+
+/// How far a flight's phases are from the planned.
+struct PhaseDeviations {
+    std::array<double, phase_quantities> of{};  ///< level [W] and duration [s] of each
+    std::array<bool, phase_quantities> is_joint{};
+};
+
+PhaseDeviations phase_deviations(const FlightSpreads& spreads, std::span<const double> normals) {
+    PhaseDeviations deviations;
+    for (const auto phase : all_phases) {
+        deviations.of.at(level_of(phase)) = normals[level_of(phase)] * spreads.level_sd_w[phase];
+        deviations.of.at(duration_of(phase)) = normals[duration_of(phase)] * spreads.duration_sd_s[phase];
+    }
+    for (const auto& joint : spreads.of_flights) {
+        std::vector<double> own;
+        for (const auto quantity : joint.quantities) own.push_back(normals[quantity]);
+        const auto students = student_vector(own, joint.degrees_of_freedom);
+        for (std::size_t k = 0; k < own.size(); ++k) {
+            double& deviation = deviations.of.at(joint.quantities[k]);
+            deviation = 0.0;
+            for (std::size_t i = 0; i < own.size(); ++i)
+                deviation += joint.factor(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) * students[i];
+            deviations.is_joint.at(joint.quantities[k]) = true;
+        }
+    }
+    return deviations;
+}
+
+void move_phases(const MissionSetup& mission, const PhaseDeviations& deviations, MissionSetup& flight) {
+    for (const auto phase : all_phases) {
+        const double planned_s = mission.duration_s[phase];
+        if (planned_s == 0.0) continue;
+        const auto level = level_of(phase);
+        const auto duration = duration_of(phase);
+        const double flown_s =
+            std::clamp(planned_s + deviations.of.at(duration), shortest_part * planned_s, longest_part * planned_s);
+        flight.duration_s[phase] = flown_s;
+        if (!flight.mechanical) continue;
+        double moved_w = deviations.of.at(level);
+        if (deviations.is_joint.at(level) && deviations.is_joint.at(duration)) moved_w *= planned_s / flown_s;
+        auto& model = flight.mechanical->phases[phase];
+        const bool stretched = mission.phase_clock == mechanical::PhaseClock::stretched;
+        move_level(model, moved_w, stretched ? model.duration_s : flown_s);
+    }
 }
 
 /// The numbers that make a flight, in their order.
@@ -233,15 +330,13 @@ void move_component(const ComponentSpread& spread, Normals& normal, std::vector<
 
 FlightSpreads find_spreads(const MissionSetup& mission) {
     FlightSpreads spreads;
+    std::vector<EstimatedSpread> estimated;
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0) continue;
-        if (mission.mechanical) {
-            const auto deviation = level_deviation(mission, phase);
-            spreads.level_sd_w[phase] = deviation.sd_w;
-            note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)), basis_of(deviation));
-        }
-        find_duration(mission, phase, spreads);
+        if (mission.mechanical) find_level(mission, phase, spreads, estimated);
+        find_duration(mission, phase, spreads, estimated);
     }
+    spreads.of_flights = joint_spreads(estimated);
     find_wind(mission, spreads);
     find_compute(mission, spreads);
     find_battery(mission, spreads);
@@ -249,9 +344,8 @@ FlightSpreads find_spreads(const MissionSetup& mission) {
 }
 
 std::size_t count_normals(const MissionSetup& mission) {
-    constexpr std::size_t of_phases = 2 * all_phases.size();
     constexpr std::size_t of_battery = 5;
-    std::size_t count = of_phases + of_battery + (mission.cruise_path ? 2 : 0);
+    std::size_t count = phase_quantities + of_battery + (mission.cruise_path ? 2 : 0);
     for (const auto& component : mission.compute.components) count += 1 + component.profile.power_w.size();
     return count;
 }
@@ -266,27 +360,17 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 }
 
 MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals) {
-    Normals normal(normals);
     auto flight = mission;
-    double cruise_moved_w = 0.0;
-    for (const auto phase : all_phases) {
-        const double moved_w = normal() * spreads.level_sd_w[phase];
-        if (phase == Phase::cruise) cruise_moved_w = moved_w;
-        const double planned_s = mission.duration_s[phase];
-        const double flown_s = planned_s + normal() * spreads.duration_sd_s[phase];
-        flight.duration_s[phase] = std::max(shortest_part * planned_s, flown_s);
-        if (!flight.mechanical || planned_s == 0.0) continue;
-        auto& model = flight.mechanical->phases[phase];
-        const bool stretched = mission.phase_clock == mechanical::PhaseClock::stretched;
-        move_level(model, moved_w, stretched ? model.duration_s : flight.duration_s[phase]);
-    }
+    const auto deviations = phase_deviations(spreads, normals);
+    move_phases(mission, deviations, flight);
+    Normals normal(normals.subspan(phase_quantities));
     move_battery(spreads.battery, normal, flight.battery);
     for (std::size_t i = 0; i < spreads.components.size(); ++i)
         move_component(spreads.components[i], normal, flight.compute.components[i].profile.power_w);
     if (!mission.cruise_path) return flight;
     const double wind_speed_z = normal();
     const double wind_direction_z = normal();
-    fly_drawn_path(cruise_moved_w, wind_speed_z, wind_direction_z, mission, flight);
+    fly_drawn_path(deviations.of.at(level_of(Phase::cruise)), wind_speed_z, wind_direction_z, mission, flight);
     return flight;
 }
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include <Eigen/QR>
 #include <boost/math/constants/constants.hpp>
 
 namespace flightwatt::mission {
@@ -19,10 +20,6 @@ constexpr std::size_t first_lines = 64;
 constexpr double furthest = 9.0;     ///< deviations: beyond, nothing is as probable as 1e-18
 constexpr double resolution = 1e-4;  ///< of a threshold [deviations]: 3e-6 of a chance of 0.01
 constexpr int most_rounds = 60;
-
-double chance_beyond(double deviations) {
-    return 0.5 * std::erfc(deviations / boost::math::constants::root_two<double>());
-}
 
 double density(double deviations) {
     return std::exp(-deviations * deviations / 2.0) / boost::math::constants::root_two_pi<double>();
@@ -50,15 +47,47 @@ FlightLines::FlightLines(const Mission& mission, const FlightSpreads& spreads)
       schedule_(mission.schedule),
       worse_(count_normals(mission)) {
     stated_percent_ = left_percent_of(worse_);
-    for_each_index(worse_.size(), [&](std::size_t k) {
-        std::vector<double> normals(worse_.size());
-        normals[k] = 1.0;
-        worse_[k] = -left_percent_of(normals);
-        normals[k] = -1.0;
-        worse_[k] = (worse_[k] + left_percent_of(normals)) / 2.0;
-    });
-    sd_percent_ = std::sqrt(inner_product(worse_, worse_));
+    std::vector<double> worse(worse_.size());
+    for_each_index(worse.size(), [&](std::size_t k) { worse[k] = lost_percent_along(k); });
+    worse_ = std::move(worse);
+    find_scale();
     set_direction(worse_);
+}
+
+/// What one deviation of one number costs, by central differences.
+double FlightLines::lost_percent_along(std::size_t normal) const {
+    std::vector<double> normals(worse_.size());
+    normals[normal] = 1.0;
+    const double left_percent = left_percent_of(normals);
+    normals[normal] = -1.0;
+    return (left_percent_of(normals) - left_percent) / 2.0;
+}
+
+/// Of the differences: how widely the flights are spread, and what is drawn together turned to where they lose most.
+void FlightLines::find_scale() {
+    double square_sum = inner_product(worse_, worse_);
+    double square_per_freedom = 0.0;
+    for (auto& joint : spreads_.of_flights) {
+        Eigen::VectorXd lost_percent(static_cast<Eigen::Index>(joint.quantities.size()));
+        for (std::size_t k = 0; k < joint.quantities.size(); ++k) {
+            std::vector<double> normals(joint.quantities.size());
+            normals[k] = 1.0;
+            double& worse = worse_[joint.quantities[k]];
+            lost_percent(static_cast<Eigen::Index>(k)) = worse / student_vector(normals, joint.degrees_of_freedom)[k];
+            square_sum -= worse * worse;
+        }
+        const double square = lost_percent.squaredNorm();
+        square_sum += square;
+        square_per_freedom += square * square / joint.degrees_of_freedom;
+        if (square == 0.0) continue;
+        const Eigen::MatrixXd turn = lost_percent.householderQr().householderQ();
+        joint.factor = (joint.factor * turn).eval();
+        for (const auto quantity : joint.quantities) worse_[quantity] = lost_percent_along(quantity);
+    }
+    constexpr double of_rounding = 1e-9;
+    sd_percent_ = std::sqrt(std::max(square_sum, 0.0));
+    if (sd_percent_ < of_rounding) sd_percent_ = 0.0;
+    if (square_per_freedom > 0.0) degrees_of_freedom_ = square_sum * square_sum / square_per_freedom;
 }
 
 double FlightLines::left_percent_of(std::span<const double> normals) const {
@@ -100,7 +129,9 @@ void FlightLines::find_threshold(std::size_t line, double left_percent, LineSear
         const double spare_percent = left - left_percent;
         if (std::abs(spare_percent) <= 1e-4 * sd_percent_) return;
         (spare_percent > 0.0 ? above : below) = at;
-        at += spare_percent / sd_percent_;
+        // What is left falls evenly with a Student t.
+        at = normal_of_student(student_of_normal(at, degrees_of_freedom_) + spare_percent / sd_percent_,
+                               degrees_of_freedom_);
     }
     at = std::clamp(at, above, below);
 }
@@ -118,7 +149,9 @@ void FlightLines::turn_to_beyond(const std::vector<LineSearch>& searches) {
 ChanceBelow::ChanceBelow(const FlightLines& lines, double left_percent)
     : lines_(&lines),
       left_percent_(left_percent),
-      searches_(first_lines, {(lines.stated_percent() - left_percent) / lines.sd_percent(), {}}) {
+      searches_(first_lines, {normal_of_student((lines.stated_percent() - left_percent) / lines.sd_percent(),
+                                                lines.degrees_of_freedom()),
+                              {}}) {
     solve(0);
 }
 
@@ -131,7 +164,10 @@ void ChanceBelow::double_lines() {
 }
 
 void ChanceBelow::move_to(double left_percent) {
-    for (auto& search : searches_) search.threshold += (left_percent_ - left_percent) / lines_->sd_percent();
+    const double freedom = lines_->degrees_of_freedom();
+    const double further = (left_percent_ - left_percent) / lines_->sd_percent();
+    for (auto& search : searches_)
+        search.threshold = normal_of_student(student_of_normal(search.threshold, freedom) + further, freedom);
     left_percent_ = left_percent;
     solve(0);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mission/sampling/flight_draws.h"
+#include "mission/sampling/student.h"
 
 #include <atomic>
 #include <map>
@@ -16,15 +17,19 @@ struct LineSearch {
 };
 
 /// Lines of flights, each from the best to the worst: parallel to where flights lose most, and so far beside each other
-/// as normal numbers are. The flights are those that flight_of makes of `mission`, which has to outlive the lines.
+/// as normal numbers are. The flights are distributed as those that flight_of makes of `mission`, which has to outlive
+/// the lines; but what is drawn together is turned so that its first number alone makes flights worse, to first order.
 class FlightLines {
   public:
     FlightLines(const Mission& mission, const FlightSpreads& spreads);
 
     double stated_percent() const { return stated_percent_; }  ///< what the flight as stated lands with
-    double sd_percent() const { return sd_percent_; }          ///< of the flights, to first order
-    bool some_fail() const { return some_fail_; }              ///< of those that were flown
-    std::size_t flown() const { return flown_; }               ///< flights
+    /// What the flights are left with goes as the stated less this times a Student t with those degrees of freedom, to
+    /// first order (Welch and Satterthwaite's where several sources add; infinite: normal).
+    double sd_percent() const { return sd_percent_; }
+    double degrees_of_freedom() const { return degrees_of_freedom_; }
+    bool some_fail() const { return some_fail_; }  ///< of those that were flown
+    std::size_t flown() const { return flown_; }   ///< flights
 
     /// Where a line falls below `left_percent`, from the threshold that the search says.
     void find_threshold(std::size_t line, double left_percent, LineSearch& search) const;
@@ -36,8 +41,10 @@ class FlightLines {
     double left_percent_of(std::span<const double> normals) const;
     std::vector<double> across_of(std::size_t line) const;
     void set_direction(std::vector<double> direction);
+    double lost_percent_along(std::size_t normal) const;
+    void find_scale();
 
-    const FlightSpreads& spreads_;
+    FlightSpreads spreads_;
     MissionSetup setup_;
     const Schedule& schedule_;
     mutable std::atomic<std::size_t> flown_ = 0;
@@ -45,6 +52,7 @@ class FlightLines {
     std::vector<double> worse_;  ///< the direction, of length 1
     double stated_percent_ = 0.0;
     double sd_percent_ = 0.0;
+    double degrees_of_freedom_ = as_if_known;
 };
 
 /// The chance to be left with less than some state of charge, over the lines so far: docs/methods.md, Eq. 34.

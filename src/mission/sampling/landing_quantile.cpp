@@ -20,9 +20,10 @@ constexpr double standard_error_part = 0.1;  ///< of that of so many flights:
 constexpr double compared_flights = 20000.0;
 constexpr double far_in_standard_errors = 4.0;
 
-double deviations_of(double chance) {
+/// The Student t below which lies `chance`.
+double student_below(double chance, double degrees_of_freedom) {
     constexpr double least_chance = 1e-15;
-    return normal_quantile(std::clamp(chance, least_chance, 1.0 - least_chance));
+    return student_of_normal(normal_quantile(std::clamp(chance, least_chance, 1.0 - least_chance)), degrees_of_freedom);
 }
 
 double exact_enough(double wanted) {
@@ -39,7 +40,8 @@ void move_to_chance(double wanted, const FlightLines& lines, ChanceBelow& below)
     constexpr double tolerance = 1e-3;  // of the chance
     constexpr int most_rounds = 60;
     const double sd_percent = lines.sd_percent();
-    const double wanted_deviations = normal_quantile(wanted);
+    const double freedom = lines.degrees_of_freedom();
+    const double wanted_student = student_below(wanted, freedom);
     std::optional<double> seldom_percent;
     std::optional<double> often_percent;
     for (int round = 0; round < most_rounds && lines.flown() < most_flights; ++round) {
@@ -48,8 +50,7 @@ void move_to_chance(double wanted, const FlightLines& lines, ChanceBelow& below)
         const double at_percent = below.left_percent();
         (chance < wanted ? seldom_percent : often_percent) = at_percent;
         if (seldom_percent && often_percent && *often_percent - *seldom_percent < 1e-6 * sd_percent) break;
-        const double deviations = deviations_of(chance);
-        double next_percent = at_percent + sd_percent * (wanted_deviations - deviations);
+        double next_percent = at_percent + sd_percent * (wanted_student - student_below(chance, freedom));
         if (seldom_percent && often_percent &&
             (!(next_percent > *seldom_percent && next_percent < *often_percent) || round % 4 == 3))
             next_percent = std::midpoint(*seldom_percent, *often_percent);
@@ -76,7 +77,8 @@ ChanceBelow turned(FlightLines& lines, double left_percent, const IsKnown& is_kn
 
 double LandingChance::spare_percent(double probability) const {
     if (sd_percent == 0.0) return stated_spare_percent;
-    return sd_percent * (deviations_of(1.0 - probability) - deviations_of(below));
+    return sd_percent *
+           (student_below(1.0 - probability, degrees_of_freedom) - student_below(below, degrees_of_freedom));
 }
 
 LandingChance landing_chance(const Mission& mission, const FlightSpreads& spreads, double probability) {
@@ -84,6 +86,7 @@ LandingChance landing_chance(const Mission& mission, const FlightSpreads& spread
     FlightLines lines(mission, spreads);
     LandingChance result;
     result.sd_percent = lines.sd_percent();
+    result.degrees_of_freedom = lines.degrees_of_freedom();
     result.stated_spare_percent = lines.stated_percent() - mission.reserve_soc_percent;
     result.below = result.stated_spare_percent < 0.0 ? 1.0 : 0.0;
     if (result.sd_percent == 0.0) return result;
@@ -109,7 +112,9 @@ LandingQuantile landing_quantile(const Mission& mission, const FlightSpreads& sp
     if (quantile.sd_percent == 0.0) return quantile;
     const double wanted = 1.0 - probability;
     const auto is_exact = [&](const ChanceBelow& below) { return below.standard_error() <= exact_enough(wanted); };
-    ChanceBelow first(lines, lines.stated_percent() + normal_quantile(wanted) * quantile.sd_percent);
+    const double first_percent =
+        lines.stated_percent() + student_below(wanted, lines.degrees_of_freedom()) * quantile.sd_percent;
+    ChanceBelow first(lines, first_percent);
     move_to_chance(wanted, lines, first);
     auto below = turned(lines, first.left_percent(), is_exact);
     for (;;) {

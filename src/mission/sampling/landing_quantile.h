@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mission/sampling/flight_draws.h"
+#include "mission/sampling/student.h"
 
 namespace flightwatt::mission {
 
@@ -8,18 +9,19 @@ namespace flightwatt::mission {
 struct LandingQuantile {
     double left_percent = 0.0;    ///< so much or more; negative where that many fail: see Landing
     double margin_percent = 0.0;  ///< what the flight as stated is left with above that
-    double sd_percent = 0.0;      ///< of the flights, to first order
+    double sd_percent = 0.0;      ///< of the flights, to first order: see LandingChance
 };
 
 /// How many flights of a mission land with less than its reserve.
 struct LandingChance {
     double below = 0.0;
-    double standard_error = 0.0;        ///< of `below`, as it is computed
-    double sd_percent = 0.0;            ///< of the flights, to first order
+    double standard_error = 0.0;  ///< of `below`, as it is computed
+    double sd_percent = 0.0;      ///< the flights' unit of Student's t, to first order
+    double degrees_of_freedom = as_if_known;
     double stated_spare_percent = 0.0;  ///< what the flight as stated keeps above the reserve
 
-    /// What flights keep above the reserve with `probability`, if they are Gaussian; not negative just where as many
-    /// keep the reserve.
+    /// What flights keep above the reserve with `probability`, if they go by Student's t; not negative just where as
+    /// many keep the reserve.
     double spare_percent(double probability) const;
 };
 

@@ -20,13 +20,14 @@ LevelDeviation level_deviation(const MissionSetup& mission, Phase phase) {
         return {units::part_of(mean_w, *percent), DeviationSource::stated};
     }
     if (phase == Phase::cruise && mission.cruise_level && mission.cruise_level->sd_w)
-        return {*mission.cruise_level->sd_w, mission.cruise_path ? DeviationSource::path : DeviationSource::conditions};
+        return {*mission.cruise_level->sd_w, mission.cruise_path ? DeviationSource::path : DeviationSource::conditions,
+                0, mission.cruise_level->degrees_of_freedom};
     if (const auto& spread = model.level_spread) {
         const double weight_square_sum = forecast_of(*mission.mechanical, phase).weight_square_sum;
-        return {spread->level_sd_w * std::sqrt(1.0 + weight_square_sum), DeviationSource::flights,
-                static_cast<std::size_t>(spread->flights)};
+        return {spread->level_sd_w * std::sqrt(1.0 + weight_square_sum), DeviationSource::flights, spread->flights,
+                static_cast<double>(spread->flights - 1)};
     }
-    if (model.errors) return {model.errors->a0_w, DeviationSource::fit_error};
+    if (model.errors) return {model.errors->a0_w, DeviationSource::fit_error, 0, model.errors->degrees_of_freedom};
     return {};
 }
 

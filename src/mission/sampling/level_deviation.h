@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mission/mission.h"
+#include "mission/sampling/student.h"
 
 #include <cstddef>
 
@@ -21,11 +22,13 @@ struct LevelDeviation {
     double sd_w = 0.0;
     DeviationSource source = DeviationSource::none;
     std::size_t flights = 0;  ///< that it is of, if of the model's
+    /// Of the Student t that the level of a flight to come is, in units of sd_w; infinite: it is normal.
+    double degrees_of_freedom = as_if_known;
 };
 
 /// The first of the sources, in their order, that the mission has. Of the model's flights: their standard
 /// deviation times sqrt(1 + sum of their squared weights), which is that of a new flight about an average of
-/// few, taken as known. Needs a mechanical model.
+/// few; estimated from so few, it goes with Student's t. Needs a mechanical model.
 LevelDeviation level_deviation(const MissionSetup& mission, Phase phase);
 
 /// The deviation [W] where it is how flights differ. Throws InputError where the model does not say so. Needs one too.

@@ -1,6 +1,10 @@
 #include "mission/sampling/flight_draws.h"
 
+#include "base/statistics.h"
 #include "helpers/paper_missions.h"
+#include "helpers/steady_mission.h"
+#include "mission/sampling/student.h"
+#include "mission/simulation/least_power.h"
 
 #include <cmath>
 
@@ -8,6 +12,84 @@
 
 namespace flightwatt::mission {
 namespace {
+
+/// Flights of the cruise of a steady mission: mean powers and durations.
+Mission of_flights(const std::vector<double>& levels_w, const std::vector<double>& durations_s) {
+    auto mission = test::steady_mission();
+    auto& cruise = mission.mechanical->phases[flight::Phase::cruise];
+    cruise.level_spread = mechanical::LevelSpread{levels_w.size(), sample_sd(levels_w), 0.0, 1.0};
+    for (std::size_t i = 0; i < levels_w.size(); ++i) {
+        mechanical::FlightContribution flight;
+        flight.phases[flight::Phase::cruise] = mechanical::PhaseContribution{1.0 / static_cast<double>(levels_w.size()),
+                                                                             durations_s[i], 1.0, 100, levels_w[i]};
+        mission.mechanical->flights.push_back(flight);
+    }
+    return mission;
+}
+
+double level_w(const MissionSetup& flight) { return flight.mechanical->phases[flight::Phase::cruise].fourier.a0_w; }
+
+TEST(FlightDraws, TakeLevelsOfFewFlightsByStudentT) {
+    auto mission = of_flights({19.0, 20.0, 21.0}, {1000.0, 1000.0, 1000.0});
+    const auto spreads = find_spreads(mission);
+    const double sd_w = std::sqrt(1.0 + 1.0 / 3.0);
+    EXPECT_NEAR(spreads.level_sd_w[flight::Phase::cruise], sd_w, 1e-12);
+    EXPECT_NE(describe(spreads.sources)
+                  .find("cruise level (sd 1.155 W, of 3 flights, Student t with 2 degrees of "
+                        "freedom"),
+              std::string::npos)
+        << describe(spreads.sources);
+    std::vector<double> normals(count_normals(mission));
+    normals[level_of(flight::Phase::cruise)] = normal_half_width();
+    EXPECT_NEAR(level_w(flight_of(mission, spreads, normals)), 20.0 + sd_w * student_t_half_width(2.0), 1e-9);
+    mission.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
+    EXPECT_NEAR(level_w(flight_of(mission, find_spreads(mission), normals)), 20.0 + normal_half_width(), 1e-9)
+        << "what is stated is normal";
+}
+
+TEST(FlightDraws, MoveTogetherWhatWentTogether) {
+    // Strong flights were short ones, and their energy the same but for a second order: so is that of flights to come.
+    const auto mission = of_flights({19.0, 21.0}, {1050.0, 950.0});
+    const auto spreads = find_spreads(mission);
+    for (std::uint64_t i = 0; i < 200; ++i) {
+        const auto flight = draw_flight(mission, spreads, 5, i);
+        const double duration_s = flight.duration_s[flight::Phase::cruise];
+        if (duration_s <= 100.0 || duration_s >= 10000.0) continue;  // cut off there
+        EXPECT_NEAR(level_w(flight) * duration_s, 20.0 * 1000.0, 0.05);
+    }
+}
+
+TEST(FlightDraws, TakeNoPowerBack) {
+    auto mission = of_flights({10.0, 30.0}, {1000.0, 1000.0});
+    auto& curve = mission.mechanical->phases[flight::Phase::cruise].fourier;
+    for (const double swing_w : {0.0, 5.0, 25.0}) {  // the last is below 0 as planned
+        curve = {0.01, 20.0, {swing_w}, {0.0}};
+        const double planned_w = least_power_w(curve, {0.0, 1000.0}).power_w;
+        const auto spreads = find_spreads(mission);
+        EXPECT_NE(describe(spreads.sources).find(", 0 W in "), std::string::npos);
+        for (std::uint64_t i = 0; i < 100; ++i) {
+            const auto flown = draw_flight(mission, spreads, 1, i).mechanical->phases[flight::Phase::cruise].fourier;
+            EXPECT_GE(least_power_w(flown, {0.0, 1000.0}).power_w, std::min(0.0, planned_w) - 1e-6);
+            EXPECT_GE(energy_j(flown, 1000.0), -1e-6);
+        }
+    }
+}
+
+TEST(FlightDraws, LeaveOutFlightsThatDoNotCount) {
+    auto mission = of_flights({19.0, 20.0, 21.0}, {1000.0, 1100.0, 4000.0});
+    const auto cruise = flight::Phase::cruise;
+    mission.mechanical->flights[2].phases[cruise]->weight = 0.0;
+    const auto said = describe(find_spreads(mission).sources);
+    EXPECT_NE(said.find("of 2 flights, Student t with 1 degree of freedom"), std::string::npos) << said;
+}
+
+TEST(FlightDraws, SayWhereCorrelationsAreNotKnown) {
+    auto mission = of_flights({19.0, 20.0, 21.0}, {1000.0, 1000.0, 1000.0});
+    const std::string unknown = "correlated with nothing: the model has no mean_power_w";
+    EXPECT_EQ(describe(find_spreads(mission).sources).find(unknown), std::string::npos);
+    for (auto& flight : mission.mechanical->flights) flight.phases[flight::Phase::cruise]->mean_power_w.reset();
+    EXPECT_NE(describe(find_spreads(mission).sources).find(unknown), std::string::npos);
+}
 
 TEST(FlightDraws, TakeWhatTheModelsKnow) {
     auto mission = test::paper_mission("phased");

@@ -1,6 +1,7 @@
 #include "mission/sampling/landing_quantile.h"
 
 #include "base/statistics.h"
+#include "helpers/new_flights.h"
 #include "helpers/steady_mission.h"
 #include "mission/sampled_flights.h"
 
@@ -25,6 +26,34 @@ TEST(LandingQuantile, IsThatOfAGaussianWhereDepletionIsLinear) {
                     100.0 - 20.0 / 0.36 * (1.0 + 0.05 * normal_quantile(probability)), 2e-3);
     EXPECT_THROW(quantile_of(mission, 0.4), std::invalid_argument);
     EXPECT_THROW(quantile_of(mission, 1.0), std::invalid_argument);
+}
+
+TEST(LandingQuantile, IsThatOfStudentTWhereFewFlightsTellTheLevel) {
+    auto mission = steady_mission();
+    auto& cruise = mission.mechanical->phases[flight::Phase::cruise];
+    mission.battery.capacity_ah = 10.0;
+    mission.mechanical->phases[flight::Phase::cruise].flights = 3;
+    cruise.level_spread = mechanical::LevelSpread{3, 1.0, 0.0, 1.0};
+    const double sd_w = std::sqrt(1.0 + 1.0 / 3.0);
+    for (const double probability : {0.5, 0.8, 0.95, 0.999}) {
+        const double level_w = 20.0 + sd_w * student_of_normal(normal_quantile(probability), 2.0);
+        EXPECT_NEAR(quantile_of(mission, probability), 100.0 - level_w / 3.6, 5e-3) << probability;
+    }
+    const FlightSpreads spreads = find_spreads(mission);
+    mission.reserve_soc_percent = quantile_of(mission, 0.95);
+    const auto chance = landing_chance(mission, spreads, 0.95);
+    EXPECT_NEAR(chance.degrees_of_freedom, 2.0, 1e-9);
+    EXPECT_NEAR(chance.below, 0.05, 1e-4);
+    EXPECT_NEAR(chance.spare_percent(0.8), quantile_of(mission, 0.8) - mission.reserve_soc_percent, 0.01);
+}
+
+/// The models know nothing of the aircraft but their flights. scripts/bench_probability new-flights has more.
+TEST(LandingQuantile, KeepsItsPromiseInNewFlights) {
+    const auto kept = test::keep_promises({.flights = 3, .new_flights = 40}, 120, 6999, 3);
+    EXPECT_GT(kept.share, 0.93);
+    EXPECT_LT(kept.share, 0.97);
+    const auto as_if_known = test::keep_promises({.flights = 3, .as_if_known = true, .new_flights = 40}, 120, 6999, 3);
+    EXPECT_LT(as_if_known.share, 0.92) << "normal, and the phases independent";
 }
 
 TEST(LandingQuantile, IsExactForAProductOfPowerAndDuration) {

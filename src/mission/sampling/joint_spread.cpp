@@ -1,0 +1,78 @@
+#include "mission/sampling/joint_spread.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Eigenvalues>
+
+namespace flightwatt::mission {
+namespace {
+
+/// The flights that have the quantity of each of `spreads`, a row a flight, less their means.
+Eigen::MatrixXd centred_flights(const std::vector<EstimatedSpread>& spreads) {
+    std::size_t flights = 0;
+    for (const auto& spread : spreads) flights = std::max(flights, spread.of_flights.size());
+    std::vector<Eigen::RowVectorXd> rows;
+    for (std::size_t i = 0; i < flights; ++i) {
+        Eigen::RowVectorXd row(static_cast<Eigen::Index>(spreads.size()));
+        bool is_complete = true;
+        for (std::size_t k = 0; k < spreads.size(); ++k) {
+            if (!is_known_of_flights(spreads[k])) {
+                row(static_cast<Eigen::Index>(k)) = 0.0;
+                continue;
+            }
+            const auto& value = spreads[k].of_flights[i];
+            is_complete = is_complete && value.has_value();
+            row(static_cast<Eigen::Index>(k)) = value.value_or(0.0);
+        }
+        if (is_complete) rows.push_back(row);
+    }
+    Eigen::MatrixXd table(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(spreads.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) table.row(static_cast<Eigen::Index>(i)) = rows[i];
+    if (!rows.empty()) table.rowwise() -= table.colwise().mean().eval();
+    return table;
+}
+
+/// Correlations of the columns; none of a column that does not change.
+Eigen::MatrixXd correlations_of(const Eigen::MatrixXd& centred) {
+    Eigen::MatrixXd standard = centred;
+    for (Eigen::Index k = 0; k < standard.cols(); ++k) {
+        const double length = standard.col(k).norm();
+        if (length > 0.0) standard.col(k) /= length;
+    }
+    Eigen::MatrixXd correlations = standard.transpose() * standard;
+    correlations.diagonal().setOnes();
+    return correlations;
+}
+
+/// The symmetric root of a matrix that has no negative eigenvalues but for rounding.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& matrix) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(matrix);
+    const Eigen::VectorXd roots = parts.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    return parts.eigenvectors() * roots.asDiagonal() * parts.eigenvectors().transpose();
+}
+
+}  // namespace
+
+bool is_known_of_flights(const EstimatedSpread& spread) {
+    return std::ranges::count_if(spread.of_flights, [](const auto& value) { return value.has_value(); }) >= 2;
+}
+
+std::vector<JointSpread> joint_spreads(const std::vector<EstimatedSpread>& spreads) {
+    std::map<double, std::vector<EstimatedSpread>> of_freedom;
+    for (const auto& spread : spreads)
+        if (spread.sd > 0.0) of_freedom[spread.degrees_of_freedom].push_back(spread);
+    std::vector<JointSpread> joints;
+    for (const auto& [degrees_of_freedom, together] : of_freedom) {
+        JointSpread joint{degrees_of_freedom, {}, root_of(correlations_of(centred_flights(together)))};
+        for (std::size_t k = 0; k < together.size(); ++k) {
+            joint.quantities.push_back(together[k].quantity);
+            joint.factor.row(static_cast<Eigen::Index>(k)) *= together[k].sd;
+        }
+        joints.push_back(std::move(joint));
+    }
+    return joints;
+}
+
+}  // namespace flightwatt::mission

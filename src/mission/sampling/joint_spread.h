@@ -1,0 +1,41 @@
+#pragma once
+
+#include "flight/flight_phases.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flightwatt::mission {
+
+/// What differs between the phases of flights: levels [W] and durations [s], numbered level and duration of take-off,
+/// those of cruise, those of landing.
+inline constexpr std::size_t phase_quantities = 2 * flight::all_phases.size();
+constexpr std::size_t level_of(flight::Phase phase) { return 2 * static_cast<std::size_t>(phase); }
+constexpr std::size_t duration_of(flight::Phase phase) { return level_of(phase) + 1; }
+
+/// How one of them differs, as few flights show.
+struct EstimatedSpread {
+    std::size_t quantity = 0;
+    double sd = 0.0;  ///< of a flight to come
+    double degrees_of_freedom = 1.0;
+    std::vector<std::optional<double>> of_flights;  ///< the quantity itself in each of the model's flights
+};
+
+/// Quantities that rest on as many flights, and are drawn together.
+struct JointSpread {
+    double degrees_of_freedom = 1.0;
+    std::vector<std::size_t> quantities;  ///< rising
+    Eigen::MatrixXd factor;               ///< the quantities' deviations, in their order, are this times student_vector
+};
+
+/// Spreads of as many degrees of freedom together, with the correlations that the flights show which have all that is
+/// known of any. What is known of fewer than two flights is correlated with nothing.
+std::vector<JointSpread> joint_spreads(const std::vector<EstimatedSpread>& spreads);
+
+/// True of a spread that `spreads` draws by how it went together with the others of its flights.
+bool is_known_of_flights(const EstimatedSpread& spread);
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,57 @@
+#include "mission/sampling/student.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <boost/math/constants/constants.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double least_chance = 1e-300;
+
+/// The quantile of `to` beyond which lies what lies beyond `value` of `from`, by the chance of the nearer tail.
+template <typename From, typename To>
+double as_far_out(const From& from, const To& to, double value) {
+    using boost::math::cdf;
+    using boost::math::complement;
+    using boost::math::quantile;
+    const double beyond = std::max(least_chance, cdf(complement(from, std::abs(value))));
+    return std::copysign(quantile(complement(to, beyond)), value);
+}
+
+}  // namespace
+
+double chance_beyond(double deviations) {
+    return 0.5 * std::erfc(deviations / boost::math::constants::root_two<double>());
+}
+
+double student_of_normal(double normal, double degrees_of_freedom) {
+    if (normal == 0.0 || std::isinf(degrees_of_freedom)) return normal;
+    const boost::math::students_t_distribution<double> student(degrees_of_freedom);
+    return std::clamp(as_far_out(boost::math::normal_distribution<double>(), student, normal), -furthest_student,
+                      furthest_student);
+}
+
+double normal_of_student(double student, double degrees_of_freedom) {
+    if (student == 0.0 || std::isinf(degrees_of_freedom)) return student;
+    const boost::math::students_t_distribution<double> from(degrees_of_freedom);
+    return as_far_out(from, boost::math::normal_distribution<double>(), student);
+}
+
+std::vector<double> student_vector(std::span<const double> normals, double degrees_of_freedom) {
+    std::vector<double> numbers;
+    double square_sum = 0.0;
+    double freedom = degrees_of_freedom;
+    for (const double normal : normals) {
+        const double scale = std::isinf(freedom) ? 1.0 : std::sqrt((degrees_of_freedom + square_sum) / freedom);
+        numbers.push_back(scale * student_of_normal(normal, freedom));
+        square_sum += numbers.back() * numbers.back();
+        freedom += 1.0;
+    }
+    return numbers;
+}
+
+}  // namespace flightwatt::mission
