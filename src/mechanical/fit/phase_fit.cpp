@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numeric>
 #include <utility>
 
@@ -16,6 +17,8 @@ namespace flightwatt::mechanical {
 namespace {
 
 constexpr double bound_tolerance = 1e-6;  ///< nearer to an end than this part of it is standing at it
+/// The likeness of a harmonic's columns up to which their worse direction is told with at least half the information.
+constexpr double most_alike = 0.5;
 constexpr double constant_level = 1e-12;  ///< power that varies less than this part of its size is constant
 
 void check_options(const PhaseFitOptions& options) {
@@ -128,6 +131,22 @@ PhaseFit result_of(std::span<const PhaseSamples> flights, const Scaling& scaling
     return fit;
 }
 
+/// How alike the two columns of the highest harmonic are on the samples, 0 to 1: at 1 one vanishes, or both are one.
+double likeness(const std::vector<double>& tau, int order, double theta_rad) {
+    std::complex<double> sum = 0.0;
+    for (const double at : tau) sum += std::polar(1.0, 2.0 * order * theta_rad * at);
+    return std::abs(sum) / static_cast<double>(tau.size());
+}
+
+/// The highest frequency, from `high_rad` down, at which the samples tell the highest harmonic's amplitude and phase:
+/// evenly spread ones do not at half their own frequency, whatever happens between them.
+double told_frequency(const std::vector<double>& tau, int order, double low_rad, double high_rad) {
+    const double step_rad = std::numbers::pi / (16.0 * std::max(1, order));  // a sixteenth of the likeness's peak
+    double theta_rad = high_rad;
+    while (theta_rad > low_rad && likeness(tau, order, theta_rad) > most_alike) theta_rad -= step_rad;
+    return theta_rad;
+}
+
 }  // namespace
 
 std::size_t samples_needed(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
@@ -146,6 +165,9 @@ FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const Pha
                             flight.flight, flight.tau.size(), gap, options.order));
         }
         range.high_rad = std::min(range.high_rad, nyquist);
+        // Nothing is told even of the lowest: then the range stays what the gap allows.
+        const double told = told_frequency(flight.tau, std::max(1, options.order), range.low_rad, range.high_rad);
+        if (told > range.low_rad) range.high_rad = told;
     }
     return range;
 }

@@ -46,7 +46,9 @@ struct PhaseFit {
 std::size_t samples_needed(int order);
 
 /// Where theta may lie: from options.low_rad to options.high_periods periods, but not so high that in some
-/// flight the highest harmonic would have less than two samples a period (of the median gap between samples).
+/// flight the highest harmonic would have less than two samples a period (of the median gap between samples), or that
+/// its two columns are so alike on the samples that noise in one direction of them is more than twice (its variance)
+/// what it is on well spread ones: as near to two samples a period as evenly spread ones would allow.
 /// Throws UsageError for options that make no sense, NoAnswerError if the samples leave nothing of the range.
 FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const PhaseFitOptions& options);
 
