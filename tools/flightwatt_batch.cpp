@@ -20,8 +20,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <optional>
 
 #include <fmt/format.h>
@@ -36,11 +38,13 @@ struct BatchProgressState {
     std::optional<cli::ProgressBar> bar;  ///< on a terminal
     std::atomic<std::size_t> done = 0;
     std::size_t all = 0;
+    std::timed_mutex speaking;  ///< whoever tells of the run holds it; what says that it was stopped, for ever
 };
 
 /// Moves the bar on, or says what became of the log.
 batch::BatchProgress progress_of(const cli::StageCall& call, BatchProgressState& state) {
     return [&](std::size_t done, std::size_t all, const batch::BatchFlight& flight) {
+        const std::lock_guard lock(state.speaking);
         state.done = done;
         if (state.bar) {
             state.bar->show(done, all);
@@ -56,6 +60,8 @@ batch::BatchProgress progress_of(const cli::StageCall& call, BatchProgressState&
 
 std::function<void(int)> on_signal(const cli::StageCall& call, BatchProgressState& state) {
     return [&](int signal) {
+        constexpr std::chrono::milliseconds patience(100);  // with a standard error that nobody reads
+        [[maybe_unused]] const bool others_are_silent = state.speaking.try_lock_for(patience);
         if (state.bar) state.bar->clear();
         cli::note(call, fmt::format("stopped by {} after {} of {} logs; the same command goes on from there",
                                     signal_name(signal), state.done.load(), state.all));

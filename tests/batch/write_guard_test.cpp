@@ -52,6 +52,8 @@ int end_by(const std::vector<int>& signals, const std::function<void(const std::
     const auto child = ::fork();
     if (child == 0) {
         ::alarm(60);  // nothing of us stays behind
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+            std::signal(signal, SIG_DFL);  // a background job ignores one
         body([&] {
             if (::write(ready[1], "r", 1) != 1) ::_exit(99);
         });

@@ -3,6 +3,7 @@
 #include "helpers/test_paths.h"
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -73,6 +74,7 @@ ProgramResult run_shell(const std::string& command, const std::filesystem::path&
                       const std::filesystem::path& folder) {
     const auto child = ::fork();
     if (child != 0) return child;
+    std::signal(SIGINT, SIG_DFL);  // which a background job of a shell ignores
     const auto file = [&](const char* path) {
         return ::open((folder / path).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     };
