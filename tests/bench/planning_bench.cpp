@@ -135,7 +135,7 @@ int main(int argc, char** argv) {
     }
     try {
         const bool holds = compare_small(*missions, static_cast<unsigned>(*seed));
-        time_long(static_cast<unsigned>(*seed));
+        if (*missions >= 100) time_long(static_cast<unsigned>(*seed));  // a few are to be quick
         return holds ? 0 : 1;
     } catch (const std::exception& error) {
         fmt::print(stderr, "planning_bench: error: {}\n", error.what());
