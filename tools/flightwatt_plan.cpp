@@ -183,8 +183,8 @@ int main(int argc, char** argv) {
         R"(Makes the schedule of most utility that still lands with the reserve, and proves how much better any
 other could be. The result is the mission with that schedule, for simulate and compare. What [[schedule]]
 says beside [plan] is fixed. --longest-cruise and --largest-payload take the mission's own schedule, or the
-one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), plans are
-simulated and made anew until they land; the bound is then that of the highest voltage possible.)"};
+one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), or with a
+cut-off voltage, the battery itself is followed through every schedule that could be the best.)"};
     stage.max_inputs = 1;
     auto add = stage.options.add_options();
     add("probability", cli::value<double>("P"), "keep the reserve with this chance, as flights differ (0.95)");

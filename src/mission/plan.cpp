@@ -50,7 +50,7 @@ PlanStart start_of(const PlanningProblem& problem) { return {0.0, problem.initia
 /// What the search is asked anew where the simulation says that a schedule does not land, by a rounding error: for a
 /// little more than that.
 void make_stricter(const Trial& trial, double part, PlanningProblem& problem) {
-    constexpr double search_slack_percent = 1e-6;
+    constexpr double search_slack_percent = 3e-6;
     if (trial.summary.undeliverable)
         problem.battery.resistance_ohm *= 1.0 + part;
     else if (trial.summary.cut_off_at_s)

@@ -169,6 +169,7 @@ class EverySchedule {
         const auto& runs = planner.depletions.configurations;
         for (std::size_t c = 0; c < runs.size(); ++c) choices_.push_back({runs[c], planner.utility_per_s[c]});
         free_choices_ = planner.free_choices;
+        fly_least();
     }
 
     /// The most utility a second of those that land with the reserve; none if none does. Only what has more than `known`
@@ -184,6 +185,7 @@ class EverySchedule {
             duration_s += slots_[i].duration_s();
             for (auto& [run, states] : next) {
                 std::erase_if(states, [&](const State& state) {
+                    if (state.soc_percent < needed_percent(i + 1)) return true;
                     return known && state.utility + most_from(i + 1) <= *known * whole_s() * (1.0 - 1e-9);
                 });
                 keep_undominated(states);
@@ -217,6 +219,28 @@ class EverySchedule {
         bool is_done = true;
         auto operator<=>(const Run&) const = default;
     };
+
+    /// The charge over the slots if the least is drawn in each.
+    void fly_least() {
+        State state{problem_.initial_soc_percent, 0.0, 0.0};
+        for (std::size_t i = 0; i < slots_.size(); ++i) {
+            least_percent_.push_back(state.soc_percent);
+            std::size_t least = 0;  // the choices are in the order of their power
+            for (std::size_t c = 0; c < choices_.size(); ++c)
+                if (slots_[i].fixed && choices_[c].run == *slots_[i].fixed) least = c;
+            std::vector<State> end;
+            carry({state}, i, least, end);
+            if (end.empty()) break;
+            state = end.front();
+        }
+        least_percent_.resize(slots_.size(), 0.0);
+        least_percent_.push_back(state.soc_percent);
+    }
+
+    /// What a battery of less charge has to have at least: it takes no less to the end than the one above.
+    double needed_percent(std::size_t i) const {
+        return problem_.reserve_soc_percent + least_percent_[i] - least_percent_.back() - 1e-6;
+    }
 
     double whole_s() const { return mission::timeline_of(problem_.duration_s).duration_s; }
 
@@ -288,6 +312,7 @@ class EverySchedule {
     mission::MissionLoad load_;
     std::vector<Choice> choices_;
     std::size_t free_choices_ = 0;
+    std::vector<double> least_percent_;
 };
 
 }  // namespace flightwatt::test

@@ -240,7 +240,7 @@ Mission with_minimum_energy_schedule(const AnyMission& mission) {
 
 Plan plan_rest(const PlanningProblem& problem, const Planner& planner, const PlanStart& start,
                double reserve_soc_percent, const KnapsackEffort& effort) {
-    constexpr double rounding_percent = 1e-6;  // of the search's battery against the simulation's
+    constexpr double rounding_percent = 3e-6;  // of the search's battery against the simulation's
     constexpr double least_gap = 3e-5;
     const auto slots = slots_of(problem, start.time_s);
     auto knapsack = choices_of(problem, planner, start, slots);

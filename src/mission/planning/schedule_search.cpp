@@ -232,7 +232,7 @@ FoundSchedule least_schedule(const ScheduleQuestion& question, const KnapsackGra
 /// As much of the effort as time and memory allow for many slots, choices or long runs.
 KnapsackEffort affordable(KnapsackEffort effort, const KnapsackGraph& graph) {
     constexpr std::size_t most_slots_followed = 2000000;  // for the bound
-    constexpr std::size_t most_labels_made = 2000000;
+    constexpr std::size_t most_labels_made = 6000000;
     constexpr std::size_t fewest_labels = 50;
     constexpr std::size_t fewest_cells = 8;
     std::size_t work = 1;

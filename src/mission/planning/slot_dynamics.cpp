@@ -10,7 +10,7 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double longest_step_s = 4.0;
+constexpr double longest_step_s = 1.0;
 constexpr double shortest_step_s = 0.05;
 constexpr double wanted_agreement_percent = 1e-7;
 

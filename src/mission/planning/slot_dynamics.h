@@ -44,7 +44,7 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
                                 std::vector<double> compute_w, double step_s, double mechanical_factor = 1.0);
 
 /// The longest step [s] whose halving moves the end of neither the schedule of least power nor that of most by 1e-7
-/// points, of the steps tried: 4 s (or half the RC time constant), and halves of that down to 0.05 s.
+/// points, of the steps tried: 1 s (or half the RC time constant), and halves of that down to 0.05 s.
 double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
                 const std::vector<double>& compute_w);
 

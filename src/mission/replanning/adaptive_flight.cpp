@@ -219,7 +219,13 @@ class Flight {
 AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     if (!problem.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
     require_few_decisions(problem);
-    return {problem, make_planner(problem)};
+    AdaptivePlanner planner{problem, make_planner(problem)};
+    if (auto& step_s = planner.planner.step_s) {
+        double quick_s = 2.0;  // what that is off is far below what flights differ by
+        if (problem.battery.thevenin) quick_s = std::min(quick_s, problem.battery.thevenin->rc_time_constant_s / 2.0);
+        step_s = std::max(*step_s, quick_s);
+    }
+    return planner;
 }
 
 AdaptiveFlight fly_adaptively(const AdaptivePlanner& planner, const MissionSetup& actual,
