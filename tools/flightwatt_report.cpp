@@ -16,6 +16,7 @@
 #include "report/missions_section.h"
 #include "report/model_section.h"
 #include "report/page.h"
+#include "report/physical_section.h"
 
 #include <algorithm>
 #include <chrono>
@@ -82,6 +83,7 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
                         most, content.measured.size()));
         return;
     }
+    if (auto section = report::physical_section(content.measured)) page.sections.push_back(std::move(*section));
     page.sections.push_back(report::validation_section(leave_one_out(content.measured, content.fit->options)));
 }
 

@@ -40,7 +40,7 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
     section.html += paragraph(
         "Leave-one-out: the model is fitted to all flights but one and predicts the energy of that one from "
         "its durations alone; beside the constant mean power of each phase, the nearest flight's power, and, "
-        "where it was measured, cruise power after the airspeed cubed.");
+        "where it was measured, cruise power after the airspeed cubed and after airspeed and climb (physical).");
     add_figure(section, validation_figure(flights, "validation-errors"));
     section.html += table_html(cli::scores_table(flights), {"Scores of the models on flights not fitted", true, {}});
     constexpr std::size_t few = 20;

@@ -1,8 +1,11 @@
-// How often the 95 % interval of a prediction in flight holds the energy of a generated cruise.
-// usage: in_flight_coverage_bench [FITS]: flights excluded in turn, of each row, about; 1000 if not said
+// How often the 95 % interval of a prediction in flight holds the energy of a generated cruise, and how wide it is.
+// usage: in_flight_coverage_bench [FLIGHTS]: excluded in turn, or not seen, of each row, about; 2000 if not said
 
 #include "base/number.h"
+#include "base/units.h"
 #include "helpers/generated_flights.h"
+#include "helpers/generated_motion.h"
+#include "mechanical/prediction.h"
 #include "mechanical/validation.h"
 
 #include <cmath>
@@ -17,50 +20,103 @@ using namespace flightwatt;
 
 constexpr unsigned first_seed = 1001;  // the tests use those from 1 on
 
-void print_row(std::size_t flights, double until_s, std::size_t left_out) {
-    const auto sets = static_cast<unsigned>((left_out + flights - 1) / flights);
+/// Sums over the flights of a row.
+struct Row {
     double covered = 0.0;
-    double before_wh = 0.0;
-    double during_wh = 0.0;
+    double half_width_wh = 0.0;
+    double error_wh = 0.0;
+    double before_wh = 0.0;  ///< error of the prediction that does not look at the flight
+    std::size_t flights = 0;
+};
+
+void add(Row& row, double measured_wh, const mechanical::EnergyEstimate& estimate, double before_error_wh) {
+    const auto interval = interval_95(estimate).value();
+    row.covered += interval.contains(measured_wh) ? 1.0 : 0.0;
+    row.half_width_wh += 0.5 * (interval.high_wh - interval.low_wh);
+    row.error_wh += std::abs(estimate.energy_wh - measured_wh);
+    row.before_wh += std::abs(before_error_wh);
+    ++row.flights;
+}
+
+void print(std::size_t flights_of_model, double part, const Row& row) {
+    const auto count = static_cast<double>(row.flights);
+    const double covered = row.covered / count;
+    const double error = std::sqrt(covered * (1.0 - covered) / count);
+    fmt::print("{:>14}  {:>6.0f}  {:>8}  {:>6.1f} +- {:.1f}  {:>13.3f}  {:>15.3f}  {:>15.3f}\n", flights_of_model,
+               units::percent_of(part, 1.0), row.flights, units::percent_of(covered, 1.0),
+               units::percent_of(error, 1.0), row.half_width_wh / count, row.before_wh / count, row.error_wh / count);
+    std::fflush(stdout);
+}
+
+/// Cruises of the published model's shape and spread, without a path.
+void print_by_curve(std::size_t flights, double part, std::size_t left_out) {
+    constexpr double cruise_s = 600.0;
+    const auto sets = static_cast<unsigned>((left_out + flights - 1) / flights);
+    Row row;
     for (unsigned set = 0; set < sets; ++set) {
-        auto generated = test::generated(flights, first_seed + set, until_s);
+        auto generated = test::generated(flights, first_seed + set, part * cruise_s);
         for (auto& flight : generated) {  // the cruise alone is asked about
             flight.samples.phases[flight::Phase::takeoff].reset();
             flight.samples.phases[flight::Phase::landing].reset();
         }
-        const auto validated = leave_one_out(generated);
-        const auto during = score_of(validated, "in_flight", flight::Phase::cruise).value();
-        covered += during.coverage_95.value() / sets;
-        during_wh += during.mean_absolute_error_wh / sets;
-        before_wh += score_of(validated, "fourier", flight::Phase::cruise)->mean_absolute_error_wh / sets;
+        for (const auto& flight : leave_one_out(generated)) {
+            const auto during = predicted_energy(flight, "in_flight", flight::Phase::cruise).value();
+            const auto before = predicted_energy(flight, "fourier", flight::Phase::cruise).value();
+            add(row, during.measured_wh, during.estimate, before.estimate.energy_wh - before.measured_wh);
+        }
     }
-    const auto count = static_cast<double>(sets * flights);
-    const double error = std::sqrt(covered * (1.0 - covered) / count);
-    fmt::print("{:>14}  {:>7.0f}  {:>8.0f}  {:>6.1f} +- {:.1f}  {:>15.3f}  {:>15.3f}\n", flights - 1, until_s, count,
-               units::percent_of(covered, 1.0), units::percent_of(error, 1.0), before_wh, during_wh);
-    std::fflush(stdout);
+    print(flights - 1, part, row);
 }
 
-void run(std::size_t left_out) {
-    fmt::print(
-        "Cruises of about 600 s, seeds from {}; +- is the binomial error, as if folds shared no flights.\n\n"
-        "flights a model  until s   flights  covered, %     error before, Wh  error during, Wh\n",
-        first_seed);
-    for (const std::size_t flights : {4U, 5U, 9U, 12U}) {
-        for (const double until_s : {100.0, 300.0, 450.0}) print_row(flights, until_s, left_out);
+/// Flights of 1800 s with the drift of the real ones, whose path is known.
+void print_by_path(std::size_t flights, double part, std::size_t unseen) {
+    constexpr std::size_t bins = 60;
+    const test::MotionTruth truth{.level_sd = 0.05, .drift_sd_w = 6.5, .correlation_s = 60.0};
+    Row row;
+    for (unsigned set = 0; set < unseen; ++set) {
+        auto motions = test::made_up_motions(flights + 1, bins, truth, first_seed + set);
+        const auto flight = std::move(motions.back());
+        motions.pop_back();
+        const auto model = fit_power_terms(
+            motions, {mechanical::PowerTerm::drag, mechanical::PowerTerm::climb, mechanical::PowerTerm::descent});
+        const auto now = static_cast<std::ptrdiff_t>(std::round(part * bins));
+        mechanical::FlightProgress flown;
+        flown.motion.bins.assign(flight.bins.begin(), flight.bins.begin() + now);
+        flown.until_s = flight.bins[static_cast<std::size_t>(now)].start_s;
+        const std::vector<mechanical::MotionBin> ahead(flight.bins.begin() + now, flight.bins.end());
+        double measured_wh = 0.0;
+        for (const auto& bin : ahead) measured_wh += units::wh_from_joule(bin.power_w * bin.duration_s);
+        const double remaining_s = mechanical::usual_bin_s * static_cast<double>(ahead.size());
+        const auto values = mean_values(ahead);
+        const auto before = predict_by_motion(model, values, remaining_s);
+        add(row, measured_wh, predict_rest_by_motion(model, flown, values, remaining_s).energy,
+            before.energy_wh - measured_wh);
     }
+    print(flights, part, row);
+}
+
+void run(std::size_t flights_of_row) {
+    constexpr auto head =
+        "flights a model  flown %   flights  covered, %     half width, Wh  error before, Wh  error during, Wh\n";
+    fmt::print("Seeds from {}; +- is the binomial error, as if folds shared no flights.\n\n", first_seed);
+    fmt::print("By the curve, cruises of about 600 s:\n{}", head);
+    for (const std::size_t flights : {4U, 5U, 9U, 12U})
+        for (const double part : {0.10, 0.25, 0.50, 0.75}) print_by_curve(flights, part, flights_of_row);
+    fmt::print("\nBy the path that is known, flights of 1800 s whose drift is that of the real ones:\n{}", head);
+    for (const std::size_t flights : {2U, 3U, 4U, 8U})
+        for (const double part : {0.10, 0.25, 0.50, 0.75}) print_by_path(flights, part, flights_of_row);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const auto fits = argc == 2 ? parse_unsigned(argv[1]) : std::optional<std::uint64_t>(1000);
-    if (argc > 2 || !fits || *fits == 0) {
-        fmt::print(stderr, "usage: in_flight_coverage_bench [FITS]\n");
+    const auto flights = argc == 2 ? parse_unsigned(argv[1]) : std::optional<std::uint64_t>(2000);
+    if (argc > 2 || !flights || *flights == 0) {
+        fmt::print(stderr, "usage: in_flight_coverage_bench [FLIGHTS]\n");
         return 2;
     }
     try {
-        run(*fits);
+        run(*flights);
     } catch (const std::exception& error) {
         fmt::print(stderr, "in_flight_coverage_bench: error: {}\n", error.what());
         return 1;

@@ -245,6 +245,8 @@ TEST_F(HostileInput, IsANumberThatIsNone) {
         "predict " + log + "--model " + model + "--remaining 10 --until=",
         "predict " + log + "--model " + model + "--remaining 10 --until-log-time=",
         "predict " + log + "--model " + model + "--until 100 --remaining=",
+        "predict " + log + "--model " + model + "--until 100 --remaining 10 --airspeed=",
+        "predict " + log + "--model " + model + "--until 100 --remaining 10 --battery b.toml --initial-soc=",
         "validate " + log + "--until=",
         "synthesize " + model + "-o s --flights=",
         "synthesize " + model + "-o s --spread=",

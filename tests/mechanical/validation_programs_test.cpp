@@ -101,6 +101,52 @@ TEST(Validate, AirspeedExplainsTheCruiseOfRealFlights) {
     EXPECT_GT(json["cruise"]["constant_mean"]["mean_absolute_error_percent"], 20.0);
 }
 
+TEST(Validate, AirspeedAndClimbExplainFlightsThatWereNotFitted) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto json = Json::parse(run(test::scratch_dir(), "validate --json" + real_flights()).out);
+    const auto& physical = json["cruise"]["physical"];
+    EXPECT_EQ(physical["flights"], 3);
+    EXPECT_LT(physical["mean_absolute_error_percent"], 5.0);
+    EXPECT_EQ(physical["coverage_95"], 1.0);
+    EXPECT_EQ(json["total"]["physical"]["coverage_95"], 1.0);
+}
+
+TEST(Validate, KnowsTheRestOfACruiseByItsPath) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto json = Json::parse(run(test::scratch_dir(), "validate --until 300 --json" + real_flights()).out);
+    EXPECT_LT(json["cruise"]["in_flight_path"]["mean_absolute_error_wh"],
+              0.6 * json["cruise"]["in_flight"]["mean_absolute_error_wh"].get<double>());
+    EXPECT_EQ(json["cruise"]["in_flight_path"]["coverage_95"], 1.0);
+}
+
+TEST(Fit, TellsThePhysicsOfRealFlights) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto folder = test::scratch_dir();
+    const auto result = run(folder, "fit --model physical --json -o model.toml" + real_flights());
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto physical = Json::parse(result.out)["physical"];
+    EXPECT_EQ(physical["terms"][0]["term"], "drag");
+    EXPECT_NEAR(physical["terms"][0]["coefficient"], 0.0095, 0.001);
+    EXPECT_EQ(physical["terms"][1]["term"], "climb");
+    EXPECT_GT(physical["terms"][1]["coefficient"], 8.0);
+    EXPECT_EQ(physical["flights"].size(), 3u);
+    EXPECT_EQ(run(folder, "predict --model model.toml --until 300 --remaining 300 --airspeed 13" +
+                              real_flights().substr(0, real_flights().find(".data'") + 6))
+                  .code,
+              0);
+}
+
+TEST(Fit, RefusesAPhysicalModelWithoutAirspeed) {
+    const auto folder = test::scratch_dir();
+    const auto result = run(folder, "fit --model physical -o model.toml" + sample("01") + sample("02"));
+    EXPECT_EQ(result.code, 4);
+    EXPECT_THAT(result.err, HasSubstr("opterra_synthetic_01: its airspeed was not measured"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "model.toml"));
+    const auto usage = run(folder, "fit --model newton" + sample("01"));
+    EXPECT_EQ(usage.code, 2);
+    EXPECT_THAT(usage.err, HasSubstr("--model newton: expected fourier or physical"));
+}
+
 /// The lines of a log up to a time.
 void write_cut_log(const std::filesystem::path& from, const std::filesystem::path& to, double until_s) {
     std::ifstream in(from);
@@ -137,6 +183,58 @@ TEST(Predict, IsTheSameWhereARealLogEndsAtTheMoment) {
     expect_same_when_cut(test::shared_dir() / "flights" / "20_07_05__10_26_44.data", real_flights(), "300");
 }
 
+TEST(Predict, IsAboutNowWhereNoMomentIsGiven) {
+    const auto folder = test::scratch_dir();
+    ASSERT_EQ(run(folder, "fit -o model.toml" + samples()).code, 0);
+    write_cut_log(test::source_dir() / "logs" / "opterra_synthetic_01.data", folder / "growing.data", 400.0);
+    const auto now = run(folder, "predict --json --model model.toml --remaining 200 growing.data");
+    ASSERT_EQ(now.code, 0) << now.err;
+    const double until_s = Json::parse(now.out)["until_s"];
+    EXPECT_NEAR(until_s, 400.0, 2.0);
+    EXPECT_EQ(run(folder, "predict --json --model model.toml --remaining 200 --until now growing.data").out, now.out);
+    const auto at = run(folder, "predict --json --model model.toml --remaining 200 --until-log-time " +
+                                    std::to_string(until_s) + " growing.data");
+    EXPECT_EQ(at.out, now.out);
+}
+
+TEST(Predict, TellsHowTheBatteryLands) {
+    const auto folder = test::scratch_dir();
+    ASSERT_EQ(run(folder, "fit -o model.toml" + samples()).code, 0);
+    const auto pack = "'" + (test::source_dir() / "fits" / "battery" / "synthetic-3s.toml").string() + "'";
+    const auto predict = "predict --json --model model.toml --until 300 --remaining 290 --battery " + pack;
+    const auto result = run(folder, predict + sample("01"));
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto json = Json::parse(result.out);
+    const auto& battery = json["battery"];
+    EXPECT_NEAR(battery["initial_soc_percent"], 100.0, 0.5);
+    // The energy that was flown, and is to be, of about 37.5 Wh (3.2 Ah at 11.7 V)
+    EXPECT_NEAR(battery["soc_now_percent"], 100.0 - 100.0 * json["flown_energy_wh"].get<double>() / 37.5, 1.5);
+    EXPECT_NEAR(battery["at_landing"]["soc_percent"], 100.0 - 100.0 * json["total_energy_wh"].get<double>() / 37.5,
+                2.0);
+    EXPECT_GT(battery["at_landing"]["soc_percent"], battery["at_landing_high_energy"]["soc_percent"]);
+    EXPECT_GT(battery["at_landing"]["seconds_left"], 3000.0);
+    EXPECT_TRUE(battery["at_landing"]["fails_after_s"].is_null());
+    const auto low = Json::parse(run(folder, predict + " --initial-soc 9" + sample("01")).out)["battery"];
+    EXPECT_EQ(low["initial_soc_percent"], 9.0);
+    EXPECT_FALSE(low["at_landing"]["fails_after_s"].is_null());
+    EXPECT_EQ(run(folder, predict + " --initial-soc 1" + sample("01")).code, 4);  // more was drawn already
+    EXPECT_EQ(run(folder, predict + " --initial-soc 101" + sample("01")).code, 2);
+    EXPECT_EQ(run(folder, "predict --model model.toml --until 300 --remaining 9 --initial-soc 50" + sample("01")).code,
+              2);
+}
+
+TEST(Predict, NeedsAPhysicalModelForAnAirspeed) {
+    const auto folder = test::scratch_dir();
+    ASSERT_EQ(run(folder, "fit -o model.toml" + samples()).code, 0);
+    const auto predict = "predict --model model.toml --until 300 --remaining 100 ";
+    const auto result = run(folder, predict + std::string("--airspeed 13") + sample("01"));
+    EXPECT_EQ(result.code, 3);
+    EXPECT_THAT(result.err, HasSubstr("it has no [physical]"));
+    EXPECT_EQ(run(folder, predict + std::string("--airspeed 0") + sample("01")).code, 2);
+    EXPECT_EQ(run(folder, predict + std::string("--climb 1") + sample("01")).code, 2);
+    EXPECT_EQ(run(folder, predict + std::string("--airspeed 13 --level curve") + sample("01")).code, 2);
+}
+
 TEST(Predict, ForeseesASampleFlight) {
     const auto folder = test::scratch_dir();
     ASSERT_EQ(run(folder, "fit -o model.toml" + sample("02") + sample("03") + sample("04") + sample("05")).code, 0);
@@ -158,7 +256,8 @@ TEST(Predict, RefusesWhatCannotBePredicted) {
     };
     EXPECT_EQ(predict("--until 300 --remaining 100"), 0);
     EXPECT_EQ(predict("--until 300"), 2);
-    EXPECT_EQ(predict("--remaining 100"), 2);
+    EXPECT_EQ(predict("--remaining 100"), 4);  // now: landed
+    EXPECT_EQ(predict("--until soon --remaining 100"), 2);
     EXPECT_EQ(predict("--until 300 --until-log-time 300 --remaining 100"), 2);
     EXPECT_EQ(predict("--until 300 --remaining=-1"), 2);
     EXPECT_EQ(predict("--until nan --remaining 1"), 2);

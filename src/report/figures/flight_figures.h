@@ -2,6 +2,7 @@
 
 #include "battery/identification.h"
 #include "mechanical/model_errors.h"
+#include "mechanical/physical_fit.h"
 #include "mechanical/validation.h"
 #include "report/batch_content.h"
 #include "report/figure.h"
@@ -45,6 +46,11 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
 /// How far each model's prediction of the energy of a flight that it has not seen was off: a point a flight,
 /// a row a model.
 Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, const std::string& id);
+
+/// Power over airspeed: a point a stretch of a flight, coloured by its climb, and the model's power in level flight,
+/// climbing and descending. `flights` have bins.
+Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const mechanical::FlightMotion> flights,
+                       const std::string& id);
 
 /// Terminal voltage over time, measured and modelled, a panel a flight: the model predicts it from the
 /// current and the resting voltage alone. `records` is not empty.

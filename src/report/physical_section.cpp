@@ -1,0 +1,44 @@
+#include "report/physical_section.h"
+
+#include "base/error.h"
+#include "cli/output/physical_output.h"
+#include "mechanical/physical_fit.h"
+#include "report/figures/flight_figures.h"
+
+#include <vector>
+
+namespace flightwatt::report {
+namespace {
+
+std::optional<mechanical::PhysicalFit> fitted_motion(std::span<const mechanical::FlightMotion> flights) {
+    try {
+        return mechanical::fit_physical_model(flights);
+    } catch (const NoAnswerError&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights) {
+    std::vector<mechanical::FlightMotion> motions;
+    for (const auto& flight : flights)
+        if (!flight.motion.bins.empty()) motions.push_back(flight.motion);
+    const auto fit = fitted_motion(motions);
+    if (!fit) return std::nullopt;
+    Section section{"physical", "Power from airspeed and climb"};
+    section.html += paragraph(
+        "Power as a sum of physical terms of the motion through the air, fitted to the flights that measured airspeed and "
+        "altitude, averaged over about 30 s.");
+    add_figure(section, physical_figure(fit->model, motions, "physical-power"));
+    section.html += table_html(cli::constants_table(fit->model), {"Constants of the physical model", false, {}});
+    if (fit->model.level_sd) section.html += paragraph("+- is half the 95 % interval.", "soft");
+    section.html += table_html(cli::trials_table(*fit), {"Terms that were tried, with the error held back", false, {}});
+    section.html += paragraph(
+        "RMS error in W of stretches that were held back, without and with the term: a term is kept if it falls by 2.5 % or "
+        "more.",
+        "soft");
+    return section;
+}
+
+}  // namespace flightwatt::report

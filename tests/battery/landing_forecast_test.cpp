@@ -1,0 +1,76 @@
+#include "battery/landing_forecast.h"
+
+#include "base/error.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::battery {
+namespace {
+
+/// 10 V without resistance, 1 Ah: 36 kJ.
+Battery plain() {
+    Battery battery;
+    battery.voltage_v = 10.0;
+    battery.capacity_ah = 1.0;
+    return battery;
+}
+
+Battery thevenin() {
+    Battery battery;
+    battery.capacity_ah = 1.0;
+    battery.resistance_ohm = 0.1;
+    battery.thevenin = TheveninCircuit{{{0.0, 100.0}, {9.0, 12.0}}, 0.05, 20.0};
+    return battery;
+}
+
+TEST(LandingForecast, AddsUpEnergies) {
+    const std::vector<PowerStretch> ahead{{36.0, 500.0}, {18.0, 200.0}};  // half, and a tenth
+    const auto forecast = forecast_landing(plain(), {80.0, 0.0}, ahead);
+    EXPECT_NEAR(forecast.soc_now_percent, 80.0, 1e-12);
+    EXPECT_NEAR(forecast.soc_percent, 20.0, 1e-6);
+    EXPECT_NEAR(forecast.voltage_v, 10.0, 1e-12);
+    EXPECT_NEAR(forecast.seconds_left, 200.0, 1e-3);
+    EXPECT_FALSE(forecast.fails_after_s.has_value());
+}
+
+TEST(LandingForecast, SaysWhenTheBatteryFails) {
+    const std::vector<PowerStretch> ahead{{36.0, 500.0}, {18.0, 600.0}};
+    const auto forecast = forecast_landing(plain(), {60.0, 0.0}, ahead);
+    EXPECT_NEAR(forecast.fails_after_s.value(), 700.0, 1e-3);
+    EXPECT_NEAR(forecast.soc_percent, 0.0, 1e-9);
+    EXPECT_EQ(forecast.seconds_left, 0.0);
+}
+
+TEST(LandingForecast, SkipsStretchesThatTakeNoTime) {
+    const std::vector<PowerStretch> ahead{{36.0, 0.0}, {18.0, 200.0}};
+    EXPECT_NEAR(forecast_landing(plain(), {80.0, 0.0}, ahead).soc_percent, 70.0, 1e-6);
+}
+
+TEST(LandingForecast, FindsTheChargeOfAVoltageAtRest) {
+    EXPECT_NEAR(resting_soc_percent(thevenin(), 10.5), 50.0, 1e-9);
+    EXPECT_NEAR(resting_soc_percent(thevenin(), 20.0), 100.0, 1e-9);
+    EXPECT_NEAR(resting_soc_percent(thevenin(), 1.0), 0.0, 1e-9);
+}
+
+TEST(LandingForecast, StartsFromWhatWasDrawn) {
+    DischargeRecord record;
+    for (int i = 0; i <= 200; ++i) {
+        record.time_s.push_back(i);
+        record.voltage_v.push_back(11.0);
+        record.current_a.push_back(3.6);
+        record.mean_current_a.push_back(3.6);
+        record.charge_ah.push_back(0.001 * i);
+        record.used.push_back(true);
+    }
+    const auto state = state_after(thevenin(), record, 90.0);
+    EXPECT_NEAR(state.soc_percent, 70.0, 1e-9);
+    EXPECT_NEAR(state.rc_voltage_v, 0.18, 0.001);  // ten time constants at 3.6 A
+    EXPECT_EQ(state_after(plain(), record, 90.0).rc_voltage_v, 0.0);
+    EXPECT_THROW(state_after(plain(), record, 10.0), NoAnswerError);
+}
+
+}  // namespace
+}  // namespace flightwatt::battery

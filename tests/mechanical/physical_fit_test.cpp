@@ -1,0 +1,153 @@
+#include "mechanical/physical_fit.h"
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "helpers/generated_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+using test::made_up_motions;
+using test::MotionTruth;
+using testing::ElementsAre;
+
+const TermTrial& trial_of(const PhysicalFit& fit, const std::string& term) {
+    return *std::ranges::find(fit.trials, term, &TermTrial::term);
+}
+
+TEST(PhysicalFit, FindsTheTermsThatTheFlightsObey) {
+    const auto fit = fit_physical_model(made_up_motions(6, 50, {}, 1));
+    EXPECT_THAT(fit.model.terms, ElementsAre(PowerTerm::drag, PowerTerm::climb, PowerTerm::descent));
+    EXPECT_NEAR(fit.model.coefficients[PowerTerm::drag], 0.01, 0.0008);
+    EXPECT_NEAR(fit.model.coefficients[PowerTerm::climb], 12.0, 1.5);
+    EXPECT_NEAR(fit.model.coefficients[PowerTerm::descent], -7.0, 2.5);
+    EXPECT_EQ(fit.model.flights.size(), 6u);
+    EXPECT_EQ(fit.model.bins, 300u);
+    EXPECT_EQ(fit.folds, 6u);
+    EXPECT_TRUE(fit.held_back_flights);
+    EXPECT_EQ(fit.trials.size(), power_term_count + 1);
+}
+
+TEST(PhysicalFit, SaysWhatBecameOfEveryTerm) {
+    const auto fit = fit_physical_model(made_up_motions(6, 50, {}, 1));
+    for (const auto* kept : {"drag", "climb", "descent"}) EXPECT_TRUE(trial_of(fit, kept).kept) << kept;
+    for (const auto* dropped : {"induced", "turn", "constant", "throttle"}) {
+        EXPECT_FALSE(trial_of(fit, dropped).kept) << dropped;
+        EXPECT_FALSE(trial_of(fit, dropped).reason.empty()) << dropped;
+    }
+    EXPECT_LT(*trial_of(fit, "climb").rms_after_w, 0.8 * *trial_of(fit, "climb").rms_before_w);
+    // A throttle that tells the power is told of, and not kept.
+    EXPECT_LT(*trial_of(fit, "throttle").rms_after_w, 0.1 * *trial_of(fit, "throttle").rms_before_w);
+}
+
+/// Random drifts alone must not bring terms in: of 40 sets of flights, few may keep one that is not there.
+TEST(PhysicalFit, SeldomKeepsATermThatIsNotThere) {
+    int wrong = 0;
+    for (unsigned seed = 101; seed <= 140; ++seed) {
+        const auto fit = fit_physical_model(made_up_motions(4, 40, {}, seed));
+        for (const auto term : fit.model.terms)
+            if (term == PowerTerm::induced || term == PowerTerm::turn || term == PowerTerm::constant) ++wrong;
+    }
+    EXPECT_LE(wrong, 3);
+}
+
+TEST(PhysicalFit, TakesAConstantWherePowerDoesNotFollowTheAirspeed) {
+    auto flights = made_up_motions(4, 40, {.drag = 0.0, .climb = 0.0, .descent = 0.0}, 2);
+    for (auto& flight : flights)
+        for (auto& bin : flight.bins) bin.power_w += 25.0;
+    EXPECT_THAT(fit_physical_model(flights).model.terms, ElementsAre(PowerTerm::constant));
+}
+
+TEST(PhysicalFit, HasNoIntervalFromASingleFlight) {
+    const auto fit = fit_physical_model(made_up_motions(1, 50, {}, 1));
+    EXPECT_FALSE(fit.model.level_sd.has_value());
+    EXPECT_FALSE(fit.held_back_flights);
+    EXPECT_EQ(fit.folds, 5u);
+    EXPECT_TRUE(trial_of(fit, "climb").kept);
+    EXPECT_THAT(trial_of(fit, "constant").reason, testing::HasSubstr("1 flight cannot tell them apart"));
+}
+
+TEST(PhysicalFit, RefusesFlightsThatDoNotTell) {
+    EXPECT_THROW(fit_physical_model({}), NoAnswerError);
+    const std::vector<FlightMotion> silent{{"a", {}, false, "its airspeed was not measured"}};
+    try {
+        fit_physical_model(silent);
+        FAIL();
+    } catch (const NoAnswerError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("a: its airspeed was not measured"));
+    }
+    EXPECT_THROW(fit_physical_model(made_up_motions(2, 4, {}, 1)), NoAnswerError);
+    auto reversed = made_up_motions(3, 30, {.drift_sd_w = 0.1}, 1);
+    for (auto& flight : reversed)
+        for (auto& bin : flight.bins) bin.power_w = -bin.power_w;
+    EXPECT_THROW(fit_physical_model(reversed), NoAnswerError);
+}
+
+TEST(PhysicalFit, LeavesOutFlightsWithoutMotion) {
+    auto flights = made_up_motions(3, 30, {}, 1);
+    flights.push_back({"gap", {}, false, "its airspeed was not measured"});
+    const auto fit = fit_physical_model(flights);
+    ASSERT_EQ(fit.without.size(), 1u);
+    EXPECT_EQ(fit.without.front().flight, "gap");
+    EXPECT_EQ(fit.model.flights.size(), 3u);
+}
+
+TEST(PhysicalFit, DoesNotDependOnTheOrderOfFlights) {
+    auto flights = made_up_motions(4, 40, {}, 3);
+    const auto one = fit_physical_model(flights).model;
+    std::ranges::reverse(flights);
+    const auto other = fit_physical_model(flights).model;
+    EXPECT_EQ(one.terms, other.terms);
+    for (const auto term : one.terms)
+        EXPECT_NEAR(one.coefficients[term], other.coefficients[term], 1e-9 * std::abs(one.coefficients[term]));
+}
+
+/// How often the 95 % interval of the mean power of a new flight's cruise holds it.
+double coverage(std::size_t flights, const MotionTruth& truth, unsigned first_seed, int sets) {
+    int covered = 0;
+    for (int set = 0; set < sets; ++set) {
+        auto motions = made_up_motions(flights + 1, 40, truth, first_seed + static_cast<unsigned>(set));
+        const auto unseen = std::move(motions.back());
+        motions.pop_back();
+        const auto model = fit_power_terms(motions, {PowerTerm::drag, PowerTerm::climb, PowerTerm::descent});
+        double power_w = 0.0;
+        for (const auto& bin : unseen.bins) power_w += bin.power_w / static_cast<double>(unseen.bins.size());
+        const auto values = mean_values(unseen.bins);
+        const auto of = uncertainty_of(model, values, 1200.0).value();
+        if (std::abs(power_w - power_of_terms_w(model, values)) <=
+            student_t_half_width(of.degrees_of_freedom) * of.sd_w)
+            ++covered;
+    }
+    return static_cast<double>(covered) / sets;
+}
+
+/// Over models of 2, 3 and 6 flights.
+double coverage_of_few(const MotionTruth& truth, unsigned first_seed) {
+    constexpr int sets = 40;
+    double sum = 0.0;
+    for (const std::size_t flights : {2U, 3U, 6U}) {
+        sum += coverage(flights, truth, first_seed, sets) / 3.0;
+        first_seed += sets;
+    }
+    return sum;
+}
+
+// 120 flights: 95 % +- 2 points. The prior takes flights to differ by a tenth or less: where they do by as much, the
+// intervals of few flights hold a little less often.
+TEST(PhysicalFit, IntervalsHoldFlightsNotSeen) {
+    EXPECT_GE(coverage_of_few({.level_sd = 0.0}, 5001), 0.92);
+    EXPECT_GE(coverage_of_few({.level_sd = 0.05}, 6001), 0.90);
+    EXPECT_GE(coverage_of_few({.level_sd = 0.1}, 7001), 0.87);
+}
+
+}  // namespace
+}  // namespace flightwatt::mechanical

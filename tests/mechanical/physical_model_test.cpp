@@ -1,0 +1,95 @@
+#include "mechanical/physical_model.h"
+
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+PhysicalModel some_model() {
+    PhysicalModel model;
+    model.terms = {PowerTerm::drag, PowerTerm::climb};
+    model.coefficients[PowerTerm::drag] = 0.01;
+    model.coefficients[PowerTerm::climb] = 12.0;
+    model.covariance = {{1e-8, 2e-5}, {2e-5, 0.25}};
+    model.level_sd = 0.05;
+    model.degrees_of_freedom = 4.0;
+    model.drift_sd_w = 3.0;
+    model.correlation_s = 60.0;
+    model.drift_degrees_of_freedom = 50.0;
+    model.airspeed_m_per_s = {10.0, 18.0};
+    model.climb_m_per_s = {-3.0, 3.0};
+    return model;
+}
+
+TEST(PhysicalModel, SumsItsTerms) {
+    const auto model = some_model();
+    EXPECT_DOUBLE_EQ(power_w(model, {.airspeed_m_per_s = 10.0}), 10.0);
+    EXPECT_DOUBLE_EQ(power_w(model, {.airspeed_m_per_s = 10.0, .climb_m_per_s = 2.0}), 34.0);
+    EXPECT_DOUBLE_EQ(power_w(model, {.airspeed_m_per_s = 20.0, .climb_m_per_s = -1.0}), 68.0);
+}
+
+TEST(PhysicalModel, NeverTakesPowerBack) {
+    const AirMotion dive{.airspeed_m_per_s = 10.0, .climb_m_per_s = -5.0};
+    EXPECT_EQ(power_w(some_model(), dive), 0.0);
+    EXPECT_DOUBLE_EQ(power_of_terms_w(some_model(), terms_of(dive)), -50.0);
+}
+
+TEST(PhysicalModel, HasTheTermsOfPhysics) {
+    const auto values = terms_of({.airspeed_m_per_s = 20.0, .climb_m_per_s = -3.0, .load_factor = 2.0});
+    EXPECT_DOUBLE_EQ(values[PowerTerm::drag], 8000.0);
+    EXPECT_DOUBLE_EQ(values[PowerTerm::induced], 0.05);
+    EXPECT_DOUBLE_EQ(values[PowerTerm::turn], 0.15);
+    EXPECT_DOUBLE_EQ(values[PowerTerm::climb], -3.0);
+    EXPECT_DOUBLE_EQ(values[PowerTerm::descent], -3.0);
+    EXPECT_DOUBLE_EQ(values[PowerTerm::constant], 1.0);
+    EXPECT_DOUBLE_EQ(terms_of({.airspeed_m_per_s = 20.0, .climb_m_per_s = 3.0})[PowerTerm::descent], 0.0);
+}
+
+TEST(PhysicalModel, RefusesAMotionThatIsNone) {
+    EXPECT_THROW(terms_of({.airspeed_m_per_s = 0.0}), std::invalid_argument);
+    EXPECT_THROW(terms_of({.airspeed_m_per_s = -1.0}), std::invalid_argument);
+    EXPECT_THROW(terms_of({.airspeed_m_per_s = std::nan("")}), std::invalid_argument);
+    EXPECT_THROW(terms_of({.airspeed_m_per_s = 10.0, .climb_m_per_s = 0.0, .load_factor = -1.0}),
+                 std::invalid_argument);
+}
+
+TEST(PhysicalModel, NamesEachTermOnce) {
+    std::set<std::string> names;
+    for (const auto term : all_power_terms) {
+        names.insert(std::string(to_string(term)));
+        EXPECT_EQ(power_term_from(to_string(term)), term);
+        EXPECT_FALSE(unit_of(term).empty());
+    }
+    EXPECT_EQ(names.size(), power_term_count);
+    EXPECT_FALSE(power_term_from("lift").has_value());
+}
+
+TEST(PhysicalModel, AddsTheCausesOfItsUncertainty) {
+    const auto values = terms_of({.airspeed_m_per_s = 10.0, .climb_m_per_s = 1.0});  // 22 W
+    const auto of = uncertainty_of(some_model(), values, 6000.0).value();
+    const double level_w2 = std::pow(0.05 * 22.0, 2);
+    const double coefficients_w2 = 1e6 * 1e-8 + 2.0 * 1000.0 * 2e-5 + 0.25;
+    // 100 correlation times: 2 sd^2 / 100, less a hundredth of that.
+    const double drift_w2 = 2.0 * 9.0 / 100.0 * 0.99;
+    EXPECT_NEAR(of.sd_w, std::sqrt(level_w2 + coefficients_w2 + drift_w2), 1e-6);
+    EXPECT_GT(of.degrees_of_freedom, 4.0);
+    EXPECT_LT(of.degrees_of_freedom, 10.0);
+    EXPECT_GT(uncertainty_of(some_model(), values, 60.0)->sd_w, of.sd_w);
+    auto single = some_model();
+    single.level_sd.reset();
+    EXPECT_FALSE(uncertainty_of(single, values, 600.0).has_value());
+}
+
+TEST(PhysicalModel, KnowsWhatWasFlown) {
+    EXPECT_TRUE(was_flown(some_model(), {.airspeed_m_per_s = 12.0, .climb_m_per_s = 1.0}));
+    EXPECT_FALSE(was_flown(some_model(), {.airspeed_m_per_s = 9.0}));
+    EXPECT_FALSE(was_flown(some_model(), {.airspeed_m_per_s = 12.0, .climb_m_per_s = 4.0}));
+}
+
+}  // namespace
+}  // namespace flightwatt::mechanical
