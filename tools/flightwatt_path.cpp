@@ -75,8 +75,7 @@ int take_path(const cli::StageCall& call, const std::string& file) {
     auto options = cli::read_flight_options(call);
     options.power_required = false;
     const auto loaded = cli::load_flight(call, file, options);
-    if (!loaded.exclusion.empty())
-        throw InputError({file}, "is not used: " + loaded.exclusion, "--keep " + loaded.series.flight + " uses it");
+    if (!loaded.exclusion.empty()) throw InputError({file}, "is not used: " + loaded.exclusion);
     const auto path = flown_path(loaded.series, cruise_of(loaded, file));
     CsvWriter csv({path.is_geographic ? "latitude_deg" : "east_m", path.is_geographic ? "longitude_deg" : "north_m",
                    "altitude_m", "airspeed_m_per_s", "duration_s"},
