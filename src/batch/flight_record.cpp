@@ -6,6 +6,9 @@
 #include "flight/power_check.h"
 
 #include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -155,6 +158,18 @@ struct RecordWriter {
     }
 };
 
+/// A whole number that the type holds: nlohmann::json would convert any number, and one beyond the type's range has no
+/// defined value. Throws std::out_of_range.
+template <std::integral T>
+T whole(const Json& json) {
+    if (json.is_number_unsigned()) {
+        if (const auto value = json.get<std::uint64_t>(); std::in_range<T>(value)) return static_cast<T>(value);
+    } else if (json.is_number_integer()) {
+        if (const auto value = json.get<std::int64_t>(); std::in_range<T>(value)) return static_cast<T>(value);
+    }
+    throw std::out_of_range("not such a whole number");
+}
+
 /// Reads what it visits from an object. Throws what nlohmann::json throws, or std::bad_optional_access for a
 /// phase or covariate that there is none of.
 struct RecordReader {
@@ -168,7 +183,11 @@ struct RecordReader {
   private:
     template <typename T>
     static void read(const Json& json, T& value) {
-        json.get_to(value);
+        if constexpr (std::integral<T> && !std::same_as<T, bool>) {
+            value = whole<T>(json);
+        } else {
+            json.get_to(value);
+        }
     }
     template <typename T>
     static void read(const Json& json, std::optional<T>& value) {
@@ -188,7 +207,7 @@ struct RecordReader {
             const auto& fingerprints = json.at(i).at("fingerprints");
             const auto& times_s = json.at(i).at("times_s");
             for (std::size_t k = 0; k < fingerprints.size(); ++k)
-                of_precisions[i].push_back({fingerprints.at(k), times_s.at(k)});
+                of_precisions[i].push_back({whole<std::uint64_t>(fingerprints.at(k)), times_s.at(k)});
         }
     }
     static void read(const Json& json, std::vector<RecordedPhase>& phases) {
@@ -207,7 +226,7 @@ struct RecordReader {
                 samples.flight = flight.samples.flight;
                 visit_measured_phase(flight, phase, samples, RecordReader{object});
             }
-            measured.sorties.push_back(entry.at("sortie"));
+            measured.sorties.push_back(whole<std::size_t>(entry.at("sortie")));
         }
         for (const auto& entry : json.at("excluded")) {
             auto& exclusion = measured.exclusions.emplace_back();

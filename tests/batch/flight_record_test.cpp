@@ -1,10 +1,13 @@
 #include "batch/flight_record.h"
 
+#include "base/fingerprint.h"
 #include "flight/load_flight.h"
 #include "helpers/sample_logs.h"
 
 #include <string>
+#include <string_view>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -63,23 +66,47 @@ TEST(FlightRecord, SurvivesJson) {
     EXPECT_THAT(read->warnings, testing::ElementsAre("a \"quoted\" one", "another"));
 }
 
+/// As a record would be written that says this: with a seal that is right.
+std::string sealed(nlohmann::ordered_json json) {
+    json.erase("seal");
+    auto text = json.dump(1);
+    text.resize(text.size() - std::string_view("\n}").size());
+    Fingerprint fingerprint;
+    fingerprint.add(text);
+    return fmt::format("{},\n \"seal\": \"{}\"\n}}\n", text, fingerprint.hex());
+}
+
 TEST(FlightRecord, IsNoneWhereAnythingIsMissingOrWrong) {
     const auto text = to_json_text(full_record());
     EXPECT_FALSE(record_from_json(""));
     EXPECT_FALSE(record_from_json("[]"));
     EXPECT_FALSE(record_from_json(text.substr(0, text.size() / 2)));
-    const auto json = nlohmann::json::parse(text);
+    const auto json = nlohmann::ordered_json::parse(text);
+    ASSERT_TRUE(record_from_json(sealed(json)));
+    EXPECT_FALSE(record_from_json(json.dump(1))) << "its seal is of another text";
     for (const auto& [key, value] : json.items()) {
+        if (key == "seal") continue;
         auto lacking = json;
         lacking.erase(key);
-        EXPECT_FALSE(record_from_json(lacking.dump())) << key;
+        EXPECT_FALSE(record_from_json(sealed(lacking))) << key;
         auto wrong = json;
-        wrong[key] = value.is_array() ? nlohmann::json("x") : nlohmann::json::object();
-        EXPECT_FALSE(record_from_json(wrong.dump())) << key;
+        wrong[key] = value.is_array() ? nlohmann::json("x") : nlohmann::json::array({1});
+        EXPECT_FALSE(record_from_json(sealed(wrong))) << key;
     }
     auto other_phase = json;
     other_phase["phases"][0]["phase"] = "taxi";
-    EXPECT_FALSE(record_from_json(other_phase.dump()));
+    EXPECT_FALSE(record_from_json(sealed(other_phase)));
+}
+
+TEST(FlightRecord, IsNoneWhereACountIsNoWholeNumber) {
+    const auto json = nlohmann::ordered_json::parse(to_json_text(full_record()));
+    for (const nlohmann::ordered_json& number : {2.85192e19, -1.0, 0.5, 1e300}) {
+        for (const auto* place : {"/phases/0/samples", "/content/samples", "/content/decimals", "/phases/0/sortie"}) {
+            auto wrong = json;
+            wrong[nlohmann::ordered_json::json_pointer(place)] = number;
+            EXPECT_FALSE(record_from_json(sealed(wrong))) << place << " " << number;
+        }
+    }
 }
 
 TEST(FlightRecord, HoldsNamesThatAreNotUtf8) {
