@@ -100,7 +100,7 @@ TEST(FlightRecord, IsNoneWhereAnythingIsMissingOrWrong) {
 
 TEST(FlightRecord, IsNoneWhereACountIsNoWholeNumber) {
     const auto json = nlohmann::ordered_json::parse(to_json_text(full_record()));
-    for (const nlohmann::ordered_json& number : {2.85192e19, -1.0, 0.5, 1e300}) {
+    for (const double number : {2.85192e19, -1.0, 0.5, 1e300}) {
         for (const auto* place : {"/phases/0/samples", "/content/samples", "/content/decimals", "/phases/0/sortie"}) {
             auto wrong = json;
             wrong[nlohmann::ordered_json::json_pointer(place)] = number;
