@@ -103,8 +103,8 @@ TEST(IncludeArrows, HeadersInSubFoldersArePrivateToTheirModule) {
             if (!std::filesystem::exists(test::source_dir() / "src" / target) || !is_private(target)) continue;
             const auto place = below(file, folder);
             const auto first = place.begin()->string();
-            if (folder == std::string("tests") && (first == "helpers" || first == "bench")) continue;
-            // A test is inside of the module that it mirrors; helpers and benchmarks are inside of all.
+            if (folder == std::string("tests") && (first == "helpers" || first == "bench" || first == "fuzz")) continue;
+            // A test is inside of the module that it mirrors; helpers, benchmarks and fuzz targets are inside of all.
             EXPECT_TRUE(folder != std::string("tools") && module_of(place) == module_of(target))
                 << file.string() << ":" << line << ": " << target << " is private to " << module_of(target);
         }

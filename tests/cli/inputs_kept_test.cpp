@@ -163,13 +163,14 @@ void make_alias(Alias alias, const std::filesystem::path& input, const std::file
 }
 
 /// The metavariables of the help that name no file.
-const std::set<std::string> no_files{"N",          "S",      "X",   "P",    "M",           "W",
-                                     "A",          "AH",     "MB",  "HOW",  "NAME",        "TITLE",
-                                     "ID",         "FLIGHT", "A,B", "KIND", "A,B,power_w", "FLIGHT[:PHASE]=W",
-                                     "NAME[,NAME]"};
+const std::set<std::string> no_files{"N",           "S",      "X",       "P",      "M",           "W",
+                                     "A",           "AH",     "MB",      "HOW",    "NAME",        "TITLE",
+                                     "ID",          "FLIGHT", "A,B",     "KIND",   "A,B,power_w", "FLIGHT[:PHASE]=W",
+                                     "NAME[,NAME]", "S|now",  "M_PER_S", "PERCENT"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{"--published", "--model", "--disturb", "--sysfs", "--reference-figures"};
+const std::set<std::string> reading{"--published", "--model",     "--disturb",          "--sysfs",
+                                    "--battery",   "--path-from", "--reference-figures"};
 
 class InputsKept : public testing::Test {
   protected:

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flight/flight_phases.h"
+#include "mission/schedule.h"
 
 #include <cstddef>
 #include <optional>
@@ -12,9 +12,9 @@ namespace flightwatt::mission {
 
 /// What differs between the phases of flights: levels [W] and durations [s], numbered level and duration of take-off,
 /// those of cruise, those of landing.
-inline constexpr std::size_t phase_quantities = 2 * flight::all_phases.size();
-constexpr std::size_t level_of(flight::Phase phase) { return 2 * static_cast<std::size_t>(phase); }
-constexpr std::size_t duration_of(flight::Phase phase) { return level_of(phase) + 1; }
+inline constexpr std::size_t phase_quantities = 2 * all_phases.size();
+constexpr std::size_t level_of(Phase phase) { return 2 * static_cast<std::size_t>(phase); }
+constexpr std::size_t duration_of(Phase phase) { return level_of(phase) + 1; }
 
 /// How one of them differs, as few flights show.
 struct EstimatedSpread {

@@ -1,7 +1,8 @@
+#include "mechanical/fit/phase_fit.h"
+
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -62,8 +62,10 @@ TEST(SlotDynamics, AgreeWithTheDischarge) {
 TEST(SlotDynamics, ScaleMechanicalPower) {
     const auto plain = prepared(1);
     const auto windy = prepared(1, 1.2);
-    for (std::size_t k = 0; k < plain.dynamics.slots[1].mechanical_w.size(); ++k)
-        EXPECT_NEAR(windy.dynamics.slots[1].mechanical_w[k], 1.2 * plain.dynamics.slots[1].mechanical_w[k], 1e-12);
+    const auto& plain_w = plain.dynamics.slots[1].parts.at(0).mechanical_w;
+    const auto& windy_w = windy.dynamics.slots[1].parts.at(0).mechanical_w;
+    ASSERT_EQ(windy_w.size(), plain_w.size());
+    for (std::size_t k = 0; k < plain_w.size(); ++k) EXPECT_NEAR(windy_w[k], 1.2 * plain_w[k], 1e-12);
     EXPECT_NEAR(windy.dynamics.slots[1].mechanical_energy_j, 1.2 * plain.dynamics.slots[1].mechanical_energy_j, 1e-9);
 }
 
