@@ -361,8 +361,9 @@ int main(int argc, char** argv) {
 moves the cruise level of the model towards this flight's own, weighted by the variances between
 flights and within one. Nothing after the moment is looked at: a log that ends there gives the same.
 The remaining energy is that of --remaining more seconds of cruise and of a landing as in the model
-(its duration, too); with --airspeed the cruise is what the physical model says of it. The 95 % interval is that of the remaining energy; it holds the spread between
-flights, the drift within one, and that the model rests on few flights.)"};
+(its duration, too); with --airspeed the cruise is what the physical model says of it. The 95 %
+interval is that of the remaining energy; it holds the spread between flights, the drift within one,
+and that the model rests on few flights.)"};
     stage.max_inputs = 1;
     auto add = stage.options.add_options();
     add("model", cli::input_file("MODEL.toml"), "from flightwatt fit, of two flights or more");
