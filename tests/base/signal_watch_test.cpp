@@ -14,6 +14,9 @@ bool is_readable(int file) {
 }
 
 TEST(SignalWatch, KeepsSignalsUntilTheyAreAskedFor) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        std::signal(signal, SIG_DFL);  // a background job of a shell ignores SIGINT, nohup SIGHUP
+    }
     const SignalWatch watch;
     EXPECT_FALSE(watch.caught());
     EXPECT_FALSE(is_readable(watch.file()));
@@ -36,6 +39,7 @@ TEST(SignalWatch, LeavesIgnoredSignalsIgnored) {
 }
 
 TEST(SignalWatch, EndsWithItsScope) {
+    std::signal(SIGTERM, SIG_DFL);
     { const SignalWatch watch; }
     EXPECT_EXIT(std::raise(SIGTERM), testing::KilledBySignal(SIGTERM), "");
 }
