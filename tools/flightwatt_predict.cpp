@@ -7,16 +7,20 @@
 #include "cli/numeric_options.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
+#include "cli/output/mission_output.h"
+#include "cli/output/prediction_output.h"
 #include "cli/stage.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_series.h"
 #include "mechanical/model_check.h"
 #include "mechanical/prediction.h"
+#include "mission/mission_file.h"
+#include "mission/remaining_path.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,6 +29,8 @@
 namespace {
 
 using namespace flightwatt;
+using cli::BatteryPrediction;
+using cli::Prediction;
 
 /// The moment that is asked for: since lift-off, on the log's clock, or (none of them) the end of the log.
 struct Moment {
@@ -69,17 +75,19 @@ double time_of(const Moment& moment, const std::vector<flight::FlightSeries>& ca
     return *first_s;
 }
 
-/// The model that --model names. Its spread is what the interval rests on.
+/// Refuses a model whose interval would rest on nothing.
+void require_spread(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file) {
+    if (model.phases[phase].level_spread) return;
+    throw InputError({file}, fmt::format("[{}] has no spread: how much flights differ", to_string(phase)),
+                     "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
+}
+
+/// The model that --model names.
 mechanical::MechanicalModel read_spread_model(const cli::StageCall& call) {
-    if (!call.has("model")) throw UsageError("no model given: expected --model MODEL.toml");
     const auto file = call.get<std::string>("model");
     auto model = mechanical::read_mechanical_model(file);
     for (const auto& warning : model_warnings(model)) cli::warn(call, fmt::format("{}: {}", file, warning));
-    for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) {
-        if (model.phases[phase].level_spread) continue;
-        throw InputError({file}, fmt::format("[{}] has no spread: how much flights differ", to_string(phase)),
-                         "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
-    }
+    for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) require_spread(model, phase, file);
     return model;
 }
 
@@ -120,26 +128,6 @@ void warn_of_reach(const cli::StageCall& call, const mechanical::PhaseModel& cru
                           law.covariate == mechanical::Covariate::airspeed_cubed ? "" : ": taken as the nearest"));
 }
 
-/// The battery's part of it.
-struct BatteryPrediction {
-    battery::LandingForecast expected;
-    battery::LandingForecast worst;  ///< where the energy is that at the high end of its interval
-    double initial_soc_percent = 0.0;
-    bool initial_is_measured = false;  ///< by the resting voltage
-};
-
-struct Prediction {
-    mechanical::FlightProgress flown;
-    double remaining_s = 0.0;
-    mechanical::RestPrediction cruise;
-    mechanical::EnergyEstimate landing;
-    double landing_s = 0.0;
-    mechanical::EnergyEstimate rest;
-    mechanical::EnergyInterval interval;
-    std::optional<double> initial_soc_percent = {};  ///< as it was given
-    std::optional<BatteryPrediction> battery = {};
-};
-
 /// A flight at a moment, and what its log held by then.
 struct KnownFlight {
     mechanical::FlightProgress flown;
@@ -171,6 +159,15 @@ KnownFlight read_progress(const cli::StageCall& call, const Moment& moment) {
     return {std::move(flown), std::move(loaded.series)};
 }
 
+/// What the prediction rests on beside the log.
+struct Basis {
+    mechanical::MechanicalModel model;
+    double landing_s = 0.0;
+    std::optional<double> remaining_s = {};              ///< none: what is left of the path
+    std::optional<mechanical::AirMotion> motion = {};    ///< of --airspeed
+    std::shared_ptr<const mission::PathPlan> path = {};  ///< of --mission
+};
+
 /// How the rest of the cruise is to be flown, where --airspeed says it.
 std::optional<mechanical::AirMotion> motion_ahead(const cli::StageCall& call) {
     constexpr double fastest_m_per_s = 200.0;
@@ -186,26 +183,96 @@ std::optional<mechanical::AirMotion> motion_ahead(const cli::StageCall& call) {
     return motion;
 }
 
+/// Refuses a model that does not know how power follows from airspeed and climb, or how flights differ in it.
+void require_physical(const mechanical::MechanicalModel& model, const std::string& file, const char* option) {
+    if (model.physical && model.physical->level_sd) return;
+    throw InputError(
+        {file}, model.physical ? "its [physical] rests on a single flight" : "it has no [physical]",
+        fmt::format("{} needs one of two flights or more: flightwatt fit --model physical FLIGHT...", option));
+}
+
+/// Model and path of the mission that --mission names.
+Basis read_mission_basis(const cli::StageCall& call) {
+    if (call.has("model")) throw UsageError("--mission names its model: leave --model out");
+    if (call.has("airspeed") || call.has("climb") || !call.options["level"].defaulted())
+        throw UsageError("--mission says how the rest is flown: leave --airspeed, --climb and --level out");
+    const auto file = call.get<std::string>("mission");
+    mission::MissionReading reading;
+    reading.may_lack_schedule = true;
+    const auto mission = mission::read_mission(file, reading);
+    const auto& setup = setup_of(mission);
+    if (!setup.cruise_path) {
+        throw InputError({file}, "the mission has no [path]",
+                         "say where it flies (docs/missions.md, path), or give --model and --remaining");
+    }
+    cli::warn_of_setup(call, setup);
+    Basis basis{*setup.mechanical, setup.duration_s[flight::Phase::landing]};
+    basis.path = setup.cruise_path->plan;
+    basis.model.physical = basis.path->power;  // where the model has but a law of airspeed, that
+    require_physical(basis.model, file, "--mission");
+    if (basis.landing_s > 0.0) require_spread(basis.model, flight::Phase::landing, file);
+    return basis;
+}
+
+Basis read_basis(const cli::StageCall& call) {
+    Basis basis;
+    if (call.has("mission")) {
+        basis = read_mission_basis(call);
+    } else {
+        if (!call.has("model"))
+            throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
+        if (!call.has("remaining")) throw UsageError("no time left given: expected --remaining SECONDS");
+        basis.motion = motion_ahead(call);
+        basis.model = read_spread_model(call);
+        basis.landing_s = basis.model.phases[flight::Phase::landing].duration_s;
+        if (basis.motion) require_physical(basis.model, call.get<std::string>("model"), "--airspeed");
+    }
+    constexpr double longest_s = 1e6;  // no battery flies for eleven days
+    if (call.has("remaining")) basis.remaining_s = cli::number_option(call, "remaining", 0.0, longest_s);
+    return basis;
+}
+
 /// The cruise by the physical model at this flight's own level.
-mechanical::RestPrediction predict_motion(const cli::StageCall& call, const mechanical::MechanicalModel& model,
+mechanical::RestPrediction predict_motion(const cli::StageCall& call, const mechanical::PhysicalModel& model,
                                           const mechanical::FlightProgress& flown, const mechanical::AirMotion& motion,
                                           double remaining_s) {
-    const auto file = call.get<std::string>("model");
-    if (!model.physical || !model.physical->level_sd) {
-        throw InputError({file}, model.physical ? "its [physical] rests on a single flight" : "it has no [physical]",
-                         "--airspeed needs one of two flights or more: flightwatt fit --model physical FLIGHT...");
-    }
-    if (!flown.motion.lacks.empty())
-        cli::warn(call, fmt::format("this flight's own level is not known: {}", flown.motion.lacks));
-    const auto& speeds = model.physical->airspeed_m_per_s;
-    if (!was_flown(*model.physical, motion)) {
+    const auto& speeds = model.airspeed_m_per_s;
+    if (!was_flown(model, motion)) {
         cli::warn(call,
                   fmt::format("{:.1f} m/s at {:+.1f} m/s of climb is beyond what the model's flights flew: {:.1f} to "
                               "{:.1f} m/s, {:+.1f} to {:+.1f} m/s of climb",
                               motion.airspeed_m_per_s, motion.climb_m_per_s, speeds.low, speeds.high,
-                              model.physical->climb_m_per_s.low, model.physical->climb_m_per_s.high));
+                              model.climb_m_per_s.low, model.climb_m_per_s.high));
     }
-    return predict_rest_by_motion(*model.physical, flown, terms_of(motion), remaining_s);
+    return predict_rest_by_motion(model, flown, terms_of(motion), remaining_s);
+}
+
+/// Where on the path the flight is: after as long as it has cruised, or --remaining before its end.
+mission::PathPlace place_on_path(const mission::FlownPath& path, const mechanical::FlightProgress& flown,
+                                 const std::optional<double>& remaining_s) {
+    if (remaining_s && *remaining_s > path.duration_s) {
+        throw UsageError(
+            fmt::format("--remaining {:g}: the mission's path takes only {:.1f} s", *remaining_s, path.duration_s));
+    }
+    if (!remaining_s && flown.cruise_s() > path.duration_s) {
+        throw NoAnswerError(
+            fmt::format("the flight has cruised for {:.1f} s and the mission's path takes {:.1f} s: say "
+                        "with --remaining how much of it is left",
+                        flown.cruise_s(), path.duration_s));
+    }
+    return place_at(path, remaining_s ? path.duration_s - *remaining_s : flown.cruise_s());
+}
+
+/// The cruise along what is left of the path.
+mechanical::RestPrediction predict_along(const cli::StageCall& call, const mission::PathPlan& plan,
+                                         const mechanical::FlightProgress& flown, Prediction& prediction,
+                                         const std::optional<double>& remaining_s) {
+    const auto path = fly_path(plan.path, plan.wind);
+    const auto place = place_on_path(path, flown, remaining_s);
+    for (const auto& warning : path_warnings(plan, rest_from(path, place))) cli::warn(call, warning);
+    const auto rest = predict_rest_of_path(plan, flown, place);
+    prediction.remaining_s = rest.duration_s;
+    return rest.cruise;
 }
 
 /// What --initial-soc gives.
@@ -217,7 +284,8 @@ std::optional<double> read_initial_soc(const cli::StageCall& call) {
 
 /// The battery that --battery names through the rest, from what was measured of it until now.
 std::optional<BatteryPrediction> predict_battery(const cli::StageCall& call, const flight::FlightSeries& series,
-                                                 const Prediction& prediction) {
+                                                 const Prediction& prediction,
+                                                 const std::optional<double>& initial_soc_percent) {
     const auto file = call.maybe<std::string>("battery");
     if (!file) return std::nullopt;
     const auto battery = battery::read_battery(*file);
@@ -226,9 +294,9 @@ std::optional<BatteryPrediction> predict_battery(const cli::StageCall& call, con
     for (const auto& note : records.notes) cli::note(call, note);
     const auto& record = records.records.back();
     BatteryPrediction of;
-    of.initial_is_measured = !prediction.initial_soc_percent;
-    if (prediction.initial_soc_percent) {
-        of.initial_soc_percent = *prediction.initial_soc_percent;
+    of.initial_is_measured = !initial_soc_percent;
+    if (initial_soc_percent) {
+        of.initial_soc_percent = *initial_soc_percent;
     } else if (battery.thevenin) {
         const double rest_v = record.resting_voltage_v + battery.resistance_ohm * record.resting_current_a;
         of.initial_soc_percent = battery::resting_soc_percent(battery, rest_v);
@@ -236,16 +304,7 @@ std::optional<BatteryPrediction> predict_battery(const cli::StageCall& call, con
         throw InputError({*file}, "a battery of constant voltage does not tell its state of charge",
                          "give --initial-soc PERCENT");
     }
-    const auto now = battery::state_after(battery, record, of.initial_soc_percent);
-    const auto forecast = [&](double part) {
-        const std::array<battery::PowerStretch, 2> ahead{
-            {{prediction.cruise.remaining_mean_w * part, prediction.remaining_s},
-             {units::joule_from_wh(prediction.landing.energy_wh) / prediction.landing_s * part, prediction.landing_s}}};
-        return battery::forecast_landing(battery, now, ahead);
-    };
-    of.expected = forecast(1.0);
-    of.worst =
-        forecast(prediction.rest.energy_wh > 0.0 ? prediction.interval.high_wh / prediction.rest.energy_wh : 1.0);
+    land(battery, record, prediction, of);
     return of;
 }
 
@@ -259,90 +318,35 @@ mechanical::RestPrediction predict_level(const cli::StageCall& call, const mecha
     return rest;
 }
 
+mechanical::RestPrediction predict_cruise(const cli::StageCall& call, const Basis& basis,
+                                          const mechanical::FlightProgress& flown, Prediction& prediction) {
+    prediction.by_motion = basis.path || basis.motion;
+    if (prediction.by_motion && !flown.motion.lacks.empty())
+        cli::warn(call, fmt::format("this flight's own level is not known: {}", flown.motion.lacks));
+    if (basis.path) return predict_along(call, *basis.path, flown, prediction, basis.remaining_s);
+    prediction.remaining_s = basis.remaining_s.value();
+    if (basis.motion)
+        return predict_motion(call, basis.model.physical.value(), flown, *basis.motion, prediction.remaining_s);
+    return predict_level(call, basis.model, flown, prediction.remaining_s);
+}
+
 Prediction predict_flight(const cli::StageCall& call) {
     Prediction prediction;
     const auto moment = moment_of(call);
-    if (!call.has("remaining")) throw UsageError("no time left given: expected --remaining SECONDS");
-    constexpr double longest_s = 1e6;  // no battery flies for eleven days
-    prediction.remaining_s = cli::number_option(call, "remaining", 0.0, longest_s);
-    const auto motion = motion_ahead(call);
-    prediction.initial_soc_percent = read_initial_soc(call);
-    const auto model = read_spread_model(call);
+    const auto initial_soc_percent = read_initial_soc(call);
+    const auto basis = read_basis(call);
     auto known = read_progress(call, moment);
     prediction.flown = std::move(known.flown);
-    prediction.cruise = motion ? predict_motion(call, model, prediction.flown, *motion, prediction.remaining_s)
-                               : predict_level(call, model, prediction.flown, prediction.remaining_s);
-    prediction.landing_s = model.phases[flight::Phase::landing].duration_s;
-    prediction.landing =
-        mechanical::predict_before_flight(forecast_of(model, flight::Phase::landing), prediction.landing_s);
+    prediction.cruise = predict_cruise(call, basis, prediction.flown, prediction);
+    prediction.landing_s = basis.landing_s;
+    if (basis.landing_s > 0.0) {
+        prediction.landing =
+            mechanical::predict_before_flight(forecast_of(basis.model, flight::Phase::landing), basis.landing_s);
+    }
     prediction.rest = sum_of(prediction.cruise.energy, prediction.landing);
     prediction.interval = interval_95(prediction.rest).value();
-    prediction.battery = predict_battery(call, known.series, prediction);
+    prediction.battery = predict_battery(call, known.series, prediction, initial_soc_percent);
     return prediction;
-}
-
-std::string landing_text(const battery::LandingForecast& forecast) {
-    if (forecast.fails_after_s) return fmt::format("the battery fails in {:.1f} min", *forecast.fails_after_s / 60.0);
-    return fmt::format("{:.1f} % and {:.2f} V at landing, {:.1f} min of cruise left", forecast.soc_percent,
-                       forecast.voltage_v, forecast.seconds_left / 60.0);
-}
-
-std::string battery_text(const std::optional<BatteryPrediction>& battery) {
-    if (!battery) return "";
-    return fmt::format(
-        "battery    {:.1f} % now, from {:.1f} % {}; {}\n"
-        "           at the high end of the interval {}\n",
-        battery->expected.soc_now_percent, battery->initial_soc_percent,
-        battery->initial_is_measured ? "by its voltage at rest" : "as given", landing_text(battery->expected),
-        landing_text(battery->worst));
-}
-
-std::string text_of(const Prediction& prediction) {
-    const auto& [flown, remaining_s, cruise, landing, landing_s, rest, interval, initial_soc, battery] = prediction;
-    return fmt::format(
-               "flown      {:.3f} Wh from lift-off at {:.1f} s to {:.1f} s of the log ({:.1f} s)\n"
-               "cruise     {:.3f} Wh in {:.0f} s more: {:.2f} W; so far {:.2f} W, expected {:.2f} W, of the "
-               "difference {:.0f} % goes on\n"
-               "landing    {:.3f} Wh in {:.0f} s, as in the model\n"
-               "remaining  {:.3f} Wh, 95 % interval {:.3f} to {:.3f} Wh\n"
-               "total      {:.3f} Wh\n",
-               flown.energy_wh, flown.lift_off_s, flown.until_s, flown.until_s - flown.lift_off_s,
-               cruise.energy.energy_wh, remaining_s, cruise.remaining_mean_w, cruise.flown_w, cruise.expected_w,
-               units::percent_of(cruise.gain, 1.0), landing.energy_wh, landing_s, rest.energy_wh, interval.low_wh,
-               interval.high_wh, flown.energy_wh + rest.energy_wh) +
-           battery_text(battery);
-}
-
-nlohmann::ordered_json json_of(const battery::LandingForecast& forecast) {
-    return {{"soc_percent", forecast.soc_percent},
-            {"voltage_v", forecast.voltage_v},
-            {"seconds_left", forecast.seconds_left},
-            {"fails_after_s", cli::optional_json(forecast.fails_after_s)}};
-}
-
-nlohmann::ordered_json json_of(const Prediction& prediction) {
-    const auto& [flown, remaining_s, cruise, landing, landing_s, rest, interval, initial_soc, battery] = prediction;
-    nlohmann::ordered_json json{{"flown_energy_wh", flown.energy_wh},
-                                {"remaining_energy_wh", rest.energy_wh},
-                                {"interval_95_wh", {interval.low_wh, interval.high_wh}},
-                                {"total_energy_wh", flown.energy_wh + rest.energy_wh},
-                                {"lift_off_s", flown.lift_off_s},
-                                {"until_s", flown.until_s},
-                                {"cruise",
-                                 {{"remaining_s", remaining_s},
-                                  {"energy_wh", cruise.energy.energy_wh},
-                                  {"flown_mean_w", cruise.flown_w},
-                                  {"expected_mean_w", cruise.expected_w},
-                                  {"remaining_mean_w", cruise.remaining_mean_w},
-                                  {"gain", cruise.gain}}},
-                                {"landing", {{"duration_s", landing_s}, {"energy_wh", landing.energy_wh}}}};
-    if (battery) {
-        json["battery"] = {{"initial_soc_percent", battery->initial_soc_percent},
-                           {"soc_now_percent", battery->expected.soc_now_percent},
-                           {"at_landing", json_of(battery->expected)},
-                           {"at_landing_high_energy", json_of(battery->worst)}};
-    }
-    return json;
 }
 
 int predict(const cli::StageCall& call) {
@@ -356,14 +360,15 @@ int predict(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "predict", "FLIGHT.data|SERIES.csv --model MODEL.toml --remaining S",
+        "predict", "FLIGHT.data|SERIES.csv --model MODEL.toml --remaining S | --mission MISSION.toml",
         R"(Predicts the energy from a moment in cruise to the end of the flight. What was measured until then
 moves the cruise level of the model towards this flight's own, weighted by the variances between
 flights and within one. Nothing after the moment is looked at: a log that ends there gives the same.
 The remaining energy is that of --remaining more seconds of cruise and of a landing as in the model
-(its duration, too); with --airspeed the cruise is what the physical model says of it. The 95 %
-interval is that of the remaining energy; it holds the spread between flights, the drift within one,
-and that the model rests on few flights.)"};
+(its duration, too); with --airspeed the cruise is what the physical model says of it, with --mission
+what it says of the rest of the mission's path in its wind. The 95 % interval is that of the
+remaining energy; it holds the spread between flights, the drift within one, that of the wind, and
+that the model rests on few flights.)"};
     stage.max_inputs = 1;
     auto add = stage.options.add_options();
     add("model", cli::input_file("MODEL.toml"), "from flightwatt fit, of two flights or more");
@@ -371,16 +376,20 @@ and that the model rests on few flights.)"};
         "the moment, in seconds since lift-off as flightwatt segment finds it in what was flown; now: the end of the "
         "log, which may still grow");
     add("until-log-time", cli::value<double>("S"), "the moment in the log's own seconds, instead of --until");
-    add("remaining", cli::value<double>("S"), "seconds from the moment until landing begins");
+    add("remaining", cli::value<double>("S"),
+        "seconds from the moment until landing begins; with --mission only where the flight is not as far along the "
+        "path as the time since its cruise began");
     add("level", cli::value("HOW")->default_value("auto"),
-        "what is expected of the cruise before its own power is looked at: the model's curve, the curve's "
-        "mean (constant), the power that the airspeed so far and the other flights' later one stand for (airspeed), or "
-        "that of the "
-        "model's level law (covariate); auto is covariate for a model that was fitted with "
-        "--level-covariate, and else curve");
+        "what is expected of the cruise before its own power is looked at: the model's curve, the curve's mean "
+        "(constant), the power that the airspeed so far and the other flights' later one stand for (airspeed), or that "
+        "of the model's level law (covariate); auto is covariate for a model that was fitted with --level-covariate, "
+        "and else curve");
     add("airspeed", cli::value<double>("M_PER_S"),
         "how fast the rest of the cruise is flown: predicts it by the model's [physical] at this flight's own level");
     add("climb", cli::value<double>("M_PER_S"), "and how fast it climbs (0; below 0 it descends)");
+    add("mission", cli::input_file("MISSION.toml"),
+        "a mission with a [path], instead of --model: the rest of its path is flown, with its model, its wind and "
+        "its landing");
     add("battery", cli::input_file("BATTERY.toml"),
         "also tell state of charge and voltage at landing, and how long the cruise could go on from there");
     add("initial-soc", cli::value<double>("PERCENT"),

@@ -62,7 +62,8 @@ struct FlownElement {
 };
 std::vector<FlownElement> flown_elements(const PathPlan& plan);
 
-/// The mean of each term of the power over the cruise, weighted by time: what uncertainty_of wants.
+/// The mean of each term of the power over the cruise, weighted by time: what uncertainty_of wants. Zeros for
+/// one that takes no time.
 mechanical::TermValues mean_terms(const FlownPath& flown);
 
 /// The model that a law of airspeed cubed makes, for level flight alone (docs/methods.md, Eq. 23).

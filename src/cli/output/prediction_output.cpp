@@ -1,0 +1,109 @@
+#include "cli/output/prediction_output.h"
+
+#include "base/units.h"
+#include "cli/output/json_text.h"
+
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace flightwatt::cli {
+namespace {
+
+std::string landing_text(const battery::LandingForecast& forecast) {
+    if (forecast.fails_after_s) return fmt::format("the battery fails in {:.1f} min", *forecast.fails_after_s / 60.0);
+    return fmt::format("{:.1f} % and {:.2f} V at landing, {:.1f} min of cruise left", forecast.soc_percent,
+                       forecast.voltage_v, forecast.seconds_left / 60.0);
+}
+
+std::string battery_text(const std::optional<BatteryPrediction>& battery) {
+    if (!battery) return "";
+    return fmt::format(
+        "battery    {:.1f} % now, from {:.1f} % {}; {}\n"
+        "           at the high end of the interval {}\n",
+        battery->expected.soc_now_percent, battery->initial_soc_percent,
+        battery->initial_is_measured ? "by its voltage at rest" : "as given", landing_text(battery->expected),
+        landing_text(battery->worst));
+}
+
+/// Whether the model says what was to be expected so far: by motion only where the flight's was measured.
+bool is_expected(const Prediction& prediction) {
+    return !prediction.by_motion || !prediction.flown.motion.bins.empty();
+}
+
+/// What was expected so far, and how the difference moves the rest.
+std::string expectation_text(const Prediction& prediction) {
+    if (!is_expected(prediction)) return "this flight's own level is not known";
+    const double gain_percent = units::percent_of(prediction.cruise.gain, 1.0);
+    return fmt::format("expected {:.2f} W, ", prediction.cruise.expected_w) +
+           (prediction.by_motion ? fmt::format("this flight's own level {:+.1f} %", gain_percent)
+                                 : fmt::format("of the difference {:.0f} % goes on", gain_percent));
+}
+
+nlohmann::ordered_json json_of(const battery::LandingForecast& forecast) {
+    return {{"soc_percent", forecast.soc_percent},
+            {"voltage_v", forecast.voltage_v},
+            {"seconds_left", forecast.seconds_left},
+            {"fails_after_s", optional_json(forecast.fails_after_s)}};
+}
+
+}  // namespace
+
+void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
+          BatteryPrediction& result) {
+    const auto now = battery::state_after(battery, flown, result.initial_soc_percent);
+    const double landing_j = units::joule_from_wh(prediction.landing.energy_wh);
+    const auto forecast = [&](double part) {
+        std::vector<battery::PowerStretch> ahead{{prediction.cruise.remaining_mean_w * part, prediction.remaining_s}};
+        if (prediction.landing_s > 0.0)
+            ahead.push_back({landing_j / prediction.landing_s * part, prediction.landing_s});
+        return battery::forecast_landing(battery, now, ahead);
+    };
+    const double rest_wh = prediction.rest.energy_wh;
+    result.expected = forecast(1.0);
+    result.worst = forecast(rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
+}
+
+std::string text_of(const Prediction& prediction) {
+    const auto& [flown, remaining_s, by_motion, cruise, landing, landing_s, rest, interval, battery] = prediction;
+    return fmt::format(
+               "flown      {:.3f} Wh from lift-off at {:.1f} s to {:.1f} s of the log ({:.1f} s)\n"
+               "cruise     {:.3f} Wh in {:.0f} s more: {:.2f} W; so far {:.2f} W, {}\n"
+               "landing    {:.3f} Wh in {:.0f} s, as in the model\n"
+               "remaining  {:.3f} Wh, 95 % interval {:.3f} to {:.3f} Wh\n"
+               "total      {:.3f} Wh\n",
+               flown.energy_wh, flown.lift_off_s, flown.until_s, flown.until_s - flown.lift_off_s,
+               cruise.energy.energy_wh, remaining_s, cruise.remaining_mean_w, cruise.flown_w,
+               expectation_text(prediction), landing.energy_wh, landing_s, rest.energy_wh, interval.low_wh,
+               interval.high_wh, flown.energy_wh + rest.energy_wh) +
+           battery_text(battery);
+}
+
+nlohmann::ordered_json json_of(const Prediction& prediction) {
+    const auto& [flown, remaining_s, by_motion, cruise, landing, landing_s, rest, interval, battery] = prediction;
+    const auto expected_w = is_expected(prediction) ? std::optional(cruise.expected_w) : std::nullopt;
+    const auto gain = is_expected(prediction) ? std::optional(cruise.gain) : std::nullopt;
+    nlohmann::ordered_json json{{"flown_energy_wh", flown.energy_wh},
+                                {"remaining_energy_wh", rest.energy_wh},
+                                {"interval_95_wh", {interval.low_wh, interval.high_wh}},
+                                {"total_energy_wh", flown.energy_wh + rest.energy_wh},
+                                {"lift_off_s", flown.lift_off_s},
+                                {"until_s", flown.until_s},
+                                {"cruise",
+                                 {{"remaining_s", remaining_s},
+                                  {"energy_wh", cruise.energy.energy_wh},
+                                  {"flown_mean_w", cruise.flown_w},
+                                  {"expected_mean_w", optional_json(expected_w)},
+                                  {"remaining_mean_w", cruise.remaining_mean_w},
+                                  {by_motion ? "own_level" : "gain", optional_json(gain)}}},
+                                {"landing", {{"duration_s", landing_s}, {"energy_wh", landing.energy_wh}}}};
+    if (battery) {
+        json["battery"] = {{"initial_soc_percent", battery->initial_soc_percent},
+                           {"soc_now_percent", battery->expected.soc_now_percent},
+                           {"at_landing", json_of(battery->expected)},
+                           {"at_landing_high_energy", json_of(battery->worst)}};
+    }
+    return json;
+}
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,87 @@
+#include "mission/remaining_path.h"
+
+#include "helpers/path_missions.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+const FlightPath& path() {
+    static const FlightPath made{{test::path_element(Leg{1300.0, 0.0}), test::path_element(Circles{80.0, 3.0}),
+                                  test::path_element(Hold{60.0}), test::path_element(Leg{1300.0, 180.0}, 13.0, 50.0)}};
+    return made;
+}
+
+double energy_j(const FlownPath& flown) {
+    double energy_j = 0.0;
+    for (const auto& piece : flown.pieces) energy_j += power_w(test::made_up_wing(), piece.motion) * piece.time_s;
+    return energy_j;
+}
+
+/// Nothing of its power is known.
+mechanical::FlightProgress unseen_flight() {
+    mechanical::FlightProgress flown;
+    flown.until_s = 100.0;
+    return flown;
+}
+
+TEST(RemainingPath, IsWhatTheTimeSoFarLeaves) {
+    const auto flown = fly_path(path(), {4.0, 90.0});
+    for (const double time_s : {0.0, 40.0, 120.0, 200.0, flown.duration_s - 1.0, flown.duration_s}) {
+        const auto rest = rest_from(flown, place_at(flown, time_s));
+        EXPECT_NEAR(rest.duration_s, flown.duration_s - time_s, 1e-9);
+        double of_elements_s = 0.0;
+        for (const double element_s : rest.element_s) of_elements_s += element_s;
+        EXPECT_NEAR(of_elements_s, rest.duration_s, 1e-9);
+    }
+    EXPECT_NEAR(energy_j(rest_from(flown, place_at(flown, 0.0))), energy_j(flown), 1e-9);
+    const auto climbing = rest_from(flown, place_at(flown, flown.duration_s - 10.0));
+    EXPECT_NEAR(energy_j(climbing), 10.0 * power_w(test::made_up_wing(), flown.pieces.back().motion), 1e-9);
+}
+
+TEST(RemainingPath, BeginsAtTheSamePlaceInAnotherWind) {
+    const auto calm = fly_path(path(), {});
+    const auto place = place_at(calm, 50.0);
+    EXPECT_EQ(place.element, 0U);
+    EXPECT_NEAR(place.part, 0.5, 1e-12);
+    const Wind tail_wind{5.0, 180.0};
+    const auto rest = rest_from(fly_path(path(), tail_wind), place);
+    EXPECT_NEAR(rest.element_s[0], 0.5 * 1300.0 / 18.0, 1e-9);
+}
+
+TEST(RemainingPath, TakesWhatTheModelSays) {
+    const PathPlan plan{path(), {}, test::made_up_wing()};
+    const auto flown = fly_path(path(), {});
+    const auto place = place_at(flown, 150.0);
+    const auto rest = predict_rest_of_path(plan, unseen_flight(), place);
+    EXPECT_NEAR(rest.duration_s, flown.duration_s - 150.0, 1e-9);
+    EXPECT_NEAR(rest.cruise.energy.energy_wh, energy_j(rest_from(flown, place)) / 3600.0, 1e-9);
+}
+
+TEST(RemainingPath, SpreadOfTheWindWidensTheInterval) {
+    const Wind wind{4.0, 0.0};
+    auto spread = wind;
+    spread.speed_sd_m_per_s = 1.0;
+    const PathPlace place{3, 0.0};  // southward, the wind from behind
+    const auto known = predict_rest_of_path({path(), wind, test::made_up_wing()}, unseen_flight(), place);
+    const auto drawn = predict_rest_of_path({path(), spread, test::made_up_wing()}, unseen_flight(), place);
+    EXPECT_DOUBLE_EQ(drawn.cruise.energy.energy_wh, known.cruise.energy.energy_wh);
+    // The climb's energy is the same however long it takes; the rest goes with the time.
+    const double level_w = 0.01 * 13.0 * 13.0 * 13.0;
+    const double sd_wh = 0.5 * level_w * (1300.0 / 16.0 - 1300.0 / 18.0) / 3600.0;
+    EXPECT_NEAR(drawn.cruise.energy.variance_wh2 - known.cruise.energy.variance_wh2, sd_wh * sd_wh, 1e-9);
+}
+
+TEST(RemainingPath, OfNothingIsNothing) {
+    const PathPlan plan{path(), {3.0, 45.0, 1.0, 10.0}, test::made_up_wing()};
+    const auto flown = fly_path(path(), plan.wind);
+    const auto rest = predict_rest_of_path(plan, unseen_flight(), place_at(flown, flown.duration_s));
+    EXPECT_EQ(rest.duration_s, 0.0);
+    EXPECT_EQ(rest.cruise.energy.energy_wh, 0.0);
+}
+
+}  // namespace
+}  // namespace flightwatt::mission
