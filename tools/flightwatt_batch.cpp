@@ -14,6 +14,7 @@
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
+#include "cli/output/physical_output.h"
 #include "cli/progress.h"
 #include "cli/stage.h"
 #include "telemetry/log_configuration.h"
@@ -92,19 +93,30 @@ void remove_model(const cli::StageCall& call, const std::filesystem::path& out) 
                                 fmt::join(removed, ", "), out.string()));
 }
 
+/// A fit, and how its physical model came about, where one was asked for.
+struct FittedBatch {
+    batch::BatchFit fit;
+    std::optional<mechanical::PhysicalFit> physical;
+};
+
 /// Fits what the batch accepted. Takes the samples out of `flights`: of thousands, two copies are too many.
-batch::BatchFit fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight>& flights,
-                          const std::filesystem::path& out) {
+FittedBatch fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight>& flights,
+                      const std::filesystem::path& out) {
     auto options = read_fit_options(call);
     options.name = call.get<std::string>("name");
+    std::vector<mechanical::MeasuredFlight> measured;
     std::vector<mechanical::FlightSamples> samples;
     for (auto& flight : flights) {
-        auto& taken = flight.selection.flights;
-        for (auto& measured : taken) samples.push_back(std::move(measured.samples));
-        taken.clear();
+        for (auto& taken : flight.selection.flights) {
+            samples.push_back(std::move(taken.samples));
+            measured.push_back(std::move(taken));
+        }
+        flight.selection.flights.clear();
     }
     try {
-        return batch::fit_flights(samples, options);
+        FittedBatch fitted{batch::fit_flights(samples, options), std::nullopt};
+        if (cli::is_physical(call)) fitted.physical = cli::fit_motion(call, measured, fitted.fit.model);
+        return fitted;
     } catch (...) {
         remove_model(call, out);
         throw;
@@ -196,15 +208,17 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
             return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
         }
         refuse_mix(call, flights, options.out);
-        auto fit = fit_batch(call, flights, options.out);
+        auto [fit, physical] = fit_batch(call, flights, options.out);
         fit.copies = copies;
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
         const auto table = cli::table_of(fit.model, published);
         write_model(fit, table, options);
         warn_of_model(call, fit.model);
-        cli::print(call.json ? cli::json_text(with_logs(cli::to_json(fit.model), flights))
-                             : shown + "\n" + to_text(table));
+        auto json = cli::to_json(fit.model);
+        if (physical) json["physical"] = cli::physical_json(*physical);
+        cli::print(call.json ? cli::json_text(with_logs(std::move(json), flights))
+                             : shown + "\n" + to_text(table) + (physical ? "\n" + cli::physical_text(*physical) : ""));
     } catch (const InputError&) {
         if (!call.json) cli::print(shown);
         throw;
@@ -263,6 +277,7 @@ struct EmptyAtEnd {
 
 int run_over_logs(const cli::StageCall& call) {
     const auto fit_options = read_fit_options(call);  // refuses bad options before the work
+    cli::is_physical(call);
     auto options = read_batch_options(call, fit_options);
     const auto published = cli::read_published(call);
     std::optional<batch::FolderLock> lock;
@@ -302,6 +317,7 @@ SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 
 ended, the same command goes on where it stopped and comes to the same results.)"};
     stage.output_help = "the folder of the results";
     cli::add_fit_options(stage.options);
+    cli::add_model_option(stage.options);
     auto add = stage.options.add_options();
     add("name", cli::value("NAME")->default_value("batch"), "the model's name");
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");

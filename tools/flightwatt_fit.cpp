@@ -42,14 +42,6 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
     return options;
 }
 
-/// Of --model: whether the power of the motion is fitted, beside that of time.
-bool is_physical(const cli::StageCall& call) {
-    const auto name = call.get<std::string>("model");
-    if (name == "physical") return true;
-    if (name == "fourier") return false;
-    throw UsageError(fmt::format("--model {}: expected fourier or physical", name));
-}
-
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, int order) {
     const auto needed = mechanical::samples_needed(order);
     const auto options = cli::read_flight_options(call);
@@ -72,19 +64,8 @@ flight::PerPhase<mechanical::OrderChoice> choose_orders(const cli::StageCall& ca
     return choices;
 }
 
-/// The physical model of the flights, put into the model too.
-mechanical::PhysicalFit fit_motion(const cli::StageCall& call, std::span<const mechanical::MeasuredFlight> measured,
-                                   mechanical::MechanicalModel& model) {
-    std::vector<mechanical::FlightMotion> motions;
-    for (const auto& flight : measured) motions.push_back(flight.motion);
-    auto physical = mechanical::fit_physical_model(motions);
-    cli::warn_of_physical(call, physical);
-    model.physical = physical.model;
-    return physical;
-}
-
 int fit(const cli::StageCall& call) {
-    const bool with_motion = is_physical(call);
+    const bool with_motion = cli::is_physical(call);
     const bool auto_order = !read_order(call, cli::AutoOrder::accepted);
     auto options = read_options(call);
     const auto table_file = call.maybe<std::string>("table");
@@ -93,6 +74,7 @@ int fit(const cli::StageCall& call) {
     const auto published = cli::read_published(call);
     const auto measured = read_flights(call, auto_order ? mechanical::highest_tried_order : options.phases.order);
     std::vector<mechanical::FlightSamples> flights;
+    flights.reserve(measured.size());
     for (const auto& flight : measured) flights.push_back(flight.samples);
     std::optional<flight::PerPhase<mechanical::OrderChoice>> choices;
     if (auto_order) {
@@ -110,7 +92,7 @@ int fit(const cli::StageCall& call) {
         cli::table_of(fitted.model, published,
                       call.has("intervals") ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
     std::optional<mechanical::PhysicalFit> physical;
-    if (with_motion) physical = fit_motion(call, measured, fitted.model);
+    if (with_motion) physical = cli::fit_motion(call, measured, fitted.model);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
     if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, *reports));
     cli::write_result(call, to_toml(fitted.model));
@@ -139,11 +121,9 @@ int main(int argc, char** argv) {
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
 as TOML; with -o it goes to the file and Table I is shown.)"};
     add_fit_options(stage.options, cli::AutoOrder::accepted);
+    cli::add_model_option(stage.options);
     auto add = stage.options.add_options();
     add("name", cli::value("NAME"), "the model's name");
-    add("model", cli::value("KIND")->default_value("fourier"),
-        "fourier: power over the time of each phase; physical: besides, power from airspeed and climb, for "
-        "aircraft on wings whose flights measured them");
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
     add("table", cli::output_file("FILE"), "write Table I as .txt, .csv, .md or .tex");
     add("errors",

@@ -53,6 +53,25 @@ void visit_measured_phase(Flight& flight, flight::Phase phase, Samples& samples,
     visit("power_w", samples.power_w);
 }
 
+template <typename Bin, typename Visit>
+void visit_bin(Bin& bin, const Visit& visit) {
+    visit("phase", bin.phase);
+    visit("start_s", bin.start_s);
+    visit("duration_s", bin.duration_s);
+    visit("power_w", bin.power_w);
+    visit("samples", bin.samples);
+    visit("terms", bin.values.values);
+    visit("airspeed_m_per_s", bin.airspeed_m_per_s);
+    visit("throttle_cubed", bin.throttle_cubed);
+}
+
+template <typename Motion, typename Visit>
+void visit_motion(Motion& motion, const Visit& visit) {
+    visit("bank_measured", motion.bank_measured);
+    visit("lacks", motion.lacks);
+    visit("bins", motion.bins);
+}
+
 template <typename Content, typename Visit>
 void visit_content(Content& content, const Visit& visit) {
     visit("has_definitions", content.has_definitions);
@@ -110,6 +129,16 @@ struct RecordWriter {
         }
         return json;
     }
+    static Json json_of(const mechanical::FlightMotion& motion) {
+        Json json = Json::object();
+        visit_motion(motion, RecordWriter{json});
+        return json;
+    }
+    static Json json_of(const std::vector<mechanical::MotionBin>& bins) {
+        Json json = Json::array();
+        for (const auto& bin : bins) visit_bin(bin, RecordWriter{json.emplace_back()});
+        return json;
+    }
     static Json json_of(const flight::FlightContent& content) {
         Json json = Json::object();
         visit_content(content, RecordWriter{json});
@@ -148,7 +177,10 @@ struct RecordWriter {
                 if (!samples) continue;
                 visit_measured_phase(flight, phase, *samples, RecordWriter{phases[std::string(to_string(phase))]});
             }
-            flights.push_back({{"flight", flight.samples.flight}, {"sortie", measured.sorties[i]}, {"phases", phases}});
+            flights.push_back({{"flight", flight.samples.flight},
+                               {"sortie", measured.sorties[i]},
+                               {"phases", phases},
+                               {"motion", json_of(flight.motion)}});
         }
         Json excluded = Json::array();
         for (const auto& [flight, phase, reason] : measured.exclusions) {
@@ -201,6 +233,9 @@ struct RecordReader {
             covariates[mechanical::covariate_from(name).value()] = value.get<double>();
         }
     }
+    static void read(const Json& json, std::vector<mechanical::MotionBin>& bins) {
+        for (const auto& entry : json) visit_bin(bins.emplace_back(), RecordReader{entry});
+    }
     static void read(const Json& json, flight::FlightContent& content) { visit_content(content, RecordReader{json}); }
     static void read(const Json& json, FlightMarks& of_precisions) {
         for (std::size_t i = 0; i < of_precisions.size(); ++i) {
@@ -226,6 +261,8 @@ struct RecordReader {
                 samples.flight = flight.samples.flight;
                 visit_measured_phase(flight, phase, samples, RecordReader{object});
             }
+            visit_motion(flight.motion, RecordReader{entry.at("motion")});
+            flight.motion.flight = flight.samples.flight;
             measured.sorties.push_back(whole<std::size_t>(entry.at("sortie")));
         }
         for (const auto& entry : json.at("excluded")) {

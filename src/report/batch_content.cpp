@@ -2,29 +2,11 @@
 
 #include "batch/batch_files.h"
 #include "batch/batch_run.h"
-#include "flight/chosen_track.h"
 
 #include <algorithm>
 #include <iterator>
 
 namespace flightwatt::report {
-
-namespace {
-
-/// The motion of the flights, which a batch does not keep beside their series.
-void add_motion(mechanical::MeasuredFlights& measured, const flight::FlightSeries& series,
-                const flight::FlightPhases& phases) {
-    const flight::ChosenTracks tracks(series);
-    for (std::size_t i = 0; i < measured.flights.size(); ++i) {
-        const auto sortie = std::ranges::find(phases.sorties, measured.sorties[i] + 1, &flight::Sortie::number);
-        if (sortie == phases.sorties.end()) continue;
-        auto& flight = measured.flights[i];
-        flight.motion = mechanical::motion_of(tracks, mechanical::spans_of(*sortie));
-        flight.motion.flight = flight.samples.flight;
-    }
-}
-
-}  // namespace
 
 std::string_view fitted_part(const ReportFlight& flight) {
     if (flight.exclusions.empty()) return "all";
@@ -50,7 +32,6 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
                 selection.flights.clear();
                 selection.exclusions.push_back({record.flight, std::nullopt, batch::reason_of_copy(copy->second)});
             }
-            add_motion(selection, series, phases);
             for (const auto& exclusion : selection.exclusions) flight.exclusions.push_back(to_string(exclusion));
             std::move(selection.flights.begin(), selection.flights.end(), std::back_inserter(content.measured));
             flight.verdicts = record.verdicts;

@@ -2,6 +2,7 @@
 
 #include "base/fingerprint.h"
 #include "flight/load_flight.h"
+#include "helpers/generated_motion.h"
 #include "helpers/sample_logs.h"
 
 #include <string>
@@ -39,6 +40,12 @@ FlightRecord full_record() {
     landing.complete = true;
     landing.statistics.counter_energy_wh = 0.7;
     record.phases = {takeoff, landing};
+    auto& measured = record.measured.flights.emplace_back();
+    measured.samples.flight = record.flight;
+    measured.motion = test::made_up_motions(1, 3, {}, 1).front();
+    measured.motion.flight = record.flight;
+    measured.motion.bins[1].throttle_cubed.reset();
+    record.measured.sorties = {0};
     record.warnings = {"a \"quoted\" one", "another"};
     return record;
 }
@@ -64,6 +71,17 @@ TEST(FlightRecord, SurvivesJson) {
     EXPECT_EQ(read->phases[1].statistics.counter_energy_wh, 0.7);
     EXPECT_EQ(read->phases[1].statistics.samples, 25U);
     EXPECT_THAT(read->warnings, testing::ElementsAre("a \"quoted\" one", "another"));
+    const auto& motion = read->measured.flights.at(0).motion;
+    EXPECT_EQ(motion.flight, "20_07_03__12_17_45");
+    EXPECT_TRUE(motion.bank_measured);
+    const auto bins = test::made_up_motions(1, 3, {}, 1).front().bins;
+    ASSERT_EQ(motion.bins.size(), 3U);
+    EXPECT_EQ(motion.bins[0].phase, flight::Phase::takeoff);
+    EXPECT_EQ(motion.bins[2].values.values, bins[2].values.values);
+    EXPECT_EQ(motion.bins[2].power_w, bins[2].power_w);
+    EXPECT_EQ(motion.bins[2].samples, 27U);
+    EXPECT_EQ(motion.bins[2].throttle_cubed, bins[2].throttle_cubed);
+    EXPECT_FALSE(motion.bins[1].throttle_cubed);
 }
 
 /// As a record would be written that says this: with a seal that is right.
@@ -101,7 +119,8 @@ TEST(FlightRecord, IsNoneWhereAnythingIsMissingOrWrong) {
 TEST(FlightRecord, IsNoneWhereACountIsNoWholeNumber) {
     const auto json = nlohmann::ordered_json::parse(to_json_text(full_record()));
     for (const double number : {2.85192e19, -1.0, 0.5, 1e300}) {
-        for (const auto* place : {"/phases/0/samples", "/content/samples", "/content/decimals", "/phases/0/sortie"}) {
+        for (const auto* place : {"/phases/0/samples", "/content/samples", "/content/decimals", "/phases/0/sortie",
+                                  "/measured/flights/0/motion/bins/0/samples"}) {
             auto wrong = json;
             wrong[nlohmann::ordered_json::json_pointer(place)] = number;
             EXPECT_FALSE(record_from_json(sealed(wrong))) << place << " " << number;

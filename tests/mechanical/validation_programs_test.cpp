@@ -136,15 +136,40 @@ TEST(Fit, TellsThePhysicsOfRealFlights) {
               0);
 }
 
+std::string physical_table(const std::filesystem::path& model) {
+    const auto text = read_file(model);
+    return text.substr(text.find("[physical]"));
+}
+
+TEST(Fit, OfABatchFindsTheSamePhysics) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto folder = test::scratch_dir();
+    ASSERT_EQ(run(folder, "fit --model physical -o model.toml" + real_flights()).code, 0);
+    const auto batch = "batch --model physical -o out" + real_flights();
+    const auto first = run(folder, batch);
+    ASSERT_EQ(first.code, 0) << first.err;
+    EXPECT_THAT(first.out, HasSubstr("climb  climb rate"));
+    EXPECT_EQ(physical_table(folder / "out/model.toml"), physical_table(folder / "model.toml"));
+    const auto again = run(folder, batch + " --json");  // from its records
+    EXPECT_THAT(again.err, HasSubstr("up to date"));
+    EXPECT_EQ(Json::parse(again.out)["physical"]["flights"].size(), 3u);
+    EXPECT_EQ(physical_table(folder / "out/model.toml"), physical_table(folder / "model.toml"));
+}
+
 TEST(Fit, RefusesAPhysicalModelWithoutAirspeed) {
     const auto folder = test::scratch_dir();
     const auto result = run(folder, "fit --model physical -o model.toml" + sample("01") + sample("02"));
     EXPECT_EQ(result.code, 4);
     EXPECT_THAT(result.err, HasSubstr("opterra_synthetic_01: its airspeed was not measured"));
     EXPECT_FALSE(std::filesystem::exists(folder / "model.toml"));
-    const auto usage = run(folder, "fit --model newton" + sample("01"));
-    EXPECT_EQ(usage.code, 2);
-    EXPECT_THAT(usage.err, HasSubstr("--model newton: expected fourier or physical"));
+    EXPECT_EQ(run(folder, "batch --model physical -o out" + sample("01") + sample("02")).code, 4);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/model.toml"));
+    for (const std::string program : {"fit", "batch -o other"}) {
+        const auto usage = run(folder, program + " --model newton" + sample("01"));
+        EXPECT_EQ(usage.code, 2);
+        EXPECT_THAT(usage.err, HasSubstr("--model newton: expected fourier or physical"));
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "other"));
 }
 
 /// The lines of a log up to a time.

@@ -1,5 +1,6 @@
 #include "cli/output/physical_output.h"
 
+#include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "cli/output/json_text.h"
@@ -134,6 +135,31 @@ void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit)
     warn(call,
          "the physical model rests on a single flight: how flights differ is not known, and its predictions have "
          "no interval; give two flights or more");
+}
+
+void add_model_option(boost::program_options::options_description& options) {
+    options.add_options()(
+        "model", value("KIND")->default_value("fourier"),
+        "fourier: power over the time of each phase; physical: besides, power from airspeed and climb, "
+        "for aircraft on wings whose flights measured them");
+}
+
+bool is_physical(const StageCall& call) {
+    const auto name = call.get<std::string>("model");
+    if (name == "physical") return true;
+    if (name == "fourier") return false;
+    throw UsageError(fmt::format("--model {}: expected fourier or physical", name));
+}
+
+mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechanical::MeasuredFlight> measured,
+                                   mechanical::MechanicalModel& model) {
+    std::vector<mechanical::FlightMotion> motions;
+    motions.reserve(measured.size());
+    for (const auto& flight : measured) motions.push_back(flight.motion);
+    auto physical = mechanical::fit_physical_model(motions);
+    warn_of_physical(call, physical);
+    model.physical = physical.model;
+    return physical;
 }
 
 }  // namespace flightwatt::cli

@@ -3,7 +3,9 @@
 #include "base/text_table.h"
 #include "cli/stage.h"
 #include "mechanical/physical_fit.h"
+#include "mechanical/validation.h"
 
+#include <span>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -24,5 +26,16 @@ nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit);
 
 /// Warns of flights that are not in the model, and of what it does not know.
 void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit);
+
+/// --model, fourier if it is not given.
+void add_model_option(boost::program_options::options_description& options);
+
+/// Of --model: whether the power of the motion is fitted, beside that of time. Throws UsageError for another kind.
+bool is_physical(const StageCall& call);
+
+/// The physical model of the flights, put into the model too; warns of what it does not know. Throws what
+/// fit_physical_model throws.
+mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechanical::MeasuredFlight> measured,
+                                   mechanical::MechanicalModel& model);
 
 }  // namespace flightwatt::cli
