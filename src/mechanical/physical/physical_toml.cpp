@@ -22,8 +22,8 @@ MotionRange read_motion_range(const TomlTable& table) {
 PowerTerm read_term_name(const TomlTable& table) {
     const auto name = table.string("term");
     if (const auto term = power_term_from(name)) return *term;
-    std::vector<std::string_view> names;
-    for (const auto term : all_power_terms) names.push_back(to_string(term));
+    std::vector<std::string_view> names(all_power_terms.size());
+    std::ranges::transform(all_power_terms, names.begin(), [](PowerTerm term) { return to_string(term); });
     throw InputError(table.where("term"), fmt::format("there is no term '{}'", name),
                      fmt::format("it is one of {}", fmt::join(names, ", ")));
 }

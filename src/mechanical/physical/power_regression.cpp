@@ -14,16 +14,17 @@ constexpr double prior_degrees_of_freedom = 3.0;
 
 /// From half a bin, where neighbours are nearly independent, to 20 minutes; twice as long at each second step.
 std::vector<double> correlations_s() {
-    std::vector<double> grid;
-    for (int i = 0; i < 14; ++i) grid.push_back(0.5 * usual_bin_s * std::pow(2.0, 0.5 * i));
+    std::vector<double> grid(14);
+    for (std::size_t i = 0; i < grid.size(); ++i)
+        grid[i] = 0.5 * usual_bin_s * std::pow(2.0, 0.5 * static_cast<double>(i));
     return grid;
 }
 
 /// From far below what a prediction would feel to as much as the power itself.
 std::vector<double> level_sds(std::size_t flights) {
     if (flights < 2) return {0.0};
-    std::vector<double> grid;
-    for (int i = 0; i < 24; ++i) grid.push_back(0.002 * std::pow(1.32, i));
+    std::vector<double> grid(24);
+    for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = 0.002 * std::pow(1.32, static_cast<double>(i));
     return grid;
 }
 
