@@ -89,11 +89,12 @@ FeasibilityLimit most_circles(const MissionOfExtent& mission_of, const std::opti
     double low = 0.0;
     std::optional<double> good;
     double high = 1.0;
-    for (; high <= most_circles_tried; high *= 2.0) {
+    while (high <= most_circles_tried) {
         const auto spare = search.spare_percent(high);
         if (spare && *spare < 0.0) break;
         low = high;
         if (spare) good = high;
+        high *= 2.0;
     }
     if (high > most_circles_tried) {
         if (good) throw NoAnswerError(fmt::format("{:.0f} circles still land with the reserve", *good));

@@ -287,6 +287,7 @@ std::vector<PathEntry> parse_flight_plan(std::string_view text, const std::strin
                                          const std::vector<std::string>& names) {
     const FlightPlanReader reader(text, file);
     std::vector<PathEntry> entries;
+    entries.reserve(names.size());
     for (const auto& name : names) entries.push_back(reader.waypoint(name));
     return entries;
 }
