@@ -89,7 +89,7 @@ void remove_model(const cli::StageCall& call, const std::filesystem::path& out) 
         if (std::filesystem::remove(out / name, ignored)) removed.emplace_back(name);
     }
     if (removed.empty()) return;
-    cli::note(call, fmt::format("removed: {}: an earlier run fitted them to other flights than are in {} now",
+    cli::note(call, fmt::format("removed: {}: they are an earlier run's, and this one has no model for {}",
                                 fmt::join(removed, ", "), out.string()));
 }
 

@@ -70,6 +70,9 @@ int fit(const cli::StageCall& call) {
     auto options = read_options(call);
     const auto table_file = call.maybe<std::string>("table");
     if (table_file) cli::table_text({{""}, {}}, *table_file);  // refuses a bad ending before the work
+    const auto constants_file = call.maybe<std::string>("constants");
+    if (constants_file && !with_motion) throw UsageError("--constants goes with --model physical");
+    if (constants_file) cli::table_text({{""}, {}}, *constants_file);
     const auto curves_file = call.maybe<std::string>("curves");
     const auto published = cli::read_published(call);
     const auto measured = read_flights(call, auto_order ? mechanical::highest_tried_order : options.phases.order);
@@ -94,6 +97,8 @@ int fit(const cli::StageCall& call) {
     std::optional<mechanical::PhysicalFit> physical;
     if (with_motion) physical = cli::fit_motion(call, measured, fitted.model);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
+    if (constants_file)
+        write_file_atomically(*constants_file, cli::table_text(cli::constants_table(physical->model), *constants_file));
     if (curves_file) write_file_atomically(*curves_file, curves_csv(fitted, *reports));
     cli::write_result(call, to_toml(fitted.model));
     warn_of_model(call, fitted.model);
@@ -126,6 +131,8 @@ as TOML; with -o it goes to the file and Table I is shown.)"};
     add("name", cli::value("NAME"), "the model's name");
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
     add("table", cli::output_file("FILE"), "write Table I as .txt, .csv, .md or .tex");
+    add("constants", cli::output_file("FILE"),
+        "write the constants of the physical model with their 95 % intervals as .txt, .csv, .md or .tex");
     add("errors",
         "analyse the fit: standard errors, R2, condition, autocorrelation, frequency profile, spread "
         "between flights, into the model and the JSON");

@@ -8,6 +8,7 @@
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
+#include "cli/output/moment_option.h"
 #include "cli/output/prediction_output.h"
 #include "cli/stage.h"
 #include "flight/chosen_track.h"
@@ -31,49 +32,6 @@ namespace {
 using namespace flightwatt;
 using cli::BatteryPrediction;
 using cli::Prediction;
-
-/// The moment that is asked for: since lift-off, on the log's clock, or (none of them) the end of the log.
-struct Moment {
-    std::optional<double> since_lift_off_s;
-    std::optional<double> log_time_s;
-};
-
-Moment moment_of(const cli::StageCall& call) {
-    const auto log_time_s = cli::positive_option(call, "until-log-time", "s");
-    if (log_time_s && !call.options["until"].defaulted()) {
-        throw UsageError("--until and --until-log-time exclude each other: give one of them");
-    }
-    const auto text = call.get<std::string>("until");
-    if (text == "now") return {std::nullopt, log_time_s};
-    const auto since_s = parse_number(text);
-    if (!since_s || !(*since_s > 0.0) || !std::isfinite(*since_s)) {
-        throw UsageError(fmt::format("--until {}: expected now, or seconds since lift-off, more than 0", text));
-    }
-    return {since_s, std::nullopt};
-}
-
-/// When it is: of several aircraft, when the first has flown so long.
-double time_of(const Moment& moment, const std::vector<flight::FlightSeries>& candidates, std::size_t sortie,
-               const flight::SegmentationOptions& options) {
-    if (moment.log_time_s) return *moment.log_time_s;
-    if (!moment.since_lift_off_s) {
-        double last_s = 0.0;
-        for (const auto& series : candidates) last_s = std::max(last_s, mechanical::last_time_s(series));
-        return last_s;
-    }
-    std::optional<double> first_s;
-    std::optional<NoAnswerError> refusal;
-    for (const auto& series : candidates) {
-        try {
-            const double time_s = mechanical::time_since_lift_off(series, *moment.since_lift_off_s, sortie, options);
-            first_s = std::min(first_s.value_or(time_s), time_s);
-        } catch (const NoAnswerError& error) {
-            if (!refusal) refusal = error;
-        }
-    }
-    if (!first_s) throw NoAnswerError(*refusal);
-    return *first_s;
-}
 
 /// Refuses a model whose interval would rest on nothing.
 void require_spread(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file) {
@@ -136,14 +94,14 @@ struct KnownFlight {
 
 /// What was known at the moment: nothing that the log wrote later is looked at, in what is read, chosen,
 /// judged or said.
-KnownFlight read_progress(const cli::StageCall& call, const Moment& moment) {
+KnownFlight read_progress(const cli::StageCall& call, const cli::Moment& moment) {
     auto options = cli::read_flight_options(call);
     const auto sortie = options.sortie.value_or(1) - 1;
     options.sortie.reset();
     options.flight_required = false;
     const auto& file = call.inputs.front();
     auto candidates = read_candidates(flight::FlightFile(file, options.most_log_bytes), options.aircraft_id);
-    const double until_s = time_of(moment, candidates, sortie, options.segmentation);
+    const double until_s = cli::time_of(moment, candidates, sortie, options.segmentation);
     for (auto& series : candidates) series = cut_series(series, until_s);
     auto series = choose_aircraft(std::move(candidates));
     cli::refuse_unknown_flights(options, {series.flight});
@@ -166,6 +124,7 @@ struct Basis {
     std::optional<double> remaining_s = {};              ///< none: what is left of the path
     std::optional<mechanical::AirMotion> motion = {};    ///< of --airspeed
     std::shared_ptr<const mission::PathPlan> path = {};  ///< of --mission
+    battery::LandingLimits limits = {};                  ///< of --mission
 };
 
 /// How the rest of the cruise is to be flown, where --airspeed says it.
@@ -191,11 +150,19 @@ void require_physical(const mechanical::MechanicalModel& model, const std::strin
         fmt::format("{} needs one of two flights or more: flightwatt fit --model physical FLIGHT...", option));
 }
 
+/// What --remaining gives.
+std::optional<double> remaining_of(const cli::StageCall& call) {
+    constexpr double longest_s = 1e6;  // no battery flies for eleven days
+    if (!call.has("remaining")) return std::nullopt;
+    return cli::number_option(call, "remaining", 0.0, longest_s);
+}
+
 /// Model and path of the mission that --mission names.
 Basis read_mission_basis(const cli::StageCall& call) {
     if (call.has("model")) throw UsageError("--mission names its model: leave --model out");
     if (call.has("airspeed") || call.has("climb") || !call.options["level"].defaulted())
         throw UsageError("--mission says how the rest is flown: leave --airspeed, --climb and --level out");
+    const auto remaining_s = remaining_of(call);
     const auto file = call.get<std::string>("mission");
     mission::MissionReading reading;
     reading.may_lack_schedule = true;
@@ -207,7 +174,9 @@ Basis read_mission_basis(const cli::StageCall& call) {
     }
     cli::warn_of_setup(call, setup);
     Basis basis{*setup.mechanical, setup.duration_s[flight::Phase::landing]};
+    basis.remaining_s = remaining_s;
     basis.path = setup.cruise_path->plan;
+    basis.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
     basis.model.physical = basis.path->power;  // where the model has but a law of airspeed, that
     require_physical(basis.model, file, "--mission");
     if (basis.landing_s > 0.0) require_spread(basis.model, flight::Phase::landing, file);
@@ -222,13 +191,12 @@ Basis read_basis(const cli::StageCall& call) {
         if (!call.has("model"))
             throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
         if (!call.has("remaining")) throw UsageError("no time left given: expected --remaining SECONDS");
+        basis.remaining_s = remaining_of(call);
         basis.motion = motion_ahead(call);
         basis.model = read_spread_model(call);
         basis.landing_s = basis.model.phases[flight::Phase::landing].duration_s;
         if (basis.motion) require_physical(basis.model, call.get<std::string>("model"), "--airspeed");
     }
-    constexpr double longest_s = 1e6;  // no battery flies for eleven days
-    if (call.has("remaining")) basis.remaining_s = cli::number_option(call, "remaining", 0.0, longest_s);
     return basis;
 }
 
@@ -236,14 +204,7 @@ Basis read_basis(const cli::StageCall& call) {
 mechanical::RestPrediction predict_motion(const cli::StageCall& call, const mechanical::PhysicalModel& model,
                                           const mechanical::FlightProgress& flown, const mechanical::AirMotion& motion,
                                           double remaining_s) {
-    const auto& speeds = model.airspeed_m_per_s;
-    if (!was_flown(model, motion)) {
-        cli::warn(call,
-                  fmt::format("{:.1f} m/s at {:+.1f} m/s of climb is beyond what the model's flights flew: {:.1f} to "
-                              "{:.1f} m/s, {:+.1f} to {:+.1f} m/s of climb",
-                              motion.airspeed_m_per_s, motion.climb_m_per_s, speeds.low, speeds.high,
-                              model.climb_m_per_s.low, model.climb_m_per_s.high));
-    }
+    cli::warn_of_motion(call, model, motion);
     return predict_rest_by_motion(model, flown, terms_of(motion), remaining_s);
 }
 
@@ -269,9 +230,14 @@ mechanical::RestPrediction predict_along(const cli::StageCall& call, const missi
                                          const std::optional<double>& remaining_s) {
     const auto path = fly_path(plan.path, plan.wind);
     const auto place = place_on_path(path, flown, remaining_s);
-    for (const auto& warning : path_warnings(plan, rest_from(path, place))) cli::warn(call, warning);
-    const auto rest = predict_rest_of_path(plan, flown, place);
+    auto rest = predict_rest_of_path(plan, flown, place);
+    if (rest.forbidden_part > 0.0) {
+        cli::warn(call, fmt::format("{:.0f} % of the winds that [wind] makes likely forbid what is left of the path: "
+                                    "they are not in what follows",
+                                    units::percent_of(rest.forbidden_part, 1.0)));
+    }
     prediction.remaining_s = rest.duration_s;
+    prediction.power_ahead = std::move(rest.power);
     return rest.cruise;
 }
 
@@ -285,7 +251,8 @@ std::optional<double> read_initial_soc(const cli::StageCall& call) {
 /// The battery that --battery names through the rest, from what was measured of it until now.
 std::optional<BatteryPrediction> predict_battery(const cli::StageCall& call, const flight::FlightSeries& series,
                                                  const Prediction& prediction,
-                                                 const std::optional<double>& initial_soc_percent) {
+                                                 const std::optional<double>& initial_soc_percent,
+                                                 const battery::LandingLimits& limits) {
     const auto file = call.maybe<std::string>("battery");
     if (!file) return std::nullopt;
     const auto battery = battery::read_battery(*file);
@@ -294,6 +261,7 @@ std::optional<BatteryPrediction> predict_battery(const cli::StageCall& call, con
     for (const auto& note : records.notes) cli::note(call, note);
     const auto& record = records.records.back();
     BatteryPrediction of;
+    of.limits = limits;
     of.initial_is_measured = !initial_soc_percent;
     if (initial_soc_percent) {
         of.initial_soc_percent = *initial_soc_percent;
@@ -332,12 +300,13 @@ mechanical::RestPrediction predict_cruise(const cli::StageCall& call, const Basi
 
 Prediction predict_flight(const cli::StageCall& call) {
     Prediction prediction;
-    const auto moment = moment_of(call);
+    const auto moment = cli::moment_of(call);
     const auto initial_soc_percent = read_initial_soc(call);
     const auto basis = read_basis(call);
     auto known = read_progress(call, moment);
     prediction.flown = std::move(known.flown);
     prediction.cruise = predict_cruise(call, basis, prediction.flown, prediction);
+    if (prediction.by_motion) cli::warn_of_level(call, basis.model.physical.value(), prediction.cruise.gain);
     prediction.landing_s = basis.landing_s;
     if (basis.landing_s > 0.0) {
         prediction.landing =
@@ -345,7 +314,7 @@ Prediction predict_flight(const cli::StageCall& call) {
     }
     prediction.rest = sum_of(prediction.cruise.energy, prediction.landing);
     prediction.interval = interval_95(prediction.rest).value();
-    prediction.battery = predict_battery(call, known.series, prediction, initial_soc_percent);
+    prediction.battery = predict_battery(call, known.series, prediction, initial_soc_percent, basis.limits);
     return prediction;
 }
 

@@ -107,6 +107,9 @@ std::size_t column_index(const CsvTable& table, std::string_view name) {
         throw InputError({table.file, 1}, fmt::format("has no column '{}'", name),
                          "its columns are " + short_list(table.columns));
     }
+    if (std::ranges::count(table.columns, name) > 1) {
+        throw InputError({table.file, 1}, fmt::format("has several columns '{}'", name), "keep one of them");
+    }
     return static_cast<std::size_t>(found - table.columns.begin());
 }
 

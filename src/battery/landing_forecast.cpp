@@ -15,10 +15,11 @@ namespace {
 constexpr double longest_s = 86400.0;
 constexpr double step_s = 1.0;
 
-Discharge through(const Battery& battery, const BatteryState& state, const PowerStretch& stretch) {
+Discharge through(const Battery& battery, const BatteryState& state, const PowerStretch& stretch,
+                  const LandingLimits& limits) {
     const double power_w = stretch.power_w;
     const Load load{[power_w](double) { return power_w; }, 0.0, stretch.duration_s};
-    return discharge(battery, load, state, {.max_step_s = step_s});
+    return discharge(battery, load, state, {step_s, limits.cutoff_voltage_v});
 }
 
 /// When a battery stopped; the end of the stretch if it did not.
@@ -26,6 +27,33 @@ std::optional<double> failed_at_s(const Discharge& discharge) {
     if (const auto ended = discharge.ended_at_s()) return ended;
     if (discharge.undeliverable) return discharge.undeliverable->time_s;
     return std::nullopt;
+}
+
+/// How long a power can be drawn until the battery fails or has only its reserve.
+double time_left_s(const Battery& battery, BatteryState state, double power_w, const LandingLimits& limits) {
+    constexpr double stretch_s = 60.0;
+    constexpr int bisections = 30;
+    const auto after = [&](double time_s) { return through(battery, state, {power_w, time_s}, limits); };
+    if (!(power_w > 0.0) || state.soc_percent <= limits.reserve_soc_percent) return 0.0;
+    double low_s = 0.0;
+    double begun_s = 0.0;
+    while (begun_s < longest_s) {
+        const auto end = after(stretch_s);
+        const auto failed_s = failed_at_s(end);
+        if (end.soc_percent >= limits.reserve_soc_percent) {
+            if (failed_s) return begun_s + *failed_s;
+            state = end;
+            begun_s += stretch_s;
+            continue;
+        }
+        double high_s = failed_s.value_or(stretch_s);
+        for (int i = 0; i < bisections; ++i) {
+            const double middle_s = 0.5 * (low_s + high_s);
+            (after(middle_s).soc_percent >= limits.reserve_soc_percent ? low_s : high_s) = middle_s;
+        }
+        return begun_s + low_s;
+    }
+    return longest_s;
 }
 
 }  // namespace
@@ -58,7 +86,8 @@ BatteryState state_after(const Battery& battery, const DischargeRecord& flown, d
     return state;
 }
 
-LandingForecast forecast_landing(const Battery& battery, const BatteryState& now, std::span<const PowerStretch> ahead) {
+LandingForecast forecast_landing(const Battery& battery, const BatteryState& now, std::span<const PowerStretch> ahead,
+                                 double cruise_w, const LandingLimits& limits) {
     LandingForecast forecast;
     forecast.soc_now_percent = now.soc_percent;
     BatteryState state = now;
@@ -66,7 +95,7 @@ LandingForecast forecast_landing(const Battery& battery, const BatteryState& now
     double power_w = 0.0;
     for (const auto& stretch : ahead) {
         if (stretch.duration_s == 0.0) continue;
-        const auto end = through(battery, state, stretch);
+        const auto end = through(battery, state, stretch, limits);
         state = end;
         power_w = stretch.power_w;
         if (const auto failed_s = failed_at_s(end)) {
@@ -77,9 +106,8 @@ LandingForecast forecast_landing(const Battery& battery, const BatteryState& now
     }
     forecast.soc_percent = state.soc_percent;
     forecast.voltage_v = terminal_voltage_v(battery, state, delivered_current_a(battery, power_w, state));
-    if (forecast.fails_after_s || !(ahead.front().power_w > 0.0)) return forecast;
-    const auto on = through(battery, state, {ahead.front().power_w, longest_s});
-    forecast.seconds_left = failed_at_s(on).value_or(longest_s);
+    forecast.keeps_reserve = !forecast.fails_after_s && forecast.soc_percent >= limits.reserve_soc_percent;
+    if (!forecast.fails_after_s) forecast.seconds_left = time_left_s(battery, state, cruise_w, limits);
     return forecast;
 }
 

@@ -14,13 +14,20 @@ struct PowerStretch {
     double duration_s = 0.0;
 };
 
+/// What a battery in flight must not go below.
+struct LandingLimits {
+    double cutoff_voltage_v = 0.0;     ///< 0: none
+    double reserve_soc_percent = 0.0;  ///< what should be left
+};
+
 /// How a battery in flight will land.
 struct LandingForecast {
     double soc_now_percent = 0.0;
-    double soc_percent = 0.0;                  ///< at the end of what lies ahead, or where the battery failed before
-    double voltage_v = 0.0;                    ///< there, under the last stretch's power
-    double seconds_left = 0.0;                 ///< so long could the first stretch's power go on from there
-    std::optional<double> fails_after_s = {};  ///< from now: empty, or asked for more than it delivers
+    double soc_percent = 0.0;   ///< at the end of what lies ahead, or where the battery failed before
+    double voltage_v = 0.0;     ///< there, under the last stretch's power
+    double seconds_left = 0.0;  ///< so long could the cruise go on from there, down to the reserve
+    bool keeps_reserve = true;
+    std::optional<double> fails_after_s = {};  ///< from now: empty, cut off, or asked for more than it delivers
 };
 
 /// The state of charge at which the battery rests at a voltage, between 0 and 100 %. The battery is a Thévenin circuit.
@@ -30,7 +37,8 @@ double resting_soc_percent(const Battery& battery, double voltage_v);
 /// Throws NoAnswerError where more was drawn than there was.
 BatteryState state_after(const Battery& battery, const DischargeRecord& flown, double initial_soc_percent);
 
-/// From a state through the stretches ahead, at least one, in their order.
-LandingForecast forecast_landing(const Battery& battery, const BatteryState& now, std::span<const PowerStretch> ahead);
+/// From a state through the stretches ahead, at least one, in their order; `cruise_w` is the power that could go on.
+LandingForecast forecast_landing(const Battery& battery, const BatteryState& now, std::span<const PowerStretch> ahead,
+                                 double cruise_w, const LandingLimits& limits = {});
 
 }  // namespace flightwatt::battery

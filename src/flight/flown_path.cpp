@@ -1,6 +1,7 @@
 #include "flight/flown_path.h"
 
 #include "base/error.h"
+#include "base/units.h"
 #include "flight/chosen_track.h"
 
 #include <algorithm>
@@ -9,16 +10,22 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double place_every_s = 30.0;
+constexpr double part_s = 30.0;
+constexpr double track_every_s = 1.0;
+constexpr double metres_per_degree =
+    111195.0;                         // of a sphere as large as the earth: it only decides how fine places are
 constexpr double look_every_s = 0.5;  // faster than airspeed is logged
 
-std::vector<double> times_of_places(const PhaseSpan& phase) {
+constexpr double bend_m = 3.0;  // about what satellite navigation is off
+
+/// Parts of about 30 s, as their edges.
+std::vector<double> edges_of_parts(const PhaseSpan& phase) {
     const double start_s = phase.start.time_s;
     const double duration_s = phase.end.time_s - start_s;
-    const auto parts = static_cast<std::size_t>(std::max(1.0, std::round(duration_s / place_every_s)));
-    std::vector<double> times_s;
+    const auto parts = static_cast<std::size_t>(std::max(1.0, std::round(duration_s / part_s)));
+    std::vector<double> times_s(parts + 1);
     for (std::size_t i = 0; i <= parts; ++i)
-        times_s.push_back(start_s + duration_s * static_cast<double>(i) / static_cast<double>(parts));
+        times_s[i] = start_s + duration_s * static_cast<double>(i) / static_cast<double>(parts);
     return times_s;
 }
 
@@ -43,28 +50,89 @@ double mean_airspeed(const Track& airspeed, double from_s, double to_s) {
     return std::cbrt(sum / static_cast<double>(looks));
 }
 
+/// The ground track at times, in both coordinates.
+struct GroundTrack {
+    std::vector<double> time_s;
+    std::vector<double> first;  ///< east_m or latitude_deg
+    std::vector<double> second;
+    double metres_per_first = 1.0;
+    double metres_per_second = 1.0;
+};
+
+/// How far a point of the track lies from the straight line between two others.
+double off_line_m(const GroundTrack& track, std::size_t from, std::size_t to, std::size_t at) {
+    const auto x = [&](std::size_t i) { return (track.first[i] - track.first[from]) * track.metres_per_first; };
+    const auto y = [&](std::size_t i) { return (track.second[i] - track.second[from]) * track.metres_per_second; };
+    const double length2 = x(to) * x(to) + y(to) * y(to);
+    const double part = length2 > 0.0 ? std::clamp((x(at) * x(to) + y(at) * y(to)) / length2, 0.0, 1.0) : 0.0;
+    return std::hypot(x(at) - part * x(to), y(at) - part * y(to));
+}
+
+/// The points between two that straight lines need to stay within bend_m of the track (Douglas and Peucker 1973),
+/// appended in order.
+void add_bends(const GroundTrack& track, std::size_t from, std::size_t to, std::vector<std::size_t>& bends) {
+    std::size_t farthest = from;
+    double most_m = bend_m;
+    for (std::size_t i = from + 1; i < to; ++i) {
+        const double off_m = off_line_m(track, from, to, i);
+        if (!(off_m > most_m)) continue;
+        most_m = off_m;
+        farthest = i;
+    }
+    if (farthest == from) return;
+    add_bends(track, from, farthest, bends);
+    bends.push_back(farthest);
+    add_bends(track, farthest, to, bends);
+}
+
+/// The track of a part at about every second, its ends among them.
+GroundTrack ground_track(const FlightSeries& series, bool is_geographic, double from_s, double to_s) {
+    GroundTrack track;
+    const auto steps = static_cast<std::size_t>(std::max(1.0, std::round((to_s - from_s) / track_every_s)));
+    track.time_s.resize(steps + 1);
+    for (std::size_t i = 0; i <= steps; ++i)
+        track.time_s[i] = from_s + (to_s - from_s) * static_cast<double>(i) / static_cast<double>(steps);
+    track.first = required_at(series, is_geographic ? "latitude_deg" : "east_m", track.time_s);
+    track.second = required_at(series, is_geographic ? "longitude_deg" : "north_m", track.time_s);
+    if (is_geographic) {
+        track.metres_per_first = metres_per_degree;
+        track.metres_per_second = metres_per_degree * std::cos(track.first.front() / units::degree_per_rad);
+    }
+    return track;
+}
+
 }  // namespace
 
 FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase) {
-    const auto times_s = times_of_places(phase);
-    required_at(series, "airspeed_m_per_s", {times_s.front()});
+    const auto edges_s = edges_of_parts(phase);
+    required_at(series, "airspeed_m_per_s", {edges_s.front()});
     const auto airspeed = chosen_track(series, "airspeed_m_per_s");
-    const auto altitude_m = required_at(series, "altitude_m", times_s);
+    const auto altitude_m = required_at(series, "altitude_m", edges_s);
     FlownPath path;
     path.is_geographic = chosen_track(series, "east_m").empty() && !chosen_track(series, "latitude_deg").empty();
-    const auto first = required_at(series, path.is_geographic ? "latitude_deg" : "east_m", times_s);
-    const auto second = required_at(series, path.is_geographic ? "longitude_deg" : "north_m", times_s);
-    for (std::size_t i = 0; i < times_s.size(); ++i) {
-        FlownPlace place{first[i], second[i], altitude_m[i]};
-        if (!path.is_geographic) {
-            place.east_m -= first.front();
-            place.north_m -= second.front();
+    for (std::size_t part = 0; part + 1 < edges_s.size(); ++part) {
+        const double start_s = edges_s[part];
+        const double of_part_s = edges_s[part + 1] - start_s;
+        const auto track = ground_track(series, path.is_geographic, start_s, edges_s[part + 1]);
+        if (part == 0) path.places.push_back({track.first.front(), track.second.front(), altitude_m.front()});
+        const double mean_m_per_s = mean_airspeed(airspeed, start_s, edges_s[part + 1]);
+        std::vector<std::size_t> chosen;
+        add_bends(track, 0, track.time_s.size() - 1, chosen);
+        chosen.push_back(track.time_s.size() - 1);
+        double before_s = start_s;
+        for (const auto i : chosen) {
+            const double done = (track.time_s[i] - start_s) / of_part_s;
+            path.places.push_back({track.first[i], track.second[i],
+                                   std::lerp(altitude_m[part], altitude_m[part + 1], done), track.time_s[i] - before_s,
+                                   mean_m_per_s});
+            before_s = track.time_s[i];
         }
-        if (i > 0) {
-            place.duration_s = times_s[i] - times_s[i - 1];
-            place.airspeed_m_per_s = mean_airspeed(airspeed, times_s[i - 1], times_s[i]);
-        }
-        path.places.push_back(place);
+    }
+    if (path.is_geographic) return path;
+    const auto origin = path.places.front();
+    for (auto& place : path.places) {
+        place.east_m -= origin.east_m;
+        place.north_m -= origin.north_m;
     }
     return path;
 }

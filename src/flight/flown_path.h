@@ -21,8 +21,9 @@ struct FlownPath {
     std::vector<FlownPlace> places;
 };
 
-/// The path of a phase, a place every 30 s (what the power of motion is fitted over) and one at its end. Throws
-/// InputError where the log measured no airspeed, no altitude or no position.
+/// The path of a phase: a place every 30 s or so (what the power of motion is fitted over), and between as many as
+/// straight lines need to stay within 3 m of the track over ground. Airspeed is the mean of the 30 s, altitude linear
+/// in them: what changes faster is an exchange of height and speed. Throws InputError where the log measured no airspeed, no altitude or no position.
 FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase);
 
 }  // namespace flightwatt::flight

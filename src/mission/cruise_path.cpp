@@ -100,10 +100,11 @@ std::vector<FlownElement> flown_elements(const PathPlan& plan) {
     return elements;
 }
 
-mechanical::TermValues mean_terms(const FlownPath& flown) {
+mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const FlownPath& flown) {
     mechanical::TermValues sums;
     for (const auto& piece : flown.pieces) {
         const auto terms = mechanical::terms_of(piece.motion);
+        if (power_of_terms_w(model, terms) < 0.0) continue;
         for (const auto term : mechanical::all_power_terms) sums[term] += terms[term] * piece.time_s / flown.duration_s;
     }
     return sums;
@@ -129,11 +130,13 @@ mechanical::PhysicalModel model_of_law(const mechanical::LevelLaw& law) {
 
 std::vector<std::string> path_warnings(const PathPlan& plan, const FlownPath& flown) {
     constexpr double steep_load_factor = 2.0;  // a bank of 60 degrees
+    constexpr double felt_load_factor = 1.1;   // a tenth more lift is a fifth more drag of lift
     constexpr std::size_t most_named = 3;
     std::vector<std::string> warnings;
     std::size_t warned = plan.path.elements.size();
     std::size_t extrapolated = 0;
     bool is_steep = false;
+    double most_load_factor = 1.0;
     for (const auto& [time_s, motion, element] : flown.pieces) {
         const auto& name = plan.path.elements[element].name;
         if (element != warned && !was_flown(plan.power, motion)) {
@@ -145,11 +148,18 @@ std::vector<std::string> path_warnings(const PathPlan& plan, const FlownPath& fl
                 name, motion.airspeed_m_per_s, motion.climb_m_per_s, range_text(plan.power.airspeed_m_per_s),
                 range_text(plan.power.climb_m_per_s)));
         }
+        most_load_factor = std::max(most_load_factor, motion.load_factor);
         if (motion.load_factor > steep_load_factor && !is_steep) {
             is_steep = true;
             const double bank_deg = std::acos(1.0 / motion.load_factor) * units::degree_per_rad;
             warnings.push_back(fmt::format("{}: such a circle takes a bank of {:.0f} degrees", name, bank_deg));
         }
+    }
+    if (most_load_factor > felt_load_factor && !std::ranges::count(plan.power.terms, mechanical::PowerTerm::turn)) {
+        warnings.push_back(fmt::format(
+            "its circles take up to {:.2f} times the lift of straight flight, and the model has no term for "
+            "turns: they are taken to cost nothing",
+            most_load_factor));
     }
     if (extrapolated > most_named)
         warnings.push_back(fmt::format("the power of {} more is extrapolated so", extrapolated - most_named));

@@ -62,9 +62,10 @@ struct FlownElement {
 };
 std::vector<FlownElement> flown_elements(const PathPlan& plan);
 
-/// The mean of each term of the power over the cruise, weighted by time: what uncertainty_of wants. Zeros for
-/// one that takes no time.
-mechanical::TermValues mean_terms(const FlownPath& flown);
+/// The mean of each term of the power over the cruise, weighted by time: what uncertainty_of wants. Where the motor
+/// stands (power_w is 0) the terms count as zeros, so that their power is the mean power. Zeros for a path that takes no
+/// time.
+mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const FlownPath& flown);
 
 /// The model that a law of airspeed cubed makes, for level flight alone (docs/methods.md, Eq. 23).
 mechanical::PhysicalModel model_of_law(const mechanical::LevelLaw& law);

@@ -1,6 +1,12 @@
 #include "mission/remaining_path.h"
 
+#include "base/error.h"
+#include "base/statistics.h"
+#include "base/units.h"
+
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace flightwatt::mission {
@@ -36,26 +42,67 @@ FlownPath rest_from(const FlownPath& flown, const PathPlace& place) {
     return rest;
 }
 
+namespace {
+
+constexpr std::size_t winds_each = 7;
+
+/// A value that is spread normally, as equally likely ones.
+std::vector<double> spread_values(double mean, double sd) {
+    if (!(sd > 0.0)) return {mean};
+    std::vector<double> values(winds_each);
+    double square = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = normal_quantile((static_cast<double>(i) + 0.5) / winds_each);
+        square += values[i] * values[i] / winds_each;
+    }
+    for (auto& value : values) value = mean + sd * value / std::sqrt(square);  // so that their sd is sd
+    return values;
+}
+
+std::vector<Wind> likely_winds(const Wind& wind) {
+    std::vector<Wind> winds;
+    for (const double speed_m_per_s : spread_values(wind.speed_m_per_s, wind.speed_sd_m_per_s)) {
+        for (const double from_deg : spread_values(wind.from_deg, wind.direction_sd_deg))
+            winds.push_back({std::max(speed_m_per_s, 0.0), from_deg});
+    }
+    return winds;
+}
+
+/// What is left, flown alone: what lies behind may be forbidden.
+FlownPath fly_rest(const FlightPath& path, const PathPlace& place, const Wind& wind) {
+    FlightPath rest;
+    rest.elements.assign(path.elements.begin() + static_cast<std::ptrdiff_t>(place.element), path.elements.end());
+    return rest_from(fly_path(rest, wind, ForbiddenLeg::crawl), {0, place.part});
+}
+
+}  // namespace
+
 RemainingPath predict_rest_of_path(const PathPlan& plan, const mechanical::FlightProgress& flown,
                                    const PathPlace& place) {
-    const auto predict_in = [&](const Wind& wind) {
-        const auto ahead = rest_from(fly_path(plan.path, wind, ForbiddenLeg::crawl), place);
-        const auto cruise = predict_rest_by_motion(plan.power, flown, mean_terms(ahead), ahead.duration_s);
-        return RemainingPath{cruise, ahead.duration_s};
-    };
-    auto rest = predict_in(plan.wind);
-    const auto add_wind_share = [&](double Wind::*what, double sd) {
-        if (!(sd > 0.0)) return;
-        auto more = plan.wind;
-        auto less = plan.wind;
-        more.*what += sd;
-        less.*what -= sd;
-        const double sd_wh =
-            0.5 * (predict_in(more).cruise.energy.energy_wh - predict_in(less).cruise.energy.energy_wh);
-        add_share(rest.cruise.energy, {sd_wh * sd_wh, std::numeric_limits<double>::infinity()});
-    };
-    add_wind_share(&Wind::speed_m_per_s, plan.wind.speed_sd_m_per_s);
-    add_wind_share(&Wind::from_deg, plan.wind.direction_sd_deg);
+    std::vector<double> energies_wh;
+    RemainingPath rest;
+    const auto winds = likely_winds(plan.wind);
+    for (const auto& wind : winds) {
+        const auto ahead = fly_rest(plan.path, place, wind);
+        if (ahead.blown) continue;
+        const auto cruise = predict_rest_by_motion(plan.power, flown, mean_terms(plan.power, ahead), ahead.duration_s);
+        energies_wh.push_back(cruise.energy.energy_wh);
+        rest.duration_s += ahead.duration_s;
+    }
+    const auto count = static_cast<double>(energies_wh.size());
+    rest.forbidden_part = 1.0 - count / static_cast<double>(winds.size());
+    if (rest.forbidden_part > 0.5)
+        throw NoAnswerError("most of the winds that [wind] makes likely forbid the rest of the path");
+    rest.duration_s /= count;
+    const auto ahead = fly_rest(plan.path, place, plan.wind);
+    for (const auto& piece : ahead.pieces) rest.power.push_back({power_w(plan.power, piece.motion), piece.time_s});
+    rest.cruise = predict_rest_by_motion(plan.power, flown, mean_terms(plan.power, ahead), ahead.duration_s);
+    rest.cruise.energy.energy_wh = mean(energies_wh);
+    if (rest.duration_s > 0.0)
+        rest.cruise.remaining_mean_w = units::joule_from_wh(rest.cruise.energy.energy_wh) / rest.duration_s;
+    if (energies_wh.size() > 1)
+        add_share(rest.cruise.energy,
+                  {sample_variance(energies_wh) * (count - 1.0) / count, std::numeric_limits<double>::infinity()});
     return rest;
 }
 

@@ -132,7 +132,9 @@ SampledFlights sample_flights(const PreparedMission& prepared, const Disturbance
     flights.sources = spreads.sources;
     std::vector<double> final_percent;
     final_percent.reserve(landings.size());
-    for (const auto& landing : landings) final_percent.push_back(landing.final_soc_percent);
+    // What is left in a battery that failed flies nobody home.
+    for (const auto& landing : landings)
+        final_percent.push_back(landing.battery_failure ? 0.0 : landing.final_soc_percent);
     flights.final_soc_mean_percent = mean(final_percent);
     flights.final_soc_sd_percent = sample_sd(final_percent);
     std::ranges::sort(final_percent);
@@ -146,12 +148,15 @@ SampledFlights sample_flights(const PreparedMission& prepared, const Disturbance
 
 std::string describe(const SampledFlights& flights) {
     const auto& q = flights.final_soc_quantiles_percent;
+    const double cut_off = flights.probability_battery_failure - flights.probability_depleted;
     auto text = fmt::format(
         "{}: {} flights drawn: below the reserve of {:.6g} % with probability {:.4f} (95 % interval {:.4f} "
-        "to {:.4f}), depleted {:.4f}; final state of charge {:.2f} % on average, sd {:.2f}, quantiles",
+        "to {:.4f}), depleted {:.4f}{}; final state of charge {:.2f} % on average, sd {:.2f}, quantiles",
         flights.mission, flights.samples, flights.reserve_soc_percent, flights.probability_below_reserve,
         flights.probability_below_reserve_95.low, flights.probability_below_reserve_95.high,
-        flights.probability_depleted, flights.final_soc_mean_percent, flights.final_soc_sd_percent);
+        flights.probability_depleted,
+        cut_off > 0.0 ? fmt::format(", cut off or too weak {:.4f} (counts as empty)", cut_off) : "",
+        flights.final_soc_mean_percent, flights.final_soc_sd_percent);
     for (std::size_t i = 0; i < q.size(); ++i) text += fmt::format(" {} %: {:.2f}", shown_quantiles_percent[i], q[i]);
     return text + "; " + describe(flights.sources);
 }

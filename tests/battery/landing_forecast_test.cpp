@@ -28,7 +28,7 @@ Battery thevenin() {
 
 TEST(LandingForecast, AddsUpEnergies) {
     const std::vector<PowerStretch> ahead{{36.0, 500.0}, {18.0, 200.0}};  // half, and a tenth
-    const auto forecast = forecast_landing(plain(), {80.0, 0.0}, ahead);
+    const auto forecast = forecast_landing(plain(), {80.0, 0.0}, ahead, 36.0);
     EXPECT_NEAR(forecast.soc_now_percent, 80.0, 1e-12);
     EXPECT_NEAR(forecast.soc_percent, 20.0, 1e-6);
     EXPECT_NEAR(forecast.voltage_v, 10.0, 1e-12);
@@ -38,15 +38,37 @@ TEST(LandingForecast, AddsUpEnergies) {
 
 TEST(LandingForecast, SaysWhenTheBatteryFails) {
     const std::vector<PowerStretch> ahead{{36.0, 500.0}, {18.0, 600.0}};
-    const auto forecast = forecast_landing(plain(), {60.0, 0.0}, ahead);
+    const auto forecast = forecast_landing(plain(), {60.0, 0.0}, ahead, 36.0);
     EXPECT_NEAR(forecast.fails_after_s.value(), 700.0, 1e-3);
     EXPECT_NEAR(forecast.soc_percent, 0.0, 1e-9);
     EXPECT_EQ(forecast.seconds_left, 0.0);
 }
 
+TEST(LandingForecast, KeepsTheReserveAndTheCutOff) {
+    const std::vector<PowerStretch> ahead{{36.0, 500.0}};  // half
+    const auto kept = forecast_landing(plain(), {80.0, 0.0}, ahead, 36.0, {0.0, 10.0});
+    EXPECT_TRUE(kept.keeps_reserve);
+    EXPECT_NEAR(kept.seconds_left, 200.0, 1e-3);
+    const auto missed = forecast_landing(plain(), {80.0, 0.0}, ahead, 36.0, {0.0, 40.0});
+    EXPECT_FALSE(missed.keeps_reserve);
+    EXPECT_EQ(missed.seconds_left, 0.0);
+    EXPECT_FALSE(missed.fails_after_s);
+    auto battery = thevenin();  // 9 V + 0.03 V a percent, at rest
+    battery.resistance_ohm = 0.0;
+    battery.thevenin->rc_resistance_ohm = 0.0;
+    const auto cut_off = forecast_landing(battery, {80.0, 0.0}, ahead, 36.0, {10.5, 0.0});
+    ASSERT_TRUE(cut_off.fails_after_s);
+    EXPECT_NEAR(cut_off.soc_percent, 50.0, 1e-3);
+    EXPECT_FALSE(cut_off.keeps_reserve);
+    const auto later =
+        forecast_landing(battery, {100.0, 0.0}, std::vector<PowerStretch>{{36.0, 10.0}}, 36.0, {10.5, 0.0});
+    EXPECT_LT(later.seconds_left,
+              forecast_landing(battery, {100.0, 0.0}, std::vector<PowerStretch>{{36.0, 10.0}}, 36.0).seconds_left);
+}
+
 TEST(LandingForecast, SkipsStretchesThatTakeNoTime) {
     const std::vector<PowerStretch> ahead{{36.0, 0.0}, {18.0, 200.0}};
-    EXPECT_NEAR(forecast_landing(plain(), {80.0, 0.0}, ahead).soc_percent, 70.0, 1e-6);
+    EXPECT_NEAR(forecast_landing(plain(), {80.0, 0.0}, ahead, 36.0).soc_percent, 70.0, 1e-6);
 }
 
 TEST(LandingForecast, FindsTheChargeOfAVoltageAtRest) {

@@ -67,6 +67,10 @@ std::vector<Command> commands() {
          "a.data --model spread.toml --until 300 --remaining 100 --battery fits/battery/synthetic-3s.toml",
          {"a.data", "a.log", "spread.toml", "fits/battery/synthetic-3s.toml"},
          "--output"},
+        {"predict",
+         "a.data --mission missions/synthetic/survey-path.toml --until 300",
+         {"a.data", "a.log", "missions/synthetic/survey-path.toml", "fits/mechanical/synthetic-wing.toml"},
+         "--output"},
         {"batch", "a.data s.series.csv --published " + model, flight_files + Words{model}, "--output", flight_names},
         {"batch",
          "folder --published " + model,
@@ -105,7 +109,7 @@ std::vector<Command> commands() {
          "--output"},
         {"report", mission + " --json", mission_files, "--figures", {"schedules-soc.vl.json", "schedules-soc.svg"}},
     };
-    for (const auto* option : {"--output", "--table", "--curves"}) {
+    for (const auto* option : {"--output", "--table", "--curves", "--constants"}) {
         all.push_back({"fit", "a.data s.series.csv --published " + model, flight_files + Words{model}, option});
     }
     for (const auto* option : {"--output", "--schedule-out", "--samples-csv"}) {
@@ -169,8 +173,8 @@ const std::set<std::string> no_files{"N",           "S",      "X",       "P",   
                                      "NAME[,NAME]", "S|now",  "M_PER_S", "PERCENT"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{"--published", "--model",     "--disturb",          "--sysfs",
-                                    "--battery",   "--path-from", "--reference-figures"};
+const std::set<std::string> reading{"--published", "--model",   "--mission",   "--disturb",
+                                    "--sysfs",     "--battery", "--path-from", "--reference-figures"};
 
 class InputsKept : public testing::Test {
   protected:

@@ -57,6 +57,31 @@ TEST(FlownPath, HasAPlaceEveryThirtySeconds) {
     EXPECT_EQ(flown_path(eastward(), cruise(20.0, 30.0)).places.size(), 2U);
 }
 
+TEST(FlownPath, FollowsBends) {
+    auto series = eastward();
+    const double radius_m = 60.0;
+    std::vector<double> times_s;
+    std::vector<double> east_m;
+    std::vector<double> north_m;
+    for (int i = 0; i <= 200; ++i) {
+        times_s.push_back(i);
+        east_m.push_back(radius_m * std::sin(12.0 * i / radius_m));
+        north_m.push_back(radius_m * std::cos(12.0 * i / radius_m));
+    }
+    series.tracks[1] = track("east_m", times_s, east_m);
+    series.tracks[2] = track("north_m", times_s, north_m);
+    const auto path = flown_path(series, cruise(0.0, 200.0));
+    double length_m = 0.0;
+    for (std::size_t i = 1; i < path.places.size(); ++i) {
+        const auto& a = path.places[i - 1];
+        const auto& b = path.places[i];
+        length_m += std::hypot(b.east_m - a.east_m, b.north_m - a.north_m);
+        EXPECT_NEAR(b.altitude_m - a.altitude_m, 0.5 * b.duration_s, 1e-9);
+    }
+    EXPECT_NEAR(length_m, 2400.0, 0.03 * 2400.0);
+    EXPECT_LT(path.places.size(), 120U) << "fewer than one a second";
+}
+
 TEST(FlownPath, IsInDegreesWhereTheLogIs) {
     auto series = eastward();
     series.tracks[1].name = "latitude_deg";

@@ -122,8 +122,10 @@ TEST(Validate, KnowsTheRestOfACruiseByItsPath) {
 TEST(Fit, TellsThePhysicsOfRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto folder = test::scratch_dir();
-    const auto result = run(folder, "fit --model physical --json -o model.toml" + real_flights());
+    const auto result =
+        run(folder, "fit --model physical --json -o model.toml --constants constants.csv" + real_flights());
     ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_THAT(read_file(folder / "constants.csv"), HasSubstr("\ndrag,airspeed cubed,0.00"));
     const auto physical = Json::parse(result.out)["physical"];
     EXPECT_EQ(physical["terms"][0]["term"], "drag");
     EXPECT_NEAR(physical["terms"][0]["coefficient"], 0.0095, 0.001);

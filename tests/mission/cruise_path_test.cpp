@@ -42,7 +42,7 @@ TEST(CruisePath, HasTheMeanOfItsTerms) {
     const auto flown = fly_path(up_and_on, {3.0, 45.0});
     const auto model = test::made_up_wing();
     const auto plan = std::make_shared<const PathPlan>(PathPlan{up_and_on, {3.0, 45.0}, model});
-    EXPECT_NEAR(power_of_terms_w(model, mean_terms(flown)),
+    EXPECT_NEAR(power_of_terms_w(model, mean_terms(model, flown)),
                 mean_power_w(fly_cruise(plan, plan->wind, ForbiddenLeg::refuse)), 1e-9);
 }
 

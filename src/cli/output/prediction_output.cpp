@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "cli/output/json_text.h"
 
+#include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,20 +11,32 @@
 namespace flightwatt::cli {
 namespace {
 
-std::string landing_text(const battery::LandingForecast& forecast) {
-    if (forecast.fails_after_s) return fmt::format("the battery fails in {:.1f} min", *forecast.fails_after_s / 60.0);
-    return fmt::format("{:.1f} % and {:.2f} V at landing, {:.1f} min of cruise left", forecast.soc_percent,
-                       forecast.voltage_v, forecast.seconds_left / 60.0);
+std::string landing_text(const battery::LandingForecast& forecast, const battery::LandingLimits& limits) {
+    if (forecast.fails_after_s) {
+        return fmt::format("the battery {} in {:.1f} min",
+                           limits.cutoff_voltage_v > 0.0 ? "fails or is cut off" : "fails",
+                           *forecast.fails_after_s / 60.0);
+    }
+    auto text = fmt::format("{:.1f} % and {:.2f} V at landing, ", forecast.soc_percent, forecast.voltage_v);
+    if (!forecast.keeps_reserve)
+        return text + fmt::format("short of the reserve of {:g} %", limits.reserve_soc_percent);
+    text += fmt::format("{:.1f} min of cruise left", forecast.seconds_left / 60.0);
+    return limits.reserve_soc_percent > 0.0
+               ? text + fmt::format(" to the reserve of {:g} %", limits.reserve_soc_percent)
+               : text;
 }
 
 std::string battery_text(const std::optional<BatteryPrediction>& battery) {
     if (!battery) return "";
     return fmt::format(
         "battery    {:.1f} % now, from {:.1f} % {}; {}\n"
-        "           at the high end of the interval {}\n",
+        "           {}: {}\n",
         battery->expected.soc_now_percent, battery->initial_soc_percent,
-        battery->initial_is_measured ? "by its voltage at rest" : "as given", landing_text(battery->expected),
-        landing_text(battery->worst));
+        battery->initial_is_measured ? "by its voltage at rest" : "as given",
+        landing_text(battery->expected, battery->limits),
+        battery->with_least_capacity ? "with the most energy and the least capacity of their 95 % intervals"
+                                     : "at the high end of the energy's interval",
+        landing_text(battery->worst, battery->limits));
 }
 
 /// Whether the model says what was to be expected so far: by motion only where the flight's was measured.
@@ -44,6 +57,7 @@ nlohmann::ordered_json json_of(const battery::LandingForecast& forecast) {
     return {{"soc_percent", forecast.soc_percent},
             {"voltage_v", forecast.voltage_v},
             {"seconds_left", forecast.seconds_left},
+            {"keeps_reserve", forecast.keeps_reserve},
             {"fails_after_s", optional_json(forecast.fails_after_s)}};
 }
 
@@ -51,21 +65,35 @@ nlohmann::ordered_json json_of(const battery::LandingForecast& forecast) {
 
 void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
           BatteryPrediction& result) {
-    const auto now = battery::state_after(battery, flown, result.initial_soc_percent);
     const double landing_j = units::joule_from_wh(prediction.landing.energy_wh);
-    const auto forecast = [&](double part) {
-        std::vector<battery::PowerStretch> ahead{{prediction.cruise.remaining_mean_w * part, prediction.remaining_s}};
+    const double cruise_j = units::joule_from_wh(prediction.cruise.energy.energy_wh);
+    double along_path_j = 0.0;
+    for (const auto& stretch : prediction.power_ahead) along_path_j += stretch.power_w * stretch.duration_s;
+    const auto forecast = [&](const battery::Battery& of, double part) {
+        const double cruise_w = prediction.cruise.remaining_mean_w * part;
+        std::vector<battery::PowerStretch> ahead;
+        if (along_path_j > 0.0) {
+            for (const auto& [power_w, duration_s] : prediction.power_ahead)
+                ahead.push_back({power_w * part * cruise_j / along_path_j, duration_s});
+        } else {
+            ahead.push_back({cruise_w, prediction.remaining_s});
+        }
         if (prediction.landing_s > 0.0)
             ahead.push_back({landing_j / prediction.landing_s * part, prediction.landing_s});
-        return battery::forecast_landing(battery, now, ahead);
+        const auto now = battery::state_after(of, flown, result.initial_soc_percent);
+        return battery::forecast_landing(of, now, ahead, cruise_w, result.limits);
     };
     const double rest_wh = prediction.rest.energy_wh;
-    result.expected = forecast(1.0);
-    result.worst = forecast(rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
+    auto least = battery;
+    result.with_least_capacity = battery.intervals.capacity_ah.has_value();
+    if (result.with_least_capacity) least.capacity_ah = battery.intervals.capacity_ah->low;
+    result.expected = forecast(battery, 1.0);
+    result.worst = forecast(least, rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
 }
 
 std::string text_of(const Prediction& prediction) {
-    const auto& [flown, remaining_s, by_motion, cruise, landing, landing_s, rest, interval, battery] = prediction;
+    const auto& [flown, remaining_s, by_motion, cruise, power_ahead, landing, landing_s, rest, interval, battery] =
+        prediction;
     return fmt::format(
                "flown      {:.3f} Wh from lift-off at {:.1f} s to {:.1f} s of the log ({:.1f} s)\n"
                "cruise     {:.3f} Wh in {:.0f} s more: {:.2f} W; so far {:.2f} W, {}\n"
@@ -80,7 +108,8 @@ std::string text_of(const Prediction& prediction) {
 }
 
 nlohmann::ordered_json json_of(const Prediction& prediction) {
-    const auto& [flown, remaining_s, by_motion, cruise, landing, landing_s, rest, interval, battery] = prediction;
+    const auto& [flown, remaining_s, by_motion, cruise, power_ahead, landing, landing_s, rest, interval, battery] =
+        prediction;
     const auto expected_w = is_expected(prediction) ? std::optional(cruise.expected_w) : std::nullopt;
     const auto gain = is_expected(prediction) ? std::optional(cruise.gain) : std::nullopt;
     nlohmann::ordered_json json{{"flown_energy_wh", flown.energy_wh},
@@ -104,6 +133,27 @@ nlohmann::ordered_json json_of(const Prediction& prediction) {
                            {"at_landing_high_energy", json_of(battery->worst)}};
     }
     return json;
+}
+
+void warn_of_level(const StageCall& call, const mechanical::PhysicalModel& model, double level) {
+    constexpr double most_sds = 3.0;
+    const double sd = model.level_sd.value_or(0.0);
+    if (std::abs(level) <= most_sds * sd) return;
+    warn(call,
+         fmt::format("this flight takes {:+.1f} % of what the model says, whose flights differ by {:.1f} % (1 sd): "
+                     "is it another aircraft, load or propeller?",
+                     units::percent_of(level, 1.0), units::percent_of(sd, 1.0)));
+}
+
+void warn_of_motion(const StageCall& call, const mechanical::PhysicalModel& model,
+                    const mechanical::AirMotion& motion) {
+    const auto& speeds = model.airspeed_m_per_s;
+    if (!was_flown(model, motion)) {
+        warn(call, fmt::format("{:.1f} m/s at {:+.1f} m/s of climb is beyond what the model's flights flew: {:.1f} to "
+                               "{:.1f} m/s, {:+.1f} to {:+.1f} m/s of climb",
+                               motion.airspeed_m_per_s, motion.climb_m_per_s, speeds.low, speeds.high,
+                               model.climb_m_per_s.low, model.climb_m_per_s.high));
+    }
 }
 
 }  // namespace flightwatt::cli

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "battery/landing_forecast.h"
+#include "cli/stage.h"
 #include "mechanical/prediction.h"
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -14,7 +16,9 @@ namespace flightwatt::cli {
 /// The battery's part of it.
 struct BatteryPrediction {
     battery::LandingForecast expected;
-    battery::LandingForecast worst;  ///< where the energy is that at the high end of its interval
+    battery::LandingForecast worst;    ///< of energy's high end, and where its interval is known capacity's low one
+    battery::LandingLimits limits;     ///< of the mission
+    bool with_least_capacity = false;  ///< `worst`
     double initial_soc_percent = 0.0;
     bool initial_is_measured = false;  ///< by the resting voltage
 };
@@ -24,6 +28,7 @@ struct Prediction {
     double remaining_s = 0.0;
     bool by_motion = false;  ///< the cruise, by airspeed and climb; else by the curve or a law
     mechanical::RestPrediction cruise;
+    std::vector<battery::PowerStretch> power_ahead = {};  ///< the cruise's course along a path; empty: even
     mechanical::EnergyEstimate landing;
     double landing_s = 0.0;
     mechanical::EnergyEstimate rest;
@@ -41,5 +46,11 @@ std::string text_of(const Prediction& prediction);
 
 /// The same; null for what is not known, and for a battery that does not fail.
 nlohmann::ordered_json json_of(const Prediction& prediction);
+
+/// Warns of a flight's own level that no flight of the model's aircraft should have.
+void warn_of_level(const StageCall& call, const mechanical::PhysicalModel& model, double level);
+
+/// Warns of a motion that the model's flights did not fly.
+void warn_of_motion(const StageCall& call, const mechanical::PhysicalModel& model, const mechanical::AirMotion& motion);
 
 }  // namespace flightwatt::cli

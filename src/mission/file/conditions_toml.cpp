@@ -93,6 +93,14 @@ void apply_airspeed(const TomlTable& root, MissionSetup& mission) {
     const auto* law = airspeed_law_of(mission.mechanical->phases[Phase::cruise]);
     if (law == nullptr && mission.mechanical->physical) {
         const auto physical = *mission.mechanical->physical;
+        const double power = power_w(physical, {airspeed});
+        if (power > furthest_power_ratio * power_w(physical, {physical.airspeed_m_per_s.high}) ||
+            power * furthest_power_ratio < power_w(physical, {physical.airspeed_m_per_s.low})) {
+            refuse(fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed),
+                   fmt::format("they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to flights "
+                               "that were flown so",
+                               physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high));
+        }
         apply_physical(airspeed, physical, mission);
         return;
     }

@@ -22,10 +22,10 @@ Wind read_wind(const TomlTable& root) {
     if (!table) return wind;
     table->refuse_keys_except({"speed_m_per_s", "from_deg", "speed_sd_m_per_s", "direction_sd_deg"});
     wind.speed_m_per_s = number_in(between(0.0, fastest_wind_m_per_s), *table, "speed_m_per_s");
-    const bool is_calm = wind.speed_m_per_s == 0.0;
+    wind.speed_sd_m_per_s = number_in_or(between(0.0, fastest_wind_m_per_s), *table, "speed_sd_m_per_s", 0.0);
+    const bool is_calm = wind.speed_m_per_s == 0.0 && wind.speed_sd_m_per_s == 0.0;
     wind.from_deg = is_calm ? number_in_or(between(-360.0, 360.0), *table, "from_deg", 0.0)
                             : number_in(between(-360.0, 360.0), *table, "from_deg");
-    wind.speed_sd_m_per_s = number_in_or(between(0.0, fastest_wind_m_per_s), *table, "speed_sd_m_per_s", 0.0);
     wind.direction_sd_deg = number_in_or(between(0.0, 360.0), *table, "direction_sd_deg", 0.0);
     return wind;
 }
@@ -192,7 +192,7 @@ FlightPath read_path(const TomlTable& table, const MissionReading& reading) {
 /// The level of the cruise and how flights differ about it.
 mechanical::ConstantPower level_of(const mechanical::PhysicalModel& model, const FlownPath& flown, double mean_w) {
     mechanical::ConstantPower level{mean_w, std::nullopt, 0.0};
-    if (const auto uncertainty = uncertainty_of(model, mean_terms(flown), flown.duration_s)) {
+    if (const auto uncertainty = uncertainty_of(model, mean_terms(model, flown), flown.duration_s)) {
         level.sd_w = uncertainty->sd_w;
         level.degrees_of_freedom = uncertainty->degrees_of_freedom;
     }

@@ -189,6 +189,10 @@ class FlightPlanReader {
             throw InputError({file_}, fmt::format("has no waypoint '{}'", name),
                              names_.empty() ? "it has no waypoints at all" : "it has " + short_list(names_));
         }
+        if (std::ranges::count(names_, name) > 1) {
+            throw InputError(where(found), fmt::format("there are several waypoints '{}'", name),
+                             "give each a name of its own");
+        }
         PathEntry entry;
         entry.name = fmt::format("waypoint {}", name);
         entry.where = where(found);
