@@ -1,0 +1,171 @@
+#include "battery/identification/chart_match.h"
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "base/units.h"
+#include "battery/identification/open_circuit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <boost/math/distributions/normal.hpp>
+#include <fmt/format.h>
+
+namespace flightwatt::battery {
+namespace {
+
+constexpr int capacities_tried = 120;
+constexpr int missings_tried = 60;
+constexpr double most_times_shown = 50.0;
+constexpr double most_missing_part = 0.9;
+constexpr double full_probability = 0.5;
+constexpr double loaded_sd_v = 0.03;   // a cell; what slow relaxation takes under load throughout
+constexpr double resting_sd_v = 0.02;  // a cell; what it leaves at rest
+constexpr double rounding_sd_v = 0.001;
+constexpr double rounding_percent = 0.01;
+constexpr double most_beyond_percent = 10.0;
+
+/// What of the pack is compared with the chart: the rest first, then the curve.
+struct Compared {
+    Eigen::VectorXd charge_ah;
+    Eigen::VectorXd cell_v;
+    Eigen::MatrixXd covariance_v2;  ///< a cell, without the chart's error
+};
+
+Compared compared(const ShownCurve& shown) {
+    const auto knots = static_cast<Eigen::Index>(shown.charge_ah.size());
+    Compared all;
+    all.charge_ah.resize(knots + 1);
+    all.cell_v.resize(knots + 1);
+    all.charge_ah[0] = shown.resting_charge_ah;
+    all.cell_v[0] = shown.resting_voltage_v / shown.cells;
+    for (Eigen::Index k = 0; k < knots; ++k) {
+        all.charge_ah[k + 1] = shown.charge_ah[static_cast<std::size_t>(k)];
+        all.cell_v[k + 1] = shown.voltage_v[static_cast<std::size_t>(k)] / shown.cells;
+    }
+    all.covariance_v2 = Eigen::MatrixXd::Zero(knots + 1, knots + 1);
+    all.covariance_v2(0, 0) = resting_sd_v * resting_sd_v;
+    all.covariance_v2.bottomRightCorner(knots, knots) =
+        shown.covariance_v2 / (shown.cells * shown.cells) +
+        Eigen::MatrixXd::Constant(knots, knots, loaded_sd_v * loaded_sd_v);
+    all.covariance_v2.diagonal().array() += rounding_sd_v * rounding_sd_v;
+    return all;
+}
+
+/// The logarithm of the likelihood of a scale; -infinity where more was drawn than there is by so many percent.
+double log_likelihood(const Compared& shown, double capacity_ah, double missing_ah, double beyond_percent) {
+    const Eigen::VectorXd soc = (1.0 - (shown.charge_ah.array() + missing_ah) / capacity_ah) * units::percent_per_whole;
+    if (soc.minCoeff() < -beyond_percent) return -std::numeric_limits<double>::infinity();
+    const auto n = soc.size();
+    Eigen::VectorXd difference(n);
+    Eigen::VectorXd slope(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        difference[i] = shown.cell_v[i] - lipo_chart_voltage_v(soc[i]);
+        const double low = std::clamp(soc[i] - lipo_chart_charge_percent, 0.0, units::percent_per_whole - 1.0);
+        const double high = std::clamp(soc[i] + lipo_chart_charge_percent, 1.0, units::percent_per_whole);
+        slope[i] = (lipo_chart_voltage_v(high) - lipo_chart_voltage_v(low)) / (high - low);
+    }
+    Eigen::MatrixXd covariance = shown.covariance_v2;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        for (Eigen::Index j = 0; j < n; ++j) {
+            const double apart = (soc[i] - soc[j]) / lipo_chart_alike_percent;
+            const double variance = lipo_chart_uncertainty_v * lipo_chart_uncertainty_v +
+                                    slope[i] * slope[j] * lipo_chart_charge_percent * lipo_chart_charge_percent;
+            covariance(i, j) += variance * std::exp(-apart * apart / 2.0);
+        }
+    }
+    const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+    const Eigen::VectorXd whitened = root.matrixL().solve(difference);
+    return -0.5 * whitened.squaredNorm() - root.matrixLLT().diagonal().array().log().sum();
+}
+
+std::vector<double> capacities(const ShownCurve& shown, std::optional<double> given_ah) {
+    if (given_ah) return {*given_ah};
+    std::vector<double> tried;
+    for (int i = 0; i < capacities_tried; ++i)
+        tried.push_back(shown.charge_ah.back() *
+                        std::pow(most_times_shown, static_cast<double>(i) / (capacities_tried - 1)));
+    return tried;
+}
+
+/// The value below which that much of the probability lies.
+double weighted_quantile(std::vector<std::pair<double, double>> values, double probability) {
+    std::ranges::sort(values);
+    double below = 0.0;
+    for (const auto& [value, weight] : values) {
+        below += weight;
+        if (below >= probability) return value;
+    }
+    return values.back().first;
+}
+
+}  // namespace
+
+std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<double> given_ah) {
+    const auto all = compared(shown);
+    // A capacity that is given holds, though initial charges that are not exact may add up to more.
+    const double beyond_percent = given_ah ? most_beyond_percent : rounding_percent;
+    std::vector<ChargeScale> posterior;
+    double most = -std::numeric_limits<double>::infinity();
+    for (const double capacity_ah : capacities(shown, given_ah)) {
+        for (int i = 0; i <= missings_tried; ++i) {
+            // 0 stands for all that is full, the others for a cell each of what is not.
+            const double part = i == 0 ? 0.0 : most_missing_part * (i - 0.5) / missings_tried;
+            const double missing_ah = part * capacity_ah;
+            const double prior = i == 0 ? full_probability : (1.0 - full_probability) / missings_tried;
+            const double logarithm = log_likelihood(all, capacity_ah, missing_ah, beyond_percent) + std::log(prior);
+            if (!std::isfinite(logarithm)) continue;
+            posterior.push_back({capacity_ah, missing_ah, logarithm});
+            most = std::max(most, logarithm);
+        }
+    }
+    if (posterior.empty()) {
+        throw UsageError(fmt::format("--capacity is {} Ah, and {:.3f} Ah were drawn from the pack",
+                                     given_ah.value_or(0.0), shown.charge_ah.back()));
+    }
+    double sum = 0.0;
+    for (auto& scale : posterior) sum += scale.probability = std::exp(scale.probability - most);
+    for (auto& scale : posterior) scale.probability /= sum;
+    return posterior;
+}
+
+double capacity_quantile_ah(std::span<const ChargeScale> posterior, double probability) {
+    std::vector<std::pair<double, double>> values;
+    for (const auto& scale : posterior) values.emplace_back(scale.capacity_ah, scale.probability);
+    return weighted_quantile(std::move(values), probability);
+}
+
+double missing_quantile_ah(std::span<const ChargeScale> posterior, double probability) {
+    std::vector<std::pair<double, double>> values;
+    for (const auto& scale : posterior) values.emplace_back(scale.missing_ah, scale.probability);
+    return weighted_quantile(std::move(values), probability);
+}
+
+Interval missing_interval_ah(std::span<const ChargeScale> posterior, double offset_ah, double standard_error_ah) {
+    const boost::math::normal normal;
+    const double error_ah = std::max(1e-6, standard_error_ah);
+    const auto below = [&](double missing_ah) {
+        double sum = 0.0;
+        for (const auto& scale : posterior)
+            sum += scale.probability * cdf(normal, (missing_ah - scale.missing_ah - offset_ah) / error_ah);
+        return sum;
+    };
+    const auto quantile = [&](double probability) {
+        double low_ah = -1.0 - std::abs(offset_ah) - 10.0 * error_ah;
+        double high_ah = 1.0 + std::abs(offset_ah) + 10.0 * error_ah;
+        for (const auto& scale : posterior) high_ah = std::max(high_ah, scale.missing_ah + offset_ah + 10.0 * error_ah);
+        for (int i = 0; i < 60; ++i) {
+            const double middle_ah = std::midpoint(low_ah, high_ah);
+            (below(middle_ah) < probability ? low_ah : high_ah) = middle_ah;
+        }
+        return std::max(0.0, std::midpoint(low_ah, high_ah));
+    };
+    constexpr double tail = (1.0 - confidence_level) / 2.0;
+    return {quantile(tail), quantile(1.0 - tail)};
+}
+
+}  // namespace flightwatt::battery
