@@ -35,6 +35,16 @@ struct Chained {
 void add_errors(Chained& chained) {
     chained.resistances = flight_resistances(chained.aligned);
     chained.errors = circuit_errors(chained.aligned);
+    // A flight of another resistance than the common one lies elsewhere on the curve, and so does the reference.
+    const double scatter_ohm = resistance_scatter_ohm(chained.resistances, chained.aligned.fit.resistance_ohm);
+    const auto moved_ah = [&](std::size_t f) {
+        const auto& own = chained.resistances[f];
+        return own ? scatter_ohm * own->charge_ah_per_ohm : 0.0;
+    };
+    const auto reference = chained.aligned.reference;
+    auto& errors_ah = chained.errors.initial_charge_error_ah;
+    for (std::size_t f = 0; f < errors_ah.size(); ++f)
+        if (f != reference) errors_ah[f] = std::hypot(errors_ah[f], moved_ah(f), moved_ah(reference));
 }
 
 /// Whether the voltage under load, by which the record lies where it does, agrees with the link.
@@ -107,9 +117,10 @@ std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::sp
         IdentifiedFlight flight;
         flight.flight = record->flight;
         flight.resting_voltage_v = record->resting_voltage_v;
-        flight.initial_charge_ah = std::max(0.0, missing_ah + offset_ah);
         const double error_ah = chained.errors.initial_charge_error_ah[f];
-        flight.initial_charge_interval_ah = missing_interval_ah(posterior, offset_ah, error_ah);
+        const auto& [low_ah, high_ah] = flight.initial_charge_interval_ah =
+            missing_interval_ah(posterior, offset_ah, error_ah);
+        flight.initial_charge_ah = std::clamp(missing_ah + offset_ah, low_ah, high_ah);
         flight.drawn_ah = record->charge_ah.back();
         flight.link = chained.links[f];
         if (flight.link) flight.pack_of = chained.aligned.records[flight.link->earlier].record->flight;
@@ -157,7 +168,7 @@ Told told_by(std::span<const DischargeRecord> records, const IdentificationOptio
     result.errors = chained.errors;
     result.cells = cells;
     result.capacity = capacity_of(result.fit.knots_ah.back(), posterior, options.capacity_ah);
-    result.missing_ah = missing_quantile_ah(posterior, 0.5);
+    result.missing_ah = probable_missing_ah(posterior);
     result.flights = identified_flights(chained, posterior, result.missing_ah);
     std::vector<std::optional<FlightResistance>> in_order;
     for (const auto f : order_in_time(chained.aligned.records)) in_order.push_back(chained.resistances[f]);

@@ -148,7 +148,6 @@ AlignedFit laid_out(std::span<const DischargeRecord> records, int cells, std::sp
     aligned.fit.weights = growing.fit.weights;
     refit(aligned, first_segments, false);
     aligned.fit.weights.sample_error_v = effective_error_v(aligned.records, aligned.fit.residual_v);
-    aligned.fit.weights.resistance_sd_ohm = resistance_sd_part * aligned.fit.resistance_ohm;
     refit(aligned, first_segments, false);
     return aligned;
 }
@@ -202,7 +201,6 @@ JointBelief joint_belief(const AlignedFit& aligned) {
     for (Eigen::Index k = 0; k < at.resistance; ++k) now[k] = fit.open_circuit_v[static_cast<std::size_t>(k)];
     for (Eigen::Index f = 0; f < flights; ++f) now[at.rest + f] = fit.rest_offset_v[static_cast<std::size_t>(f)];
     now[at.rest + flights] = fit.common_rest_offset_v;
-    for (Eigen::Index f = 0; f < flights; ++f) now[at.own + f] = fit.own_resistance_ohm[static_cast<std::size_t>(f)];
     belief.residual = -belief.rows * now;
     for (Eigen::Index l = 0; l < links; ++l) {
         const auto& [later, earlier, charge_ah, error_ah] = aligned.links[static_cast<std::size_t>(l)];

@@ -19,13 +19,14 @@ namespace flightwatt::battery {
 namespace {
 
 constexpr int capacities_tried = 120;
-constexpr int missings_tried = 60;
+constexpr double missing_step = 0.0125;
+constexpr double full_step = 0.005;
 constexpr double most_times_shown = 50.0;
 constexpr double most_missing_part = 0.9;
 constexpr double full_probability = 0.5;
-constexpr double loaded_sd_v = 0.03;   // a cell; what slow relaxation takes under load throughout
+constexpr double full_sd = 0.03;       // of the capacity
 constexpr double resting_sd_v = 0.02;  // a cell; what it leaves at rest
-constexpr double rounding_sd_v = 0.001;
+constexpr double loaded_sd_v = 0.03;   // a cell; what slow relaxation takes under load throughout
 constexpr double rounding_percent = 0.01;
 constexpr double most_beyond_percent = 10.0;
 
@@ -52,8 +53,31 @@ Compared compared(const ShownCurve& shown) {
     all.covariance_v2.bottomRightCorner(knots, knots) =
         shown.covariance_v2 / (shown.cells * shown.cells) +
         Eigen::MatrixXd::Constant(knots, knots, loaded_sd_v * loaded_sd_v);
-    all.covariance_v2.diagonal().array() += rounding_sd_v * rounding_sd_v;
+    all.covariance_v2.diagonal().array() += lipo_chart_kink_v * lipo_chart_kink_v;
     return all;
+}
+
+/// What may be missing, as a part of the capacity, and how probable that is beforehand.
+struct MissingPart {
+    double part = 0.0;
+    double probability = 0.0;
+    bool is_full = false;
+};
+
+std::vector<MissingPart> missing_parts() {
+    std::vector<MissingPart> parts;
+    double sum = 0.0;
+    for (int i = 0; full_step * i <= 3.0 * full_sd; ++i) {
+        const double part = full_step * i;
+        const double density = (i == 0 ? 0.5 : 1.0) * std::exp(-part * part / (2.0 * full_sd * full_sd));
+        parts.push_back({part, density, true});
+        sum += density;
+    }
+    for (auto& full : parts) full.probability *= full_probability / sum;
+    const auto cells = static_cast<int>(std::lround(most_missing_part / missing_step));
+    for (int i = 0; i < cells; ++i)
+        parts.push_back({missing_step * (i + 0.5), (1.0 - full_probability) / cells, false});
+    return parts;
 }
 
 /// The logarithm of the likelihood of a scale; -infinity where more was drawn than there is by so many percent.
@@ -111,15 +135,16 @@ std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<doub
     const double beyond_percent = given_ah ? most_beyond_percent : rounding_percent;
     std::vector<ChargeScale> posterior;
     double most = -std::numeric_limits<double>::infinity();
+    const auto parts = missing_parts();
     for (const double capacity_ah : capacities(shown, given_ah)) {
-        for (int i = 0; i <= missings_tried; ++i) {
-            // 0 stands for all that is full, the others for a cell each of what is not.
-            const double part = i == 0 ? 0.0 : most_missing_part * (i - 0.5) / missings_tried;
+        for (const auto& [part, prior, is_full] : parts) {
             const double missing_ah = part * capacity_ah;
-            const double prior = i == 0 ? full_probability : (1.0 - full_probability) / missings_tried;
-            const double logarithm = log_likelihood(all, capacity_ah, missing_ah, beyond_percent) + std::log(prior);
+            // Any part of what the pack held may have been drawn; the grid is one of logarithms.
+            const double drawn_part = std::min(1.0, shown.charge_ah.back() / (capacity_ah - missing_ah));
+            const double logarithm =
+                log_likelihood(all, capacity_ah, missing_ah, beyond_percent) + std::log(prior * drawn_part);
             if (!std::isfinite(logarithm)) continue;
-            posterior.push_back({capacity_ah, missing_ah, logarithm});
+            posterior.push_back({capacity_ah, missing_ah, logarithm, is_full});
             most = std::max(most, logarithm);
         }
     }
@@ -139,22 +164,30 @@ double capacity_quantile_ah(std::span<const ChargeScale> posterior, double proba
     return weighted_quantile(std::move(values), probability);
 }
 
-double missing_quantile_ah(std::span<const ChargeScale> posterior, double probability) {
+double probable_missing_ah(std::span<const ChargeScale> posterior) {
+    const double capacity_ah = capacity_quantile_ah(posterior, 0.5);
     std::vector<std::pair<double, double>> values;
-    for (const auto& scale : posterior) values.emplace_back(scale.missing_ah, scale.probability);
-    return weighted_quantile(std::move(values), probability);
+    double sum = 0.0;
+    for (const auto& scale : posterior) {
+        if (scale.capacity_ah != capacity_ah) continue;
+        values.emplace_back(scale.is_full ? 0.0 : scale.missing_ah, scale.probability);
+        sum += scale.probability;
+    }
+    return weighted_quantile(std::move(values), sum / 2.0);
 }
 
 Interval missing_interval_ah(std::span<const ChargeScale> posterior, double offset_ah, double standard_error_ah) {
     const boost::math::normal normal;
     const double error_ah = std::max(1e-6, standard_error_ah);
-    const auto below = [&](double missing_ah) {
-        double sum = 0.0;
-        for (const auto& scale : posterior)
-            sum += scale.probability * cdf(normal, (missing_ah - scale.missing_ah - offset_ah) / error_ah);
-        return sum;
-    };
-    const auto quantile = [&](double probability) {
+    const auto quantile = [&](double probability, bool full_is_full) {
+        const auto below = [&](double missing_ah) {
+            double sum = 0.0;
+            for (const auto& scale : posterior) {
+                const double begins_ah = offset_ah + (scale.is_full && full_is_full ? 0.0 : scale.missing_ah);
+                sum += scale.probability * cdf(normal, (missing_ah - begins_ah) / error_ah);
+            }
+            return sum;
+        };
         double low_ah = -1.0 - std::abs(offset_ah) - 10.0 * error_ah;
         double high_ah = 1.0 + std::abs(offset_ah) + 10.0 * error_ah;
         for (const auto& scale : posterior) high_ah = std::max(high_ah, scale.missing_ah + offset_ah + 10.0 * error_ah);
@@ -165,7 +198,7 @@ Interval missing_interval_ah(std::span<const ChargeScale> posterior, double offs
         return std::max(0.0, std::midpoint(low_ah, high_ah));
     };
     constexpr double tail = (1.0 - confidence_level) / 2.0;
-    return {quantile(tail), quantile(1.0 - tail)};
+    return {quantile(tail, true), quantile(1.0 - tail, false)};
 }
 
 }  // namespace flightwatt::battery

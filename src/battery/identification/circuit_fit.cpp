@@ -43,8 +43,7 @@ Eigen::MatrixXd linear_columns(std::span<const AlignedRecord> records, const std
         return values;
     });
     const auto rests = static_cast<Eigen::Index>(records.size());
-    const auto own = knots + 1 + rests + 1;
-    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(charge.size(), own + rests);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(charge.size(), knots + 1 + rests + 1);
     for (Eigen::Index row = 0; row < charge.size(); ++row) {
         const auto place = place_among(knots_ah, charge[row]);
         const auto lower = static_cast<Eigen::Index>(place.lower);
@@ -58,7 +57,6 @@ Eigen::MatrixXd linear_columns(std::span<const AlignedRecord> records, const std
         for (std::size_t i = 0; i < record.used.size(); ++i) {
             if (!record.used[i]) continue;
             if (i < record.rest_samples) columns(row, knots + 1 + f) = 1.0;
-            columns(row, own + f) = -record.current_a[i];
             ++row;
         }
     }
@@ -70,17 +68,16 @@ Eigen::MatrixXd belief(std::span<const AlignedRecord> records, Eigen::Index knot
     const auto weight = [&](double sd) { return weights.sample_error_v / sd; };
     const auto bends = std::max<Eigen::Index>(0, knots - 2);
     const auto flights = static_cast<Eigen::Index>(records.size());
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * flights + 1 + bends, width);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(flights + 1 + bends, width);
     const auto common = knots + 1 + flights;
     for (Eigen::Index f = 0; f < flights; ++f) {
         const double rest_v = rest_sd_v(*records[static_cast<std::size_t>(f)].record, weights);
-        rows(2 * f, knots + 1 + f) = weight(rest_v);
-        rows(2 * f, common) = -weight(rest_v);
-        rows(2 * f + 1, common + 1 + f) = weight(weights.resistance_sd_ohm);
+        rows(f, knots + 1 + f) = weight(rest_v);
+        rows(f, common) = -weight(rest_v);
     }
-    rows(2 * flights, common) = weight(common_rest_sd_v * weights.cells);
+    rows(flights, common) = weight(common_rest_sd_v * weights.cells);
     for (Eigen::Index b = 0; b < bends; ++b) {
-        const auto row = 2 * flights + 1 + b;
+        const auto row = flights + 1 + b;
         rows(row, b) = weight(bend_sd_v * weights.cells);
         rows(row, b + 1) = -2.0 * weight(bend_sd_v * weights.cells);
         rows(row, b + 2) = weight(bend_sd_v * weights.cells);
@@ -187,8 +184,7 @@ FitColumns columns_of(const CircuitFit& fit) {
     FitColumns columns;
     columns.resistance = static_cast<Eigen::Index>(fit.knots_ah.size());
     columns.rest = columns.resistance + 1;
-    columns.own = columns.rest + static_cast<Eigen::Index>(fit.rest_offset_v.size()) + 1;
-    columns.rc = columns.own + static_cast<Eigen::Index>(fit.own_resistance_ohm.size());
+    columns.rc = columns.rest + static_cast<Eigen::Index>(fit.rest_offset_v.size()) + 1;
     columns.width = columns.rc + (fit.rc_resistance_ohm > 0.0 ? 2 : 0);
     return columns;
 }
@@ -219,7 +215,6 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
     fit.resistance_ohm = solution[knots];
     fit.rest_offset_v.assign(solution.begin() + knots + 1, solution.begin() + knots + 1 + flights);
     fit.common_rest_offset_v = solution[knots + 1 + flights];
-    fit.own_resistance_ohm.assign(solution.begin() + knots + 2 + flights, solution.begin() + linear);
     fit.weights = weights;
     if (tau_s > 0.0) {
         fit.rc_resistance_ohm = solution[linear];

@@ -19,20 +19,17 @@ struct AlignedRecord {
 
 /// What is believed of a pack before its voltages are looked at, as standard deviations. A resting voltage lies beside
 /// the curve that holds under load, because a pack goes on relaxing for an hour: in all flights alike (50 mV a cell), and
-/// in each: 10 mV a cell of packs that come from the charger, and 0.3 of what it rests lower than the fullest. Flights
-/// differ in resistance by 15 %, as packs do within some 8 K. The curve's slope does not jump by more than some 0.15 V a
-/// segment and cell.
+/// in each: 10 mV a cell of packs that come from the charger, and 0.3 of what it rests lower than the fullest. The curve's
+/// slope does not jump by more than some 0.15 V a segment and cell.
 inline constexpr double common_rest_sd_v = 0.05;
 inline constexpr double charged_rest_sd_v = 0.01;
 inline constexpr double lower_rest_part = 0.3;
-inline constexpr double resistance_sd_part = 0.15;
 inline constexpr double bend_sd_v = 0.15;
 
 /// How much that counts beside the samples.
 struct FitWeights {
     int cells = 3;
     double fullest_rest_v = 0.0;  ///< of all records
-    double resistance_sd_ohm = 0.015;
     /// Of one sample, as if samples were independent; what is believed counts in proportion.
     double sample_error_v = 0.05;
 };
@@ -42,13 +39,12 @@ double rest_sd_v(const DischargeRecord& record, const FitWeights& weights);
 
 /// A Thévenin circuit fitted to voltages: over charge drawn, because capacity is not needed for that.
 struct CircuitFit {
-    std::vector<double> knots_ah;            ///< rising, equally far apart
-    std::vector<double> open_circuit_v;      ///< at the knots, straight lines between
-    double resistance_ohm = 0.0;             ///< of the pack
-    std::vector<double> own_resistance_ohm;  ///< of each record, added to it
-    double rc_resistance_ohm = 0.0;          ///< 0: no RC pair explains anything
-    double rc_time_constant_s = 0.0;         ///< 0 without an RC pair
-    std::vector<double> rest_offset_v;       ///< of each record before its first load: so much above the curve
+    std::vector<double> knots_ah;        ///< rising, equally far apart
+    std::vector<double> open_circuit_v;  ///< at the knots, straight lines between
+    double resistance_ohm = 0.0;
+    double rc_resistance_ohm = 0.0;     ///< 0: no RC pair explains anything
+    double rc_time_constant_s = 0.0;    ///< 0 without an RC pair
+    std::vector<double> rest_offset_v;  ///< of each record before its first load: so much above the curve
     double common_rest_offset_v = 0.0;
     FitWeights weights;
     Eigen::VectorXd residual_v;  ///< measured less fitted; the used samples of the records, in their order
@@ -68,7 +64,6 @@ struct FitColumns {
     Eigen::Index knots = 0;       ///< from column 0 on
     Eigen::Index resistance = 0;  ///< this column
     Eigen::Index rest = 0;        ///< from this one on, one a record; then the common one
-    Eigen::Index own = 0;         ///< from this one on, the records' own resistances
     Eigen::Index rc = 0;          ///< rc_resistance, then the logarithm of rc_time_constant; absent without an RC pair
     Eigen::Index width = 0;
 };
@@ -77,8 +72,8 @@ FitColumns columns_of(const CircuitFit& fit);
 /// Derivatives of the fitted voltages, one row a used sample.
 Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
-/// What is believed, as rows beneath those derivatives: of each record its rest and its resistance, then the common rest,
-/// then the bends of the curve.
+/// What is believed, as rows beneath those derivatives: of each record its rest, then the common rest, then the bends of
+/// the curve.
 Eigen::MatrixXd believed_rows(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
 /// [V/Ah] The curve's slope at the used samples of one record.

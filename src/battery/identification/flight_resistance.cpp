@@ -71,6 +71,7 @@ std::optional<FlightResistance> resistance_of(const OwnRows& own, double fitted_
     found.value_ohm = fitted_ohm + change[0];
     found.standard_error_ohm = std::sqrt((parts - 1.0) / parts * squares);
     found.degrees_of_freedom = parts - 2.0;
+    found.charge_ah_per_ohm = -normal(0, 1) / normal(1, 1);
     const double half_ohm = student_t_half_width(found.degrees_of_freedom) * found.standard_error_ohm;
     found.interval_ohm = {std::max(0.0, found.value_ohm - half_ohm), found.value_ohm + half_ohm};
     if (!std::isfinite(half_ohm) || found.value_ohm <= 0.0) return std::nullopt;
@@ -83,11 +84,25 @@ std::vector<std::optional<FlightResistance>> flight_resistances(const AlignedFit
     std::vector<std::optional<FlightResistance>> resistances;
     Eigen::Index first = 0;
     for (const auto& record : aligned.records) {
-        const double fitted_ohm = aligned.fit.resistance_ohm + aligned.fit.own_resistance_ohm[resistances.size()];
-        resistances.push_back(resistance_of(own_rows(record, aligned.fit, first), fitted_ohm));
+        resistances.push_back(resistance_of(own_rows(record, aligned.fit, first), aligned.fit.resistance_ohm));
         first += used_samples(*record.record);
     }
     return resistances;
+}
+
+double resistance_scatter_ohm(std::span<const std::optional<FlightResistance>> resistances, double fitted_ohm) {
+    std::vector<double> values_ohm;
+    double error_ohm2 = 0.0;
+    for (const auto& own : resistances) {
+        if (!own) continue;
+        values_ohm.push_back(own->value_ohm);
+        error_ohm2 += std::pow(own->standard_error_ohm, 2);
+    }
+    double sum_ohm2 = std::pow(usual_scatter_part * fitted_ohm, 2);
+    if (values_ohm.size() < 2) return std::sqrt(sum_ohm2);
+    const auto n = static_cast<double>(values_ohm.size());
+    sum_ohm2 += (n - 1.0) * std::max(0.0, sample_variance(values_ohm) - error_ohm2 / n);
+    return std::sqrt(sum_ohm2 / n);
 }
 
 std::optional<ResistanceTrend> resistance_trend(std::span<const std::optional<FlightResistance>> in_order) {

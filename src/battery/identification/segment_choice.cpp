@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
-#include <utility>
+#include <optional>
 
 #include <Eigen/Cholesky>
 
@@ -85,8 +83,8 @@ double deepest_of_others_ah(const std::vector<Part>& parts, const Part& left_out
     return deepest_ah;
 }
 
-/// Mean square error of predicting each part by the others, its own level free; parts counting alike.
-double prediction_error_v2(const LoadRows& rows, const std::vector<Part>& parts) {
+/// Mean square errors of predicting each part by the others, its own level free. None of a part too deep for the others.
+std::vector<std::optional<double>> prediction_errors_v2(const LoadRows& rows, const std::vector<Part>& parts) {
     const auto width = rows.columns.cols();
     std::vector<Eigen::MatrixXd> normals;
     std::vector<Eigen::VectorXd> pulls;
@@ -100,8 +98,7 @@ double prediction_error_v2(const LoadRows& rows, const std::vector<Part>& parts)
         normal += normals.back();
         pull += pulls.back();
     }
-    double sum = 0.0;
-    double counted = 0.0;
+    std::vector<std::optional<double>> all_v2(parts.size());
     for (std::size_t p = 0; p < parts.size(); ++p) {
         const Eigen::VectorXd solution = (normal - normals[p]).ldlt().solve(pull - pulls[p]);
         const double deepest_ah = deepest_of_others_ah(parts, parts[p]);
@@ -109,26 +106,47 @@ double prediction_error_v2(const LoadRows& rows, const std::vector<Part>& parts)
         for (const auto row : parts[p].rows)
             if (rows.charge_ah[row] <= deepest_ah)
                 errors_v.push_back(rows.voltage_v[row] - rows.columns.row(row).dot(solution));
-        if (errors_v.size() < 2) continue;
-        sum += sample_variance(errors_v);
-        counted += 1.0;
+        if (errors_v.size() > 1) all_v2[p] = sample_variance(errors_v);
     }
-    return counted > 0.0 ? sum / counted : std::numeric_limits<double>::infinity();
+    return all_v2;
+}
+
+/// By how much more the parts are mistaken with one number of segments than with another.
+struct Excess {
+    double mean_v2 = 0.0;
+    double standard_error_v2 = 0.0;
+};
+
+Excess excess_of(const std::vector<std::optional<double>>& some_v2,
+                 const std::vector<std::optional<double>>& others_v2) {
+    std::vector<double> more_v2;
+    for (std::size_t p = 0; p < some_v2.size(); ++p)
+        if (some_v2[p] && others_v2[p]) more_v2.push_back(*some_v2[p] - *others_v2[p]);
+    if (more_v2.empty()) return {};
+    const auto n = static_cast<double>(more_v2.size());
+    return {mean(more_v2), n > 1.0 ? std::sqrt(sample_variance(more_v2) / n) : 0.0};
 }
 
 }  // namespace
 
 std::vector<int> segments_by_prediction(std::span<const AlignedRecord> records, const CircuitFit& fit) {
     const auto parts = parts_of(records);
-    std::vector<std::pair<double, int>> tried;
+    std::vector<std::vector<std::optional<double>>> errors_v2;
+    std::size_t best = 0;
     for (int segments = 1; segments <= most_segments; ++segments) {
         if (segments > 1 && static_cast<double>(fit.residual_v.size()) < least_sample_part * segments) break;
-        tried.emplace_back(prediction_error_v2(load_rows(records, fit, segments), parts), segments);
+        errors_v2.push_back(prediction_errors_v2(load_rows(records, fit, segments), parts));
+        if (excess_of(errors_v2.back(), errors_v2[best]).mean_v2 < 0.0) best = errors_v2.size() - 1;
     }
-    std::ranges::sort(tried);
-    std::vector<int> best_first(tried.size());
-    std::ranges::transform(tried, best_first.begin(), &std::pair<double, int>::second);
-    return best_first;
+    std::size_t fewest = 0;
+    for (; fewest < best; ++fewest) {
+        const auto excess = excess_of(errors_v2[fewest], errors_v2[best]);
+        if (excess.mean_v2 <= excess.standard_error_v2) break;
+    }
+    std::vector<int> in_turn;
+    for (std::size_t s = fewest; s < errors_v2.size(); ++s) in_turn.push_back(static_cast<int>(s) + 1);
+    for (std::size_t s = fewest; s-- > 0;) in_turn.push_back(static_cast<int>(s) + 1);
+    return in_turn;
 }
 
 }  // namespace flightwatt::battery
