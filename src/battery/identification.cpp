@@ -8,9 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
+#include <boost/math/tools/minima.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::battery {
@@ -201,6 +203,59 @@ double resting_place_ah(const DischargeRecord& record, const AlignedFit& aligned
     return charge_at_voltage_ah(fit, reference_v - below_v);
 }
 
+/// Mean square errors of a predicted voltage.
+struct VoltageErrors {
+    double all_v2 = 0.0;
+    double load_v2 = 0.0;  ///< from the first load on
+};
+
+/// Before the first load the voltage lies `above_v` above the curve.
+VoltageErrors voltage_errors(const Battery& battery, const DischargeRecord& record, double initial_charge_ah,
+                             double above_v) {
+    const auto predicted = predict_voltage(battery, record, initial_charge_ah);
+    double rest_squares = 0.0;
+    double load_squares = 0.0;
+    double loaded = 0.0;
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+        if (!record.used[i]) continue;
+        const double error_v = record.voltage_v[i] - predicted.voltage_v[i];
+        const bool rests = i < record.rest_samples;
+        (rests ? rest_squares : load_squares) += std::pow(rests ? error_v - above_v : error_v, 2);
+        if (!rests) loaded += 1.0;
+    }
+    return {(rest_squares + load_squares) / static_cast<double>(used_samples(record)),
+            load_squares / std::max(1.0, loaded)};
+}
+
+double beyond_percent(const BatteryIdentification& identified, const DischargeRecord& record,
+                      double initial_charge_ah) {
+    const auto predicted = predict_voltage(identified.battery, record, initial_charge_ah);
+    double beyond = 0.0;
+    for (std::size_t i = 0; i < record.time_s.size(); ++i)
+        if (record.used[i] && predicted.soc_percent[i] < identified.known_down_to_percent) beyond += 1.0;
+    return units::percent_of(beyond, static_cast<double>(used_samples(record)));
+}
+
+/// The initial charge with which the record's voltage under load is met best.
+void add_best_place(const Battery& battery, const DischargeRecord& record, LeftOutCheck& check) {
+    constexpr int places = 50;
+    const auto error_at = [&](double tried_ah) { return voltage_errors(battery, record, tried_ah, 0.0).load_v2; };
+    double best_ah = 0.0;
+    double least_v2 = std::numeric_limits<double>::infinity();
+    const auto at = [&](int place) { return battery.capacity_ah * place / places; };
+    for (int place = 0; place < places; ++place) {
+        const double error_v2 = error_at(at(place));
+        if (error_v2 >= least_v2) continue;
+        least_v2 = error_v2;
+        best_ah = at(place);
+    }
+    constexpr int half_the_digits = std::numeric_limits<double>::digits / 2;
+    const auto [place_ah, error_v2] = boost::math::tools::brent_find_minima(error_at, std::max(0.0, best_ah - at(1)),
+                                                                            best_ah + at(1), half_the_digits);
+    check.placed_charge_ah = error_v2 < least_v2 ? place_ah : best_ah;
+    check.placed_load_rms_v = std::sqrt(std::min(error_v2, least_v2));
+}
+
 LeftOutCheck checked(const Told& told, const DischargeRecord& record, bool chain) {
     const auto& identified = told.identification;
     LeftOutCheck check;
@@ -212,17 +267,12 @@ LeftOutCheck checked(const Told& told, const DischargeRecord& record, bool chain
         place_ah = earlier.initial_charge_ah + link->charge_ah;
     }
     check.initial_charge_ah = identified.missing_ah + place_ah;
-    const auto predicted = predict_voltage(identified.battery, record, check.initial_charge_ah);
-    const auto samples = static_cast<double>(used_samples(record));
-    double squares = 0.0;
-    double beyond = 0.0;
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        if (!record.used[i]) continue;
-        squares += std::pow(record.voltage_v[i] - predicted.voltage_v[i], 2);
-        if (predicted.soc_percent[i] < identified.known_down_to_percent) beyond += 1.0;
-    }
-    check.voltage_rms_v = std::sqrt(squares / samples);
-    check.beyond_percent = units::percent_of(beyond, samples);
+    const auto errors =
+        voltage_errors(identified.battery, record, check.initial_charge_ah, identified.fit.common_rest_offset_v);
+    check.voltage_rms_v = std::sqrt(errors.all_v2);
+    check.load_rms_v = std::sqrt(errors.load_v2);
+    check.beyond_percent = beyond_percent(identified, record, check.initial_charge_ah);
+    add_best_place(identified.battery, record, check);
     return check;
 }
 

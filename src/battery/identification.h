@@ -38,14 +38,16 @@ struct IdentifiedFlight {
     double voltage_rms_v = 0.0;
 };
 
-/// How a flight's voltage is predicted by the others.
+/// How a flight's voltage is predicted by the others. Under load is from the first load on.
 struct LeftOutCheck {
     std::string flight;
-    double voltage_rms_v = 0.0;
-    double initial_charge_ah =
-        0.0;                      ///< missing from the full pack, as the others and what rests before take-off tell it
-    std::string pack_of;          ///< by which flight's pack; empty: by its resting voltage
-    double beyond_percent = 0.0;  ///< of its samples: with more charge drawn than in any other flight
+    double voltage_rms_v = 0.0;      ///< of all samples, from what is known before take-off
+    double load_rms_v = 0.0;         ///< of those under load
+    double initial_charge_ah = 0.0;  ///< missing from the full pack, as the others and its rest before take-off tell it
+    std::string pack_of;             ///< by which flight's pack; empty: by its resting voltage
+    double placed_load_rms_v = 0.0;  ///< with the initial charge that fits its voltage best, which is known afterwards
+    double placed_charge_ah = 0.0;   ///< that initial charge
+    double beyond_percent = 0.0;     ///< of its samples: with more charge drawn than in any other flight
 };
 
 struct BatteryIdentification {
@@ -77,7 +79,8 @@ struct PredictedVoltage {
 PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah);
 
 /// Identifies the battery without each record in turn and predicts that record from its current, and from what is known
-/// before take-off: whose pack it is, or else its resting voltage. Empty for a single record.
+/// before take-off: whose pack it is, or else its resting voltage; and with its initial charge free, to tell how much of
+/// the error is that charge's. Empty for a single record.
 std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records,
                                          const IdentificationOptions& options);
 

@@ -1,6 +1,7 @@
 #include "battery/identification/chart_match.h"
 
 #include "base/error.h"
+#include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "battery/identification/open_circuit.h"
@@ -24,9 +25,10 @@ constexpr double full_step = 0.005;
 constexpr double most_times_shown = 50.0;
 constexpr double most_missing_part = 0.9;
 constexpr double full_probability = 0.5;
-constexpr double full_sd = 0.03;       // of the capacity
-constexpr double resting_sd_v = 0.02;  // a cell; what it leaves at rest
-constexpr double loaded_sd_v = 0.03;   // a cell; what slow relaxation takes under load throughout
+constexpr double full_sd = 0.03;           // of the capacity
+constexpr double resting_sd_v = 0.02;      // a cell; what it leaves at rest
+constexpr Eigen::Index most_compared = 4;  // points of the curve, evenly spread
+constexpr double loaded_sd_v = 0.03;       // a cell; what slow relaxation takes under load throughout
 constexpr double rounding_percent = 0.01;
 constexpr double most_beyond_percent = 10.0;
 
@@ -39,20 +41,26 @@ struct Compared {
 
 Compared compared(const ShownCurve& shown) {
     const auto knots = static_cast<Eigen::Index>(shown.charge_ah.size());
+    const auto points = std::min<Eigen::Index>(knots, most_compared);
+    Eigen::MatrixXd between = Eigen::MatrixXd::Zero(points, knots);
     Compared all;
-    all.charge_ah.resize(knots + 1);
-    all.cell_v.resize(knots + 1);
+    all.charge_ah.resize(points + 1);
     all.charge_ah[0] = shown.resting_charge_ah;
-    all.cell_v[0] = shown.resting_voltage_v / shown.cells;
-    for (Eigen::Index k = 0; k < knots; ++k) {
-        all.charge_ah[k + 1] = shown.charge_ah[static_cast<std::size_t>(k)];
-        all.cell_v[k + 1] = shown.voltage_v[static_cast<std::size_t>(k)] / shown.cells;
+    for (Eigen::Index p = 0; p < points; ++p) {
+        const double part = static_cast<double>(p) / static_cast<double>(points - 1);
+        all.charge_ah[p + 1] = std::lerp(shown.charge_ah.front(), shown.charge_ah.back(), part);
+        const auto place = place_among(shown.charge_ah, all.charge_ah[p + 1]);
+        between(p, static_cast<Eigen::Index>(place.lower)) = 1.0 - place.fraction;
+        between(p, static_cast<Eigen::Index>(place.lower) + 1) = place.fraction;
     }
-    all.covariance_v2 = Eigen::MatrixXd::Zero(knots + 1, knots + 1);
+    all.cell_v.resize(points + 1);
+    all.cell_v << shown.resting_voltage_v / shown.cells,
+        between * Eigen::Map<const Eigen::VectorXd>(shown.voltage_v.data(), knots) / shown.cells;
+    all.covariance_v2 = Eigen::MatrixXd::Zero(points + 1, points + 1);
     all.covariance_v2(0, 0) = resting_sd_v * resting_sd_v;
-    all.covariance_v2.bottomRightCorner(knots, knots) =
-        shown.covariance_v2 / (shown.cells * shown.cells) +
-        Eigen::MatrixXd::Constant(knots, knots, loaded_sd_v * loaded_sd_v);
+    all.covariance_v2.bottomRightCorner(points, points) =
+        between * shown.covariance_v2 * between.transpose() / (shown.cells * shown.cells) +
+        Eigen::MatrixXd::Constant(points, points, loaded_sd_v * loaded_sd_v);
     all.covariance_v2.diagonal().array() += lipo_chart_kink_v * lipo_chart_kink_v;
     return all;
 }

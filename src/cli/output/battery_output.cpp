@@ -59,7 +59,8 @@ TextTable flights_table(const battery::BatteryIdentification& identified,
     if (has_air) table.header.emplace_back("air C");
     if (has_packs) table.header.emplace_back("pack of");
     if (!left_out.empty()) {
-        for (const auto* name : {"leave-one-out mV", "beyond the others %"}) table.header.emplace_back(name);
+        for (const auto* name : {"leave-one-out mV", "under load mV", "placed best mV", "beyond the others %"})
+            table.header.emplace_back(name);
     }
     for (std::size_t i = 0; i < flights.size(); ++i) {
         const auto& flight = flights[i];
@@ -78,6 +79,8 @@ TextTable flights_table(const battery::BatteryIdentification& identified,
         if (has_packs) table.rows.back().push_back(flight.link ? flight.pack_of : "-");
         if (left_out.empty()) continue;
         table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].voltage_rms_v), 1));
+        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].load_rms_v), 1));
+        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].placed_load_rms_v), 1));
         table.rows.back().push_back(fixed(left_out[i].beyond_percent, 0));
     }
     return table;
@@ -170,6 +173,9 @@ nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
                                     {"initial_charge_ah", check.initial_charge_ah},
                                     {"pack_of", text_or_null(check.pack_of)},
                                     {"voltage_rms_mv", units::mv_from_v(check.voltage_rms_v)},
+                                    {"load_voltage_rms_mv", units::mv_from_v(check.load_rms_v)},
+                                    {"placed_charge_ah", check.placed_charge_ah},
+                                    {"placed_load_voltage_rms_mv", units::mv_from_v(check.placed_load_rms_v)},
                                     {"beyond_others_percent", check.beyond_percent}});
     }
     return json;
