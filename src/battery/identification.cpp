@@ -19,6 +19,7 @@ namespace flightwatt::battery {
 namespace {
 
 constexpr double unreadable_v = 0.01;  // smaller differences between resting voltages are none
+constexpr double tied_ah = 0.001;  // the counter is believed before a voltage whose slow relaxation no circuit follows
 
 int cells_of(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
     const double highest_v =
@@ -34,6 +35,16 @@ struct Chained {
     std::vector<std::optional<FlightResistance>> resistances;
 };
 
+/// By the counters, along all links from where the record's pack was first flown.
+double counted_error_ah(const std::vector<std::optional<PackLink>>& links, std::size_t record) {
+    double squares_ah2 = 0.0;
+    for (std::size_t steps = 0; steps < links.size() && links[record]; ++steps) {
+        squares_ah2 += std::pow(links[record]->error_ah, 2);
+        record = links[record]->earlier;
+    }
+    return std::sqrt(squares_ah2);
+}
+
 void add_errors(Chained& chained) {
     chained.resistances = flight_resistances(chained.aligned);
     chained.errors = circuit_errors(chained.aligned);
@@ -47,6 +58,8 @@ void add_errors(Chained& chained) {
     auto& errors_ah = chained.errors.initial_charge_error_ah;
     for (std::size_t f = 0; f < errors_ah.size(); ++f)
         if (f != reference) errors_ah[f] = std::hypot(errors_ah[f], moved_ah(f), moved_ah(reference));
+    for (std::size_t f = 0; f < errors_ah.size(); ++f)
+        errors_ah[f] = std::hypot(errors_ah[f], counted_error_ah(chained.links, f));
 }
 
 /// Whether the voltage under load, by which the record lies where it does, agrees with the link.
@@ -70,7 +83,7 @@ Chained chained_fit(std::span<const DischargeRecord> records, int cells, bool ch
     for (std::size_t f = 0; chain && f < records.size(); ++f) {
         const auto link = pack_link(records[f], chained.aligned.records, chained.aligned.fit);
         if (!link || !agrees(chained, f, *link)) continue;
-        links.push_back({f, link->earlier, link->charge_ah, link->error_ah});
+        links.push_back({f, link->earlier, link->charge_ah, tied_ah});
         chained.links[f] = link;
     }
     if (links.empty()) return chained;

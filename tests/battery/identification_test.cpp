@@ -182,6 +182,22 @@ TEST(Identification, ChainsFlightsOfOnePack) {
     EXPECT_EQ(leave_each_out(slow.records, own)[1].pack_of, "");
 }
 
+TEST(Identification, TellsHowMuchOfAnErrorTheInitialChargeMakes) {
+    // The second one's rest has not relaxed: by it alone, less is missing than was.
+    const auto slow = flown_twice();
+    IdentificationOptions own{2.4, 3, ""};
+    own.chain = false;
+    const auto check = leave_each_out(slow.records, own)[1];
+    EXPECT_GT(std::abs(check.initial_charge_ah - slow.left_ah), 0.02);
+    EXPECT_LT(check.placed_load_rms_v, check.load_rms_v);
+    const auto chained = leave_each_out(slow.records, {2.4, 3, ""})[1];
+    EXPECT_NEAR(chained.initial_charge_ah, slow.left_ah, 0.02);
+    EXPECT_LT(chained.placed_load_rms_v, chained.load_rms_v + 1e-12);
+    // Half of the samples or more are under load, and the others are predicted as well.
+    EXPECT_GT(chained.voltage_rms_v, 0.6 * chained.load_rms_v);
+    EXPECT_LT(chained.voltage_rms_v, 1.6 * chained.load_rms_v);
+}
+
 TEST(Identification, ChainsNoFlightOfAChargedPack) {
     SyntheticDischarge settings;
     std::vector<DischargeRecord> records;
@@ -248,8 +264,8 @@ TEST(Identification, ForetellsRealFlights) {
         EXPECT_GT(records.back().resting_voltage_v, 12.3);  // a pack of 11.1 V that starts full
     }
     for (const auto& check : leave_each_out(records, {})) {
-        fmt::print("{} left out: {:.1f} mV RMS, {:.0f} % of it beyond the others\n", check.flight,
-                   1e3 * check.voltage_rms_v, check.beyond_percent);
+        fmt::print("{} left out: {:.1f} mV RMS, {:.1f} under load, {:.0f} % of it beyond the others\n", check.flight,
+                   1e3 * check.voltage_rms_v, 1e3 * check.load_rms_v, check.beyond_percent);
         EXPECT_LT(check.voltage_rms_v, 0.090) << check.flight;
     }
     const auto found = identify_battery(records, {});

@@ -23,12 +23,12 @@ struct ShownCurve {
 
 /// How packs differ from the chart, a cell, as standard deviations: 80 mV, alike over 40 % of the charge, and 10 mV at
 /// each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from it by 55 mV, the two
-/// curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The 10 mV
-/// keep a curve's smoothness from telling the capacity: real curves are smoother than any model of their difference.
+/// curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The 10 mV keep a
+/// curve's smoothness from telling the capacity: real curves are smoother than any model of their difference.
 inline constexpr double lipo_chart_uncertainty_v = 0.08;
 inline constexpr double lipo_chart_alike_percent = 40.0;
 inline constexpr double lipo_chart_kink_v = 0.01;
-inline constexpr double lipo_chart_charge_percent = 2.0;  ///< an error of its charge, which counts where it is steep
+inline constexpr double lipo_chart_charge_percent = 4.0;  ///< an error of its charge, which counts where it is steep
 
 /// How probable a capacity is, with a charge missing where the curve begins.
 struct ChargeScale {
@@ -38,12 +38,13 @@ struct ChargeScale {
     bool is_full = false;  ///< as a charger leaves it: then `missing_ah` is 0 to some percent
 };
 
-/// The posterior on a grid, probabilities summing to 1: the curve's voltages at four points are the chart's, with an error
-/// as above (a Gaussian process over charge), a common error of 30 mV a cell under load and one of 20 mV at rest. Beforehand each
-/// part of what the pack held may have been drawn, from all to a fiftieth (or the capacity is `given_ah`); and packs begin
-/// full in half of all cases (which leaves 3 % missing: half a normal distribution), and from 0 to 90 % short in the
-/// others. With a flight of a pack that is not full alone, capacity and initial charge are told by the chart alone, and
-/// the posterior is wide. Throws UsageError where the curve shows more than the given capacity, by a tenth.
+/// The posterior on a grid, probabilities summing to 1: the curve's voltages at four points are the chart's, with an
+/// error as above (a Gaussian process over charge), a common error of 30 mV a cell under load and one of 20 mV at rest.
+/// Beforehand each part of what the pack held may have been drawn, from all to a fiftieth (or the capacity is
+/// `given_ah`); and packs begin full in half of all cases (which leaves 3 % missing: half a normal distribution), and
+/// from 0 to 90 % short in the others. With a flight of a pack that is not full alone, capacity and initial charge are
+/// told by the chart alone, and the posterior is wide. Throws UsageError where the curve shows more than the given
+/// capacity, by a tenth.
 std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<double> given_ah);
 
 /// Quantile of the capacity.

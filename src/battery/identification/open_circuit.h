@@ -13,7 +13,7 @@ namespace flightwatt::battery {
 
 /// The open-circuit voltage that lithium-polymer packs are commonly said to have, a cell: 4.20 V full, 3.84 V half,
 /// 3.27 V empty (the voltage chart that sellers of packs print, e.g. blog.ampow.com/lipo-voltage-chart). Packs differ
-/// from it by some 60 mV (chart_match.h); it stands in only for what no flight has shown.
+/// from it by some 80 mV (chart_match.h); it stands in only for what no flight has shown.
 
 /// [V] a cell at a state of charge, 0 to 100.
 double lipo_chart_voltage_v(double soc_percent);
@@ -47,7 +47,7 @@ Capacity capacity_of(double drawn_ah, std::span<const ChargeScale> posterior, st
 /// The fitted curve over state of charge; beyond its ends it goes on in parallel to the LiPo chart of that many cells.
 struct ExtendedCurve {
     OpenCircuitVoltage curve;
-    std::vector<double> standard_error_v;  ///< 60 mV a cell more where the chart stands in
+    std::vector<double> standard_error_v;  ///< 80 mV a cell more where the chart stands in
     double known_down_to_percent = 0.0;
     double known_up_to_percent = 0.0;
 };

@@ -58,7 +58,8 @@ bool is_fallen_as_drawn(const DischargeRecord& later, const AlignedRecord& earli
                            interpolate_clamped(fit.knots_ah, fit.open_circuit_v, to_ah);
     const double fallen_v = earlier.record->resting_voltage_v - later.resting_voltage_v;
     const double readable_v = std::max(unreadable_cell_v * fit.weights.cells, later.resolution_v);
-    const double reach_v = most_deviations * rest_sd_v(later, fit.weights);
+    const double reach_v =
+        most_deviations * std::hypot(charged_rest_sd_v * fit.weights.cells, lower_rest_part * drawn_v);
     return drawn_v > 2.0 * readable_v && fallen_v > drawn_v / 2.0 && fallen_v < drawn_v + reach_v;
 }
 

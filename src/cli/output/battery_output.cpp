@@ -93,7 +93,9 @@ std::string provenance(const battery::BatteryIdentification& identified) {
     text += fmt::format("# Flights follow the open-circuit voltage down to {:.1f} % ({:.3f} Ah drawn)",
                         identified.known_down_to_percent, identified.fit.knots_ah.back());
     text += identified.known_down_to_percent > 0.0
-                ? "; below, it goes on in\n# parallel to the usual chart of LiPo cells, 60 mV a cell unsure.\n"
+                ? fmt::format(
+                      "; below, it goes on in\n# parallel to the usual chart of LiPo cells, {:.0f} mV a cell unsure.\n",
+                      units::mv_from_v(battery::lipo_chart_uncertainty_v))
                 : ".\n";
     if (identified.missing_ah > 0.0) {
         text += fmt::format("# No flight begins full: above {:.1f} % it is parallel to that chart, too.\n",

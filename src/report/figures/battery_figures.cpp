@@ -1,4 +1,5 @@
 #include "base/statistics.h"
+#include "base/units.h"
 #include "report/figures/flight_figures.h"
 
 #include <algorithm>
@@ -112,8 +113,8 @@ Figure open_circuit_figure(const battery::BatteryIdentification& identified, con
     if (identified.known_down_to_percent > 0.0) {
         caption += fmt::format(
             " Below {:.0f} % no flight shows it: there it goes on in parallel to the usual chart of {} LiPo "
-            "cells, 30 mV a cell unsure.",
-            identified.known_down_to_percent, identified.cells);
+            "cells, {:.0f} mV a cell unsure.",
+            identified.known_down_to_percent, identified.cells, units::mv_from_v(battery::lipo_chart_uncertainty_v));
     }
     auto figure = new_figure(
         id, caption,

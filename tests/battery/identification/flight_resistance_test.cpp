@@ -32,6 +32,30 @@ TEST(FlightResistance, IsThatOfTheFlight) {
     EXPECT_NEAR(trend->ohm_a_flight, 0.03, 0.006);
 }
 
+TEST(FlightResistance, ScattersByMoreThanItsErrors) {
+    const auto scatter = [](const std::vector<std::optional<FlightResistance>>& all) {
+        return resistance_scatter_ohm(all, 0.1);
+    };
+    EXPECT_DOUBLE_EQ(scatter({resistance(0.1)}), 0.015) << "one flight says nothing of others";
+    EXPECT_DOUBLE_EQ(scatter({resistance(0.1), std::nullopt}), 0.015);
+    // Equal resistances: what stands beforehand counts as one flight of four.
+    EXPECT_NEAR(scatter({resistance(0.1), resistance(0.1), resistance(0.1), resistance(0.1)}), 0.0075, 1e-9);
+    // Their variance is 4e-4, of which 4e-6 is error.
+    const auto wide = scatter({resistance(0.08), resistance(0.10), resistance(0.12)});
+    EXPECT_NEAR(wide, std::sqrt((0.015 * 0.015 + 2.0 * (4e-4 - 1e-6)) / 3.0), 1e-9);
+}
+
+TEST(FlightResistance, SaysHowFarItsErrorMovesTheCharge) {
+    const std::vector records{test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 51)),
+                              test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 52))};
+    for (const auto& own : flight_resistances(aligned_fit(records, 3))) {
+        ASSERT_TRUE(own);
+        // More resistance takes more voltage at 2.5 A; less charge missing, where the curve falls by 0.4 V/Ah, gives it.
+        EXPECT_LT(own->charge_ah_per_ohm, -2.0);
+        EXPECT_GT(own->charge_ah_per_ohm, -15.0);
+    }
+}
+
 TEST(FlightResistance, HasATrendFromThreeFlightsOn) {
     EXPECT_FALSE(resistance_trend(std::vector{resistance(0.08), std::optional<FlightResistance>(), resistance(0.09)}));
     const auto rising = resistance_trend(
