@@ -23,11 +23,13 @@ void print_row(const test::BatteryCase& made, std::uint64_t seed, std::size_t pa
         return units::percent_of(static_cast<double>(part), static_cast<double>(std::max<std::size_t>(1, whole)));
     };
     const auto capacities = coverage.capacity_width_percent.size();
-    fmt::print("{:<8}  {:>7}  {:<5}  {:<5}  {:>6.2f}  {:>5.2f}  {:>10.0f}  {:>8.0f}  {:>9.0f}  {:>8.1f}  {:>8}\n",
+    const auto capacity = capacities == 0 ? "-" : fmt::format("{:.0f}", of(coverage.capacities_held, capacities));
+    const auto width = capacities == 0 ? "-" : fmt::format("{:.0f}", median(coverage.capacity_width_percent));
+    fmt::print("{:<8}  {:>7}  {:<5}  {:<5}  {:>6.2f}  {:>5.2f}  {:>10}  {:>8}  {:>9.0f}  {:>8.1f}  {:>8}\n",
                to_string(made.curve), made.flights, made.begins_full ? "yes" : "no", made.capacity_given ? "yes" : "no",
-               made.resistance_spread, made.slow_resistance_ohm, of(coverage.capacities_held, capacities),
-               median_or_zero(coverage.capacity_width_percent), of(coverage.initial_charges_held, coverage.flights),
-               median_or_zero(coverage.initial_width_percent), coverage.without_answer);
+               made.resistance_spread, made.slow_resistance_ohm, capacity, width,
+               of(coverage.initial_charges_held, coverage.flights), median_or_zero(coverage.initial_width_percent),
+               coverage.without_answer);
     std::fflush(stdout);
 }
 
