@@ -120,15 +120,14 @@ TEST(Identification, AlignsFlightsByTheirVoltage) {
 /// Packs that begin at 40 to 100 %: capacity and initial charge lie within their intervals.
 TEST(Identification, IntervalsHoldInitialChargeAndCapacity) {
     for (const auto curve : {test::PackCurve::known, test::PackCurve::polymer}) {
-        for (const bool full : {true, false}) {
-            const auto coverage = test::battery_coverage({curve, 3, full, false, 0.0, 0.0}, 1, all_seeds);
-            fmt::print("{}, {}: capacity {}, all initial charges {} of {}\n", to_string(curve),
-                       full ? "one full" : "none full", coverage.capacities_held, coverage.all_initial_charges_held,
-                       coverage.packs);
-            EXPECT_EQ(coverage.without_answer, 0U);
-            EXPECT_GE(coverage.capacities_held, enough_seeds);
-            EXPECT_GE(coverage.all_initial_charges_held, enough_seeds);
-        }
+        const bool full = curve == test::PackCurve::polymer;
+        const auto coverage = test::battery_coverage({curve, full ? 2U : 3U, full, false, 0.0, 0.0}, 1, all_seeds);
+        fmt::print("{}, {}: capacity {}, all initial charges {} of {}\n", to_string(curve),
+                   full ? "one full" : "none full", coverage.capacities_held, coverage.all_initial_charges_held,
+                   coverage.packs);
+        EXPECT_EQ(coverage.without_answer, 0U);
+        EXPECT_GE(coverage.capacities_held, enough_seeds);
+        EXPECT_GE(coverage.all_initial_charges_held, enough_seeds);
     }
 }
 

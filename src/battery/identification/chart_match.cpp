@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <boost/math/distributions/normal.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::battery {
@@ -160,8 +160,11 @@ std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<doub
         throw UsageError(fmt::format("--capacity is {} Ah, and {:.3f} Ah were drawn from the pack",
                                      given_ah.value_or(0.0), shown.charge_ah.back()));
     }
+    constexpr double negligible = 1e-7;
     double sum = 0.0;
-    for (auto& scale : posterior) sum += scale.probability = std::exp(scale.probability - most);
+    for (auto& scale : posterior) scale.probability = std::exp(scale.probability - most);
+    std::erase_if(posterior, [](const ChargeScale& scale) { return scale.probability < negligible; });
+    for (const auto& scale : posterior) sum += scale.probability;
     for (auto& scale : posterior) scale.probability /= sum;
     return posterior;
 }
@@ -185,21 +188,21 @@ double probable_missing_ah(std::span<const ChargeScale> posterior) {
 }
 
 Interval missing_interval_ah(std::span<const ChargeScale> posterior, double offset_ah, double standard_error_ah) {
-    const boost::math::normal normal;
+    constexpr int halvings = 40;
     const double error_ah = std::max(1e-6, standard_error_ah);
     const auto quantile = [&](double probability, bool full_is_full) {
         const auto below = [&](double missing_ah) {
             double sum = 0.0;
             for (const auto& scale : posterior) {
                 const double begins_ah = offset_ah + (scale.is_full && full_is_full ? 0.0 : scale.missing_ah);
-                sum += scale.probability * cdf(normal, (missing_ah - begins_ah) / error_ah);
+                sum += scale.probability * std::erfc((begins_ah - missing_ah) / (error_ah * std::numbers::sqrt2)) / 2.0;
             }
             return sum;
         };
         double low_ah = -1.0 - std::abs(offset_ah) - 10.0 * error_ah;
         double high_ah = 1.0 + std::abs(offset_ah) + 10.0 * error_ah;
         for (const auto& scale : posterior) high_ah = std::max(high_ah, scale.missing_ah + offset_ah + 10.0 * error_ah);
-        for (int i = 0; i < 60; ++i) {
+        for (int i = 0; i < halvings; ++i) {
             const double middle_ah = std::midpoint(low_ah, high_ah);
             (below(middle_ah) < probability ? low_ah : high_ah) = middle_ah;
         }
