@@ -36,7 +36,7 @@ TEST_F(BatteryOutput, HasARowAParameterAndAFlight) {
     const auto flights = flights_table(identified_, checks_);
     ASSERT_EQ(flights.rows.size(), 2U);
     EXPECT_EQ(flights.rows[0].size(), flights.header.size());
-    EXPECT_EQ(flights_table(identified_, {}).header.size() + 2, flights.header.size());
+    EXPECT_EQ(flights_table(identified_, {}).header.size() + 4, flights.header.size());
 }
 
 TEST_F(BatteryOutput, SaysWhosePackWasAssumed) {
@@ -57,6 +57,8 @@ TEST_F(BatteryOutput, SaysWhosePackWasAssumed) {
     EXPECT_EQ(json["flights"][1]["pack_of"], "synthetic_1");
     EXPECT_EQ(json["flights"][1]["pause_s"], 1380.0);
     EXPECT_TRUE(json["flights"][0]["pack_of"].is_null());
+    EXPECT_EQ(json["left_out"][1]["load_voltage_rms_mv"], 1e3 * checks_[1].load_rms_v);
+    EXPECT_LE(json["left_out"][1]["placed_load_voltage_rms_mv"], json["left_out"][1]["load_voltage_rms_mv"]);
     EXPECT_TRUE(json["resistance_trend"].is_null()) << "two flights have none";
 }
 
