@@ -23,6 +23,7 @@ battery::IdentificationOptions read_options(const cli::StageCall& call) {
     battery::IdentificationOptions options;
     options.capacity_ah = cli::positive_option(call, "capacity", "Ah", 1e4);
     if (call.has("cells")) options.cells = static_cast<int>(cli::count_option(call, "cells", 1, 24));
+    options.chain = !call.has("no-chain");
     options.name = call.maybe<std::string>("name").value_or(
         call.output ? std::filesystem::path(*call.output).stem().string() : "identified");
     return options;
@@ -54,18 +55,24 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
 }
 
 void warn_if_never_full(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
+    if (identified.missing_ah <= 0.0) return;
     double highest_v = 0.0;
     for (const auto& flight : identified.flights) highest_v = std::max(highest_v, flight.resting_voltage_v);
-    const double percent = battery::lipo_chart_soc_percent(highest_v / identified.cells);
-    constexpr double as_good_as_full_percent = 85.0;
-    if (percent >= as_good_as_full_percent) return;
-    cli::warn(call, fmt::format("no flight begins full: the fullest rests at {:.3f} V, which for {} LiPo cells "
-                                "is usually {:.0f} %; it counts as 100 %",
-                                highest_v, identified.cells, percent));
+    cli::warn(call,
+              fmt::format(
+                  "no flight begins full: the fullest rests at {:.3f} V; by the usual chart of {} LiPo cells "
+                  "{:.0f} % are left{}",
+                  highest_v, identified.cells, identified.known_up_to_percent,
+                  identified.flights.size() == 1 ? ". One flight does not tell both capacity and initial charge" : ""));
 }
 
 void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
     warn_if_never_full(call, identified);
+    for (const auto& flight : identified.flights) {
+        if (flight.link)
+            cli::note(call, cli::describe_link(flight) + "; --no-chain takes no flight for another's pack");
+    }
+    if (identified.trend) cli::note(call, cli::describe(*identified.trend));
     if (identified.capacity.origin == battery::CapacityOrigin::given) {
         cli::note(call, "the capacity is the one given: the flights do not tell it");
     }
@@ -113,13 +120,15 @@ int main(int argc, char** argv) {
 state of charge, series resistance and one RC pair, with 95 % intervals, for missions (model =
 "thevenin"). The battery goes to the standard output as TOML; with -o it goes to the file, and its
 parameters and flights are shown: how well each flight's voltage is met, and how well the others
-predict it. The fullest flight begins at 100 %, the others where their resting voltage lies. Flights
-whose current was computed from throttle are refused.)"};
+predict it. What was missing from the pack when a flight began is estimated with it, and a flight that
+follows another on what looks like the same pack is chained to it. Each flight's own resistance tells
+the pack's state of health. Flights whose current was computed from throttle are refused.)"};
     auto add = stage.options.add_options();
     add("capacity", cli::value<double>("AH"),
         "the pack's capacity; without it, what a flight drew from full to empty, or "
         "else a guess after the usual chart of LiPo cells");
     add("cells", cli::value("N"), "cells in series; default: by the highest resting voltage");
+    add("no-chain", "take no flight for one on the pack of the flight before it");
     add("name", cli::value("NAME"), "the battery's name; default: FILE's");
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);

@@ -46,6 +46,11 @@ constexpr std::array named_units{
     NamedUnit{"deg", {Quantity::degree, 1.0}},
     NamedUnit{"decideg", {Quantity::degree, 0.1}},
     NamedUnit{"rad", {Quantity::degree, degree_per_rad}},
+    NamedUnit{"celsius", {Quantity::celsius, 1.0}},
+    NamedUnit{"degC", {Quantity::celsius, 1.0}},
+    NamedUnit{"deg_celsius", {Quantity::celsius, 1.0}},
+    NamedUnit{"deg celsius", {Quantity::celsius, 1.0}},
+    NamedUnit{"deg celcius", {Quantity::celsius, 1.0}},  // as Paparazzi spells it
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 namespace flightwatt::units {
 
 inline constexpr double seconds_per_hour = 3600.0;
+inline constexpr double seconds_per_minute = 60.0;
 inline constexpr double pprz_full_scale = 9600.0;  ///< Paparazzi's MAX_PPRZ: full throttle in "pprz"
 inline constexpr double percent_per_whole = 100.0;
 inline constexpr double rad_per_turn = 2.0 * std::numbers::pi;
@@ -20,6 +21,8 @@ constexpr double joule_from_wh(double energy_wh) { return energy_wh * seconds_pe
 constexpr double coulomb_from_ah(double charge_ah) { return charge_ah * seconds_per_hour; }
 constexpr double ah_from_coulomb(double charge_as) { return charge_as / seconds_per_hour; }
 constexpr double mv_from_v(double voltage_v) { return voltage_v * 1000.0; }
+constexpr double mohm_from_ohm(double resistance_ohm) { return resistance_ohm * 1000.0; }
+constexpr double minute_from_second(double time_s) { return time_s / seconds_per_minute; }
 constexpr double percent_of(double part, double whole) { return part / whole * percent_per_whole; }
 constexpr double part_of(double whole, double percent) { return whole * percent / percent_per_whole; }
 constexpr double percent_from_pprz(double throttle_pprz) { return throttle_pprz / pprz_full_scale * percent_per_whole; }
@@ -43,7 +46,19 @@ constexpr double joule_from_microjoule(double energy_uj) { return energy_uj * mi
 constexpr double second_from_millisecond(double time_ms) { return time_ms * milli; }
 
 /// What a declared unit measures; the base unit of each is the suffix used in names.
-enum class Quantity { volt, ampere, watt, ampere_hour, watt_hour, metre, metre_per_second, second, percent, degree };
+enum class Quantity {
+    volt,
+    ampere,
+    watt,
+    ampere_hour,
+    watt_hour,
+    metre,
+    metre_per_second,
+    second,
+    percent,
+    degree,
+    celsius
+};
 
 struct Unit {
     Quantity quantity;

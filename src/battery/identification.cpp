@@ -3,185 +3,305 @@
 #include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
+#include "battery/identification/aligned_fit.h"
+#include "battery/identification/chart_match.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
+
+#include <boost/math/tools/minima.hpp>
+#include <fmt/format.h>
 
 namespace flightwatt::battery {
 namespace {
 
-constexpr int most_segments = 12;
-constexpr double least_sample_part = 20.0;  // samples a segment, at least
-constexpr double unreadable_v = 0.01;       // smaller differences between resting voltages are none
-constexpr int alignments = 5;
+constexpr double unreadable_v = 0.01;  // smaller differences between resting voltages are none
+constexpr double tied_ah = 0.001;  // the counter is believed before a voltage whose slow relaxation no circuit follows
 
-std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segments) {
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (const auto& [record, initial] : records) {
-        const auto [least, most] = std::ranges::minmax_element(record->charge_ah);
-        low = std::min(low, *least + initial);
-        high = std::max(high, *most + initial);
+int cells_of(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
+    const double highest_v =
+        std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
+    return options.cells.value_or(lipo_cells(highest_v));
+}
+
+/// A circuit whose flights are chained, and why each of them is.
+struct Chained {
+    AlignedFit aligned;
+    std::vector<std::optional<PackLink>> links;  ///< one a record
+    CircuitErrors errors;
+    std::vector<std::optional<FlightResistance>> resistances;
+};
+
+/// By the counters, along all links from where the record's pack was first flown.
+double counted_error_ah(const std::vector<std::optional<PackLink>>& links, std::size_t record) {
+    double squares_ah2 = 0.0;
+    for (std::size_t steps = 0; steps < links.size() && links[record]; ++steps) {
+        squares_ah2 += std::pow(links[record]->error_ah, 2);
+        record = links[record]->earlier;
     }
-    low = std::max(low, 0.0);
-    std::vector<double> knots;
-    for (int i = 0; i <= segments; ++i) knots.push_back(std::lerp(low, high, static_cast<double>(i) / segments));
-    return knots;
+    return std::sqrt(squares_ah2);
 }
 
-bool falls_throughout(const CircuitFit& fit) {
-    return std::ranges::adjacent_find(fit.open_circuit_v, std::less<>()) == fit.open_circuit_v.end();
+void add_errors(Chained& chained) {
+    chained.resistances = flight_resistances(chained.aligned);
+    chained.errors = circuit_errors(chained.aligned);
+    // A flight of another resistance than the common one lies elsewhere on the curve, and so does the reference.
+    const double scatter_ohm = resistance_scatter_ohm(chained.resistances, chained.aligned.fit.resistance_ohm);
+    const auto moved_ah = [&](std::size_t f) {
+        const auto& own = chained.resistances[f];
+        return own ? scatter_ohm * own->charge_ah_per_ohm : 0.0;
+    };
+    const auto reference = chained.aligned.reference;
+    auto& errors_ah = chained.errors.initial_charge_error_ah;
+    for (std::size_t f = 0; f < errors_ah.size(); ++f)
+        if (f != reference) errors_ah[f] = std::hypot(errors_ah[f], moved_ah(f), moved_ah(reference));
+    for (std::size_t f = 0; f < errors_ah.size(); ++f)
+        errors_ah[f] = std::hypot(errors_ah[f], counted_error_ah(chained.links, f));
 }
 
-/// As many independent samples as neighbours' correlation leaves of the residuals.
-double effective_samples(const Eigen::VectorXd& residual) {
-    const auto n = residual.size();
-    const double alike = residual.head(n - 1).dot(residual.tail(n - 1)) / residual.squaredNorm();
-    const double r = std::clamp(alike, 0.0, 0.99);
-    return static_cast<double>(n) * (1.0 - r) / (1.0 + r);
+/// Whether the voltage under load, by which the record lies where it does, agrees with the link.
+bool agrees(const Chained& free, std::size_t later, const PackLink& link) {
+    const auto& records = free.aligned.records;
+    const double apart_ah = records[later].initial_charge_ah - records[link.earlier].initial_charge_ah - link.charge_ah;
+    const double error_ah = std::hypot(free.errors.initial_charge_error_ah[later],
+                                       free.errors.initial_charge_error_ah[link.earlier], link.error_ah);
+    constexpr double deviations = 3.0;
+    constexpr double unlike_part = 0.05;  // of the charge shown: what no circuit follows
+    return std::abs(apart_ah) < deviations * error_ah + unlike_part * free.aligned.fit.knots_ah.back();
 }
 
-/// Akaike's: a stiffer curve predicts as well, but leans the resistances towards its misfit.
-double criterion(const CircuitFit& fit, double samples) {
-    const auto parameters = static_cast<double>(fit.knots_ah.size()) + 3.0;
-    return samples * std::log(fit.rms_v * fit.rms_v + 1e-18) + 2.0 * parameters;
-}
-
-/// The fit with the number of segments that the data support.
-CircuitFit best_fit(std::span<const AlignedRecord> records) {
-    std::vector<CircuitFit> fits;
-    double samples = 0.0;
-    for (int segments = 1; segments <= most_segments; ++segments) {
-        auto fit = fit_circuit(records, equal_knots(records, segments));
-        if (static_cast<double>(fit.residual_v.size()) < least_sample_part * segments) break;
-        samples = effective_samples(fit.residual_v);  // the last has least of the curve's misfit left
-        if (falls_throughout(fit)) fits.push_back(std::move(fit));
+/// The circuit with every flight's pack its own; then chained, where that agrees.
+Chained chained_fit(std::span<const DischargeRecord> records, int cells, bool chain) {
+    Chained chained;
+    chained.aligned = aligned_fit(records, cells);
+    chained.links.resize(records.size());
+    add_errors(chained);
+    std::vector<ChargeLink> links;
+    for (std::size_t f = 0; chain && f < records.size(); ++f) {
+        const auto link = pack_link(records[f], chained.aligned.records, chained.aligned.fit);
+        if (!link || !agrees(chained, f, *link)) continue;
+        links.push_back({f, link->earlier, link->charge_ah, tied_ah});
+        chained.links[f] = link;
     }
-    if (fits.empty()) throw NoAnswerError("the open-circuit voltage does not fall as charge is drawn");
-    return *std::ranges::min_element(fits, {}, [&](const CircuitFit& fit) { return criterion(fit, samples); });
+    if (links.empty()) return chained;
+    chained.aligned = aligned_fit(records, cells, links);
+    add_errors(chained);
+    return chained;
 }
 
-/// The charge at which the fitted curve, which falls, has this voltage; 0 to the last knot.
+std::vector<double> rms_of_each(const AlignedFit& aligned) {
+    std::vector<double> rms_v;
+    Eigen::Index row = 0;
+    for (const auto& [record, initial_ah] : aligned.records) {
+        const auto samples = used_samples(*record);
+        rms_v.push_back(
+            std::sqrt(aligned.fit.residual_v.segment(row, samples).squaredNorm() / static_cast<double>(samples)));
+        row += samples;
+    }
+    return rms_v;
+}
+
+/// The records' places in the order of their clocks, or as they are given where one has none.
+std::vector<std::size_t> order_in_time(std::span<const AlignedRecord> records) {
+    std::vector<std::size_t> order(records.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (std::ranges::all_of(records, [](const auto& aligned) { return aligned.record->start_clock_s.has_value(); }))
+        std::ranges::stable_sort(order, {}, [&](std::size_t i) { return *records[i].record->start_clock_s; });
+    return order;
+}
+
+ShownCurve shown_curve(const Chained& chained) {
+    const auto& [records, links, fit, reference] = chained.aligned;
+    return {fit.knots_ah,
+            fit.open_circuit_v,
+            chained.errors.open_circuit_covariance_v2,
+            records[reference].initial_charge_ah,
+            records[reference].record->resting_voltage_v,
+            fit.weights.cells};
+}
+
+std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::span<const ChargeScale> posterior,
+                                                 double missing_ah) {
+    const auto rms_v = rms_of_each(chained.aligned);
+    std::vector<IdentifiedFlight> flights;
+    for (std::size_t f = 0; f < chained.aligned.records.size(); ++f) {
+        const auto& [record, offset_ah] = chained.aligned.records[f];
+        IdentifiedFlight flight;
+        flight.flight = record->flight;
+        flight.resting_voltage_v = record->resting_voltage_v;
+        const double error_ah = chained.errors.initial_charge_error_ah[f];
+        const auto& [low_ah, high_ah] = flight.initial_charge_interval_ah =
+            missing_interval_ah(posterior, offset_ah, error_ah);
+        flight.initial_charge_ah = std::clamp(missing_ah + offset_ah, low_ah, high_ah);
+        flight.drawn_ah = record->charge_ah.back();
+        flight.link = chained.links[f];
+        if (flight.link) flight.pack_of = chained.aligned.records[flight.link->earlier].record->flight;
+        flight.resistance = chained.resistances[f];
+        flight.air_temperature_c = record->air_temperature_c;
+        flight.samples = record->time_s.size();
+        flight.unused = flight.samples - static_cast<std::size_t>(used_samples(*record));
+        flight.voltage_rms_v = rms_v[f];
+        flights.push_back(std::move(flight));
+    }
+    return flights;
+}
+
+/// All that is told of a battery, and what another record is predicted with.
+struct Told {
+    BatteryIdentification identification;
+    AlignedFit aligned;
+};
+
+Battery battery_of(const BatteryIdentification& result, const ExtendedCurve& extended, const std::string& name) {
+    const auto& fit = result.fit;
+    Battery battery;
+    battery.name = name;
+    battery.resistance_ohm = fit.resistance_ohm;
+    battery.capacity_ah = result.capacity.value_ah;
+    battery.thevenin = TheveninCircuit{extended.curve, fit.rc_resistance_ohm, std::max(0.1, fit.rc_time_constant_s)};
+    battery.intervals.capacity_ah = result.capacity.interval_ah;
+    battery.intervals.resistance_ohm = result.errors.resistance_ohm;
+    battery.intervals.open_circuit_standard_error_v = extended.standard_error_v;
+    if (fit.rc_resistance_ohm > 0.0) {
+        battery.intervals.rc_resistance_ohm = result.errors.rc_resistance_ohm;
+        battery.intervals.rc_time_constant_s = result.errors.rc_time_constant_s;
+    }
+    return battery;
+}
+
+Told told_by(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
+    if (records.empty()) throw NoAnswerError("no flight is left to identify a battery from");
+    const int cells = cells_of(records, options);
+    auto chained = chained_fit(records, cells, options.chain);
+    const auto posterior = match_chart(shown_curve(chained), options.capacity_ah);
+    Told told;
+    auto& result = told.identification;
+    result.fit = chained.aligned.fit;
+    result.errors = chained.errors;
+    result.cells = cells;
+    result.capacity = capacity_of(result.fit.knots_ah.back(), posterior, options.capacity_ah);
+    result.missing_ah = probable_missing_ah(posterior);
+    result.flights = identified_flights(chained, posterior, result.missing_ah);
+    std::vector<std::optional<FlightResistance>> in_order;
+    for (const auto f : order_in_time(chained.aligned.records)) in_order.push_back(chained.resistances[f]);
+    result.trend = resistance_trend(in_order);
+    const auto extended = extended_curve(result.fit, result.errors.open_circuit_standard_error_v,
+                                         result.capacity.value_ah, result.missing_ah);
+    result.known_down_to_percent = extended.known_down_to_percent;
+    result.known_up_to_percent = extended.known_up_to_percent;
+    result.battery = battery_of(result, extended, options.name);
+    told.aligned = std::move(chained.aligned);
+    return told;
+}
+
+/// The charge of the fitted curve, which falls, at this voltage; 0 to the last knot.
 double charge_at_voltage_ah(const CircuitFit& fit, double voltage_v) {
     const std::vector<double> rising_v(fit.open_circuit_v.rbegin(), fit.open_circuit_v.rend());
     const std::vector<double> charge_ah(fit.knots_ah.rbegin(), fit.knots_ah.rend());
     return interpolate_clamped(rising_v, charge_ah, voltage_v);
 }
 
-/// The open-circuit voltage [V] that a record begins with: at rest, less what the electronics take.
-double initial_voltage_v(const DischargeRecord& record, double resistance_ohm) {
-    return record.resting_voltage_v + resistance_ohm * record.resting_current_a;
+/// Where on the curve a record begins, by its resting voltage: as much below the reference as it rests lower.
+double resting_place_ah(const DischargeRecord& record, const AlignedFit& aligned) {
+    const auto& fit = aligned.fit;
+    const auto& [reference, reference_ah] = aligned.records[aligned.reference];
+    const double resistance_ohm = fit.resistance_ohm + fit.rc_resistance_ohm;
+    const double below_v = reference->resting_voltage_v - record.resting_voltage_v +
+                           resistance_ohm * (reference->resting_current_a - record.resting_current_a);
+    if (std::abs(below_v) <= std::max(unreadable_v, record.resolution_v)) return reference_ah;
+    const double reference_v = interpolate_clamped(fit.knots_ah, fit.open_circuit_v, reference_ah);
+    return charge_at_voltage_ah(fit, reference_v - below_v);
 }
 
-struct AlignedFit {
-    std::vector<AlignedRecord> records;
-    CircuitFit fit;
+/// Mean square errors of a predicted voltage.
+struct VoltageErrors {
+    double all_v2 = 0.0;
+    double load_v2 = 0.0;  ///< from the first load on
 };
 
-/// Lays every record onto the curve of `fit` by its resting voltage; returns the greatest move [Ah].
-double align(std::vector<AlignedRecord>& records, const CircuitFit& fit) {
-    const double resistance_ohm = fit.resistance_ohm + fit.rc_resistance_ohm;
-    double highest_v = 0.0;
-    for (const auto& aligned : records)
-        highest_v = std::max(highest_v, initial_voltage_v(*aligned.record, resistance_ohm));
-    double moved_ah = 0.0;
-    for (auto& [record, initial_ah] : records) {
-        const double below_v = highest_v - initial_voltage_v(*record, resistance_ohm);
-        double now_ah = 0.0;
-        if (below_v > std::max(unreadable_v, record->resolution_v))
-            now_ah = charge_at_voltage_ah(fit, fit.open_circuit_v.front() - below_v);
-        moved_ah = std::max(moved_ah, std::abs(now_ah - initial_ah));
-        initial_ah = now_ah;
+/// Before the first load the voltage lies `above_v` above the curve.
+VoltageErrors voltage_errors(const Battery& battery, const DischargeRecord& record, double initial_charge_ah,
+                             double above_v) {
+    const auto predicted = predict_voltage(battery, record, initial_charge_ah);
+    double rest_squares = 0.0;
+    double load_squares = 0.0;
+    double loaded = 0.0;
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+        if (!record.used[i]) continue;
+        const double error_v = record.voltage_v[i] - predicted.voltage_v[i];
+        const bool rests = i < record.rest_samples;
+        (rests ? rest_squares : load_squares) += std::pow(rests ? error_v - above_v : error_v, 2);
+        if (!rests) loaded += 1.0;
     }
-    return moved_ah;
+    return {(rest_squares + load_squares) / static_cast<double>(used_samples(record)),
+            load_squares / std::max(1.0, loaded)};
 }
 
-/// The curve and the initial charges that belong to it: begun with the fullest flight's own curve.
-AlignedFit aligned_fit(std::span<const DischargeRecord> records) {
-    AlignedFit aligned;
-    for (const auto& record : records) aligned.records.push_back({&record, 0.0});
-    const auto fullest = *std::ranges::max_element(
-        aligned.records, {}, [](const auto& aligned_record) { return aligned_record.record->resting_voltage_v; });
-    aligned.fit = best_fit({&fullest, 1});
-    for (int i = 0; i < alignments; ++i) {
-        const double moved_ah = align(aligned.records, aligned.fit);
-        if (i > 0 && moved_ah < 1e-3 * aligned.fit.knots_ah.back()) break;
-        aligned.fit = best_fit(aligned.records);
-    }
-    return aligned;
+double beyond_percent(const BatteryIdentification& identified, const DischargeRecord& record,
+                      double initial_charge_ah) {
+    const auto predicted = predict_voltage(identified.battery, record, initial_charge_ah);
+    double beyond = 0.0;
+    for (std::size_t i = 0; i < record.time_s.size(); ++i)
+        if (record.used[i] && predicted.soc_percent[i] < identified.known_down_to_percent) beyond += 1.0;
+    return units::percent_of(beyond, static_cast<double>(used_samples(record)));
 }
 
-/// The state of charge at which the open-circuit voltage is that which the record begins with.
-double initial_soc_percent(const Battery& battery, const DischargeRecord& record) {
-    const auto& circuit = battery.thevenin.value();
-    const auto& [soc, volts] = circuit.open_circuit;
-    const double initial_v = initial_voltage_v(record, battery.resistance_ohm + circuit.rc_resistance_ohm);
-    if (initial_v >= volts.back() - std::max(unreadable_v, record.resolution_v)) return soc.back();
-    return interpolate_clamped(volts, soc, initial_v);
+/// The initial charge with which the record's voltage under load is met best.
+void add_best_place(const Battery& battery, const DischargeRecord& record, LeftOutCheck& check) {
+    constexpr int places = 50;
+    const auto error_at = [&](double tried_ah) { return voltage_errors(battery, record, tried_ah, 0.0).load_v2; };
+    double best_ah = 0.0;
+    double least_v2 = std::numeric_limits<double>::infinity();
+    const auto at = [&](int place) { return battery.capacity_ah * place / places; };
+    for (int place = 0; place < places; ++place) {
+        const double error_v2 = error_at(at(place));
+        if (error_v2 >= least_v2) continue;
+        least_v2 = error_v2;
+        best_ah = at(place);
+    }
+    constexpr int half_the_digits = std::numeric_limits<double>::digits / 2;
+    const auto [place_ah, error_v2] = boost::math::tools::brent_find_minima(error_at, std::max(0.0, best_ah - at(1)),
+                                                                            best_ah + at(1), half_the_digits);
+    check.placed_charge_ah = error_v2 < least_v2 ? place_ah : best_ah;
+    check.placed_load_rms_v = std::sqrt(std::min(error_v2, least_v2));
 }
 
-std::vector<IdentifiedFlight> identified_flights(const AlignedFit& aligned) {
-    std::vector<IdentifiedFlight> flights;
-    Eigen::Index row = 0;
-    for (const auto& [record, initial_ah] : aligned.records) {
-        IdentifiedFlight flight;
-        flight.flight = record->flight;
-        flight.resting_voltage_v = record->resting_voltage_v;
-        flight.initial_charge_ah = initial_ah;
-        flight.drawn_ah = record->charge_ah.back();
-        const auto used = used_samples(*record);
-        flight.samples = static_cast<std::size_t>(used);
-        flight.unused = record->used.size() - flight.samples;
-        flight.voltage_rms_v =
-            std::sqrt(aligned.fit.residual_v.segment(row, used).squaredNorm() / static_cast<double>(used));
-        row += used;
-        flights.push_back(std::move(flight));
+LeftOutCheck checked(const Told& told, const DischargeRecord& record, bool chain) {
+    const auto& identified = told.identification;
+    LeftOutCheck check;
+    check.flight = record.flight;
+    double place_ah = resting_place_ah(record, told.aligned);
+    if (const auto link = chain ? pack_link(record, told.aligned.records, told.aligned.fit) : std::nullopt) {
+        const auto& earlier = told.aligned.records[link->earlier];
+        check.pack_of = earlier.record->flight;
+        place_ah = earlier.initial_charge_ah + link->charge_ah;
     }
-    return flights;
+    check.initial_charge_ah = identified.missing_ah + place_ah;
+    const auto errors =
+        voltage_errors(identified.battery, record, check.initial_charge_ah, identified.fit.common_rest_offset_v);
+    check.voltage_rms_v = std::sqrt(errors.all_v2);
+    check.load_rms_v = std::sqrt(errors.load_v2);
+    check.beyond_percent = beyond_percent(identified, record, check.initial_charge_ah);
+    add_best_place(identified.battery, record, check);
+    return check;
 }
 
 }  // namespace
 
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
-    if (records.empty()) throw NoAnswerError("no flight is left to identify a battery from");
-    const auto aligned = aligned_fit(records);
-    BatteryIdentification result;
-    result.fit = aligned.fit;
-    result.errors = circuit_errors(aligned.records, aligned.fit);
-    result.flights = identified_flights(aligned);
-    const double highest_v =
-        std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
-    result.cells = options.cells.value_or(lipo_cells(highest_v));
-    result.capacity =
-        capacity_of(aligned.fit, result.errors.open_circuit_standard_error_v.back(), result.cells, options.capacity_ah);
-    const auto extended = extended_curve(aligned.fit, result.errors.open_circuit_standard_error_v,
-                                         result.capacity.value_ah, result.cells);
-    result.known_down_to_percent = extended.known_down_to_percent;
-
-    auto& battery = result.battery;
-    battery.name = options.name;
-    battery.resistance_ohm = aligned.fit.resistance_ohm;
-    battery.capacity_ah = result.capacity.value_ah;
-    battery.thevenin =
-        TheveninCircuit{extended.curve, aligned.fit.rc_resistance_ohm, std::max(0.1, aligned.fit.rc_time_constant_s)};
-    battery.intervals.capacity_ah = result.capacity.interval_ah;
-    battery.intervals.resistance_ohm = result.errors.resistance_ohm;
-    battery.intervals.open_circuit_standard_error_v = extended.standard_error_v;
-    if (aligned.fit.rc_resistance_ohm > 0.0) {
-        battery.intervals.rc_resistance_ohm = result.errors.rc_resistance_ohm;
-        battery.intervals.rc_time_constant_s = result.errors.rc_time_constant_s;
-    }
-    return result;
+    return told_by(records, options).identification;
 }
 
-PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record) {
+PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah) {
     const auto& circuit = battery.thevenin.value();
-    const double initial_percent = initial_soc_percent(battery, record);
     const auto settled_a = settled_current_a(record, circuit.rc_time_constant_s);
     PredictedVoltage predicted;
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        const BatteryState state{initial_percent - units::percent_of(record.charge_ah[i], battery.capacity_ah),
+        const double drawn_ah = initial_charge_ah + record.charge_ah[i];
+        const BatteryState state{units::percent_per_whole - units::percent_of(drawn_ah, battery.capacity_ah),
                                  circuit.rc_resistance_ohm * settled_a[i]};
         predicted.soc_percent.push_back(state.soc_percent);
         predicted.voltage_v.push_back(terminal_voltage_v(battery, state, record.current_a[i]));
@@ -196,18 +316,7 @@ std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> record
     for (std::size_t k = 0; k < records.size(); ++k) {
         std::vector<DischargeRecord> others(records.begin(), records.end());
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-        const auto identified = identify_battery(others, options);
-        const auto& record = records[k];
-        const auto predicted = predict_voltage(identified.battery, record);
-        const auto samples = static_cast<double>(used_samples(record));
-        double squares = 0.0;
-        double beyond = 0.0;
-        for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-            if (!record.used[i]) continue;
-            squares += std::pow(record.voltage_v[i] - predicted.voltage_v[i], 2);
-            if (predicted.soc_percent[i] < identified.known_down_to_percent) beyond += 1.0;
-        }
-        checks.push_back({record.flight, std::sqrt(squares / samples), units::percent_of(beyond, samples)});
+        checks.push_back(checked(told_by(others, options), records[k], options.chain));
     }
     return checks;
 }

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "battery/battery.h"
+#include "battery/identification/circuit_errors.h"
 #include "battery/identification/circuit_fit.h"
 #include "battery/identification/discharge_record.h"
+#include "battery/identification/flight_resistance.h"
 #include "battery/identification/open_circuit.h"
+#include "battery/identification/pack_link.h"
 
 #include <optional>
 #include <span>
@@ -16,24 +19,35 @@ struct IdentificationOptions {
     std::optional<double> capacity_ah;
     std::optional<int> cells;  ///< default: from the highest resting voltage
     std::string name = "identified";
+    bool chain = true;  ///< take a flight for one on the pack of the flight before it, where all agrees (pack_link.h)
 };
 
 /// One flight in the fit.
 struct IdentifiedFlight {
     std::string flight;
     double resting_voltage_v = 0.0;
-    double initial_charge_ah = 0.0;  ///< missing from the fullest flight's, by the resting voltage
+    double initial_charge_ah = 0.0;  ///< missing from the full pack when it began
+    Interval initial_charge_interval_ah;
     double drawn_ah = 0.0;
+    std::string pack_of;           ///< assumed to be flown on the pack that this flight left; empty: none is known
+    std::optional<PackLink> link;  ///< why; `earlier` is its place among the flights
+    std::optional<FlightResistance> resistance;
+    std::optional<double> air_temperature_c;
     std::size_t samples = 0;
     std::size_t unused = 0;  ///< with a current that the motor did not draw
     double voltage_rms_v = 0.0;
 };
 
-/// How a flight's voltage is predicted by the others.
+/// How a flight's voltage is predicted by the others. Under load is from the first load on.
 struct LeftOutCheck {
     std::string flight;
-    double voltage_rms_v = 0.0;
-    double beyond_percent = 0.0;  ///< of its samples: with more charge drawn than in any other flight
+    double voltage_rms_v = 0.0;      ///< of all samples, from what is known before take-off
+    double load_rms_v = 0.0;         ///< of those under load
+    double initial_charge_ah = 0.0;  ///< missing from the full pack, as the others and its rest before take-off tell it
+    std::string pack_of;             ///< by which flight's pack; empty: by its resting voltage
+    double placed_load_rms_v = 0.0;  ///< with the initial charge that fits its voltage best, which is known afterwards
+    double placed_charge_ah = 0.0;   ///< that initial charge
+    double beyond_percent = 0.0;     ///< of its samples: with more charge drawn than in any other flight
 };
 
 struct BatteryIdentification {
@@ -42,14 +56,17 @@ struct BatteryIdentification {
     CircuitErrors errors;
     Capacity capacity;
     int cells = 0;
+    double missing_ah = 0.0;             ///< from the full pack, where the curve begins
     double known_down_to_percent = 0.0;  ///< state of charge; below, the curve is the LiPo chart's
+    double known_up_to_percent = 100.0;  ///< above, likewise
     std::vector<IdentifiedFlight> flights;
+    std::optional<ResistanceTrend> trend;  ///< over the flights in the order of their clocks, else as given
 };
 
-/// Identifies the Thévenin circuit of a battery from flights. The fullest flight, by its resting voltage, begins at
-/// 100 %; the others' initial charge is where their resting voltage lies on the curve. The curve has as many equal
-/// segments as Akaike's criterion prefers, counting samples by the autocorrelation of the residuals, and falls
-/// throughout. Throws NoAnswerError where the flights determine no such circuit, and as capacity_of does.
+/// Identifies the Thévenin circuit of a battery from flights. What was missing from the pack is a parameter of each flight
+/// in the same least squares; flights on one pack are chained (aligned_fit.h, pack_link.h). Capacity, and what was missing
+/// from the fullest flight, are laid onto the LiPo chart (chart_match.h): a fullest flight that rests as a full pack may
+/// counts as full. Throws NoAnswerError where the flights determine no such circuit, and as capacity_of does.
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options);
 
 /// At every sample of a record; the state of charge may fall below 0 where the capacity is too small.
@@ -58,10 +75,12 @@ struct PredictedVoltage {
     std::vector<double> voltage_v;  ///< terminal
 };
 
-/// Predicts a record from its current and resting voltage alone, with a Thévenin battery.
-PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record);
+/// Predicts a record with a Thévenin battery, from its current and the charge that was missing when it began.
+PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah);
 
-/// Identifies the battery without each record in turn and predicts that record. Empty for a single record.
+/// Identifies the battery without each record in turn and predicts that record from its current, and from what is known
+/// before take-off: whose pack it is, or else its resting voltage; and with its initial charge free, to tell how much of
+/// the error is that charge's. Empty for a single record.
 std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records,
                                          const IdentificationOptions& options);
 

@@ -118,6 +118,7 @@ const std::vector<std::string>& track_names() {
                                                 "course_deg",
                                                 "climb_m_per_s",
                                                 "roll_deg",
+                                                "air_temperature_c",
                                                 "mode",
                                                 "block",
                                                 "rover_mode",

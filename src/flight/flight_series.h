@@ -70,6 +70,7 @@ struct FlightSeries {
     // Known before the flight, from the .log.
     CurrentOrigin current_origin = CurrentOrigin::unknown;
     std::optional<double> planned_ground_altitude_m;
+    std::optional<double> start_clock_s;     ///< Unix time at which the log's own seconds begin
     std::map<int, std::string> block_names;  ///< of the track "block"
     bool lacks_log = false;                  ///< telemetry without its .log
 

@@ -23,7 +23,8 @@ constexpr std::array bounds_by_name{NamedBounds{"altitude_m", {-500.0, 2e4}},
                                     NamedBounds{"wind_speed_m_per_s", {0.0, 100.0}},
                                     NamedBounds{"wind_east_m_per_s", {-100.0, 100.0}},
                                     NamedBounds{"wind_north_m_per_s", {-100.0, 100.0}},
-                                    NamedBounds{"climb_m_per_s", {-300.0, 300.0}}};
+                                    NamedBounds{"climb_m_per_s", {-300.0, 300.0}},
+                                    NamedBounds{"air_temperature_c", {-80.0, 100.0}}};
 
 }  // namespace
 

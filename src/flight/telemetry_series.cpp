@@ -72,6 +72,7 @@ const std::vector<FieldTrack>& field_tracks() {
         {"climb_m_per_s", "GPS", "climb", speed, Merge::mean},
         {"roll_deg", "ATTITUDE", "phi", degree, Merge::latest},
         {"roll_deg", "ROTORCRAFT_FP", "phi", degree, Merge::latest},
+        {"air_temperature_c", "AIR_DATA", "temp", Quantity::celsius, Merge::mean},
         {"mode", "PPRZ_MODE", "ap_mode", std::nullopt, Merge::latest},
         {"block", "NAVIGATION", "cur_block", std::nullopt, Merge::latest},
         {"rover_mode", "ROVER_STATUS", "ap_mode", std::nullopt, Merge::latest},
@@ -104,6 +105,7 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
     series.assumed_definitions = log.assumed_definitions;
     series.skipped = log.skipped;
     if (!log.configuration) return;
+    series.start_clock_s = log.configuration->time_of_day_s;
     const auto found = log.configuration->aircraft.find(series.aircraft_id);
     if (found == log.configuration->aircraft.end()) return;
     const auto& aircraft = found->second;
@@ -126,7 +128,7 @@ std::vector<telemetry::MessageRequest> flight_messages() {
         {"GPS", {"utm_east", "utm_north", "course", "alt", "speed", "climb", "utm_zone"}},
         {"GPS_INT", {"lat", "lon", "hmsl", "ecef_xd", "ecef_yd", "ecef_zd"}},
         {"GPS_LLA", {"lat", "lon"}},
-        {"AIR_DATA", {"amsl_baro", "airspeed"}},
+        {"AIR_DATA", {"temp", "amsl_baro", "airspeed"}},
         {"AIRSPEED", {"airspeed"}},
         {"ROTORCRAFT_FP", {"east", "north", "up", "vup", "phi", "psi", "thrust"}},
         {"ATTITUDE", {"phi", "psi"}},

@@ -116,9 +116,17 @@ void add_identified(Section& section, const ReportBattery& battery) {
         section.html += paragraph("The RC pair may be none: its resistance's interval reaches down to 0.");
     }
     section.html += table_html(parameters_table(identified), {"Parameters of the battery", false, {}});
-    add_figure(section, voltage_figure(identified.battery, battery.records, "battery-voltage"));
+    add_figure(section, voltage_figure(identified, battery.records, "battery-voltage"));
     section.html += table_html(cli::flights_table(*battery.identified, battery.leave_one_out),
                                {"Flights in the fit of the battery", true, {}});
+    section.html += paragraph(
+        "Missing: from the full pack when the flight began, with its 95 % interval; own ohm: the series resistance that "
+        "this flight alone shows, with its own.",
+        "soft");
+    for (const auto& flight : identified.flights)
+        if (flight.link) section.html += paragraph(cli::describe_link(flight) + ".", "soft");
+    if (identified.trend)
+        section.html += paragraph("State of health: " + cli::describe(*identified.trend) + ".", "soft");
     section.html += paragraph(
         "Leave-one-out: RMS error of this flight's voltage by the battery of the other flights; beyond the others: "
         "part of its samples with more charge drawn than in any other flight.",

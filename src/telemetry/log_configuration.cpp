@@ -159,6 +159,10 @@ LogConfiguration parse_log_configuration(const std::string& text, const std::fil
     if (configuration.messages.empty()) {
         throw InputError({file.string(), line_of(text, begin)}, "its <protocol> defines no message");
     }
+    for_each_tag(text, "configuration", [&](const pugi::xml_node& node) {
+        const auto time_s = parse_number(attribute(node, "time_of_day"));
+        if (!configuration.time_of_day_s && time_s && *time_s > 0.0) configuration.time_of_day_s = time_s;
+    });
     read_all_aircraft(text, configuration);
     return configuration;
 }

@@ -24,6 +24,7 @@ struct AircraftConfiguration {
 /// What a Paparazzi .log says: message definitions by name, and the aircraft by id.
 struct LogConfiguration {
     std::filesystem::path file;
+    std::optional<double> time_of_day_s;  ///< Unix time at which the log's own seconds begin
     std::map<std::string, MessageDefinition, std::less<>> messages;
     std::map<std::string, AircraftConfiguration> aircraft;
 };

@@ -14,6 +14,7 @@ void expect_unit(const char* text, Quantity quantity, double factor) {
 
 TEST(Units, ReadsTheUnitsOfPaparazzi) {
     expect_unit("V", Quantity::volt, 1.0);
+    expect_unit("deg celcius", Quantity::celsius, 1.0);
     expect_unit("1e-1V", Quantity::volt, 0.1);
     expect_unit("1e-2A", Quantity::ampere, 0.01);
     expect_unit("decivolt", Quantity::volt, 0.1);

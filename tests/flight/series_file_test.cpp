@@ -44,6 +44,7 @@ TEST(SeriesFile, KeepsEveryTrackOnItsOwnClock) {
         "rubbish\n2 20 ENERGY 50 11. 2. 22. 0.2 2.\n2.5 20 TAKEOFF 1\nrubbish\n");
     series.block_names = {{0, "Wait \"GPS\""}, {3, "Take\tOff"}};
     series.planned_ground_altitude_m = 0.1;
+    series.start_clock_s = 1593771465.17;
     series.notes = {"a note"};
     const auto text = to_csv(series);
     EXPECT_THAT(text, StartsWith("# format = 1\n# flight = \"x\"\n"));

@@ -47,6 +47,21 @@ TEST(TelemetrySeries, TakesPowerFromEnergyAndEverythingElseOntoItsClock) {
     EXPECT_EQ(source_of(series, "altitude_m"), "ESTIMATOR.z");
 }
 
+TEST(TelemetrySeries, KnowsTheAirTemperatureAndTheClock) {
+    const std::string log =
+        "<configuration time_of_day=\"1594356783.16\"><protocol><msg_class name=\"telemetry\"><message name=\"AIR_DATA\" "
+        "id=\"222\"><field name=\"pressure\" type=\"float\" unit=\"Pa\"/><field name=\"temp\" type=\"float\" "
+        "unit=\"deg celcius\"/></message></msg_class></protocol></configuration>";
+    const auto series =
+        flight_series(parse_telemetry("1. 20 AIR_DATA 100000. 20.5\n2. 20 AIR_DATA 100000. 21.5\n", "x.data",
+                                      telemetry::parse_log_configuration(log, "x.log"), flight_messages()),
+                      "20");
+    EXPECT_THAT(chosen_track(series, "air_temperature_c").value, ElementsAre(20.5, 21.5));
+    EXPECT_EQ(series.start_clock_s, 1594356783.16);
+    EXPECT_EQ(cut_series(series, 1.5).start_clock_s, series.start_clock_s);
+    EXPECT_THAT(chosen_track(cut_series(series, 1.5), "air_temperature_c").value, ElementsAre(20.5));
+}
+
 /// The series of a log whose .log defines POWER_DEVICE with these attributes of current and voltage.
 FlightSeries with_power_device(const std::string& current, const std::string& voltage) {
     const auto log =

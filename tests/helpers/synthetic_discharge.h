@@ -21,8 +21,11 @@ struct SyntheticDischarge {
     double voltage_step_v = 0.006;   ///< what the voltage is rounded to
     double current_noise_a = 0.02;
     double current_step_a = 0.004;
-    double lost_fraction = 0.1;      ///< of the samples, and a gap of 15 s now and then
-    double initial_charge_ah = 0.0;  ///< missing when it begins
+    double lost_fraction = 0.1;        ///< of the samples, and a gap of 15 s now and then
+    double initial_charge_ah = 0.0;    ///< missing when it begins
+    double slow_resistance_ohm = 0.0;  ///< a second RC pair, as packs relax for an hour
+    double slow_time_constant_s = 900.0;
+    double initial_slow_v = 0.0;  ///< not yet relaxed from the flight before
 };
 
 /// Rest, run-up, take-off at 8 A, a cruise in gusts, a descent with the motor off, and rest; the battery is
@@ -40,6 +43,8 @@ inline SampleColumns discharge_columns(const battery::Battery& battery, const Sy
     const double gust_decay = std::exp(-step_s / settings.gust_s);
     double charge_ah = 0.0;
     double rc_v = 0.0;
+    double slow_v = settings.initial_slow_v;
+    const double slow_decay = std::exp(-step_s / settings.slow_time_constant_s);
     double gust_a = 0.0;
     double due_s = 0.0;
     double lost_until_s = 0.0;
@@ -56,7 +61,7 @@ inline SampleColumns discharge_columns(const battery::Battery& battery, const Sy
             if (uniform(random) < 0.005) lost_until_s = time_s + 15.0;
             if (time_s > lost_until_s && uniform(random) > settings.lost_fraction) {
                 const double soc = 100.0 - 100.0 * (settings.initial_charge_ah + charge_ah) / battery.capacity_ah;
-                const double voltage_v = terminal_voltage_v(battery, {soc, rc_v}, current_a);
+                const double voltage_v = terminal_voltage_v(battery, {soc, rc_v + slow_v}, current_a);
                 series.time_s.push_back(time_s);
                 series.voltage_v.push_back(
                     rounded(voltage_v + settings.voltage_noise_v * normal(random), settings.voltage_step_v));
@@ -67,6 +72,7 @@ inline SampleColumns discharge_columns(const battery::Battery& battery, const Sy
             }
         }
         charge_ah += current_a * step_s / as_per_ah;
+        slow_v = slow_v * slow_decay + settings.slow_resistance_ohm * current_a * (1.0 - slow_decay);
         rc_v = rc_v * decay + circuit.rc_resistance_ohm * current_a * (1.0 - decay);
     }
     return series;

@@ -45,6 +45,17 @@ TEST(LogConfiguration, ReadsBothCasesFromAFileThatIsNotWellFormed) {
     EXPECT_EQ(configuration.aircraft.at("5").current_origin, CurrentOrigin::unknown);
 }
 
+TEST(LogConfiguration, KnowsWhenTheLogBegan) {
+    const std::string protocol = "<protocol><msg_class name='telemetry'><message name='A'/></msg_class></protocol>";
+    const auto begun = [&](const std::string& opening) {
+        return parse_log_configuration(opening + protocol + "</configuration>", "x.log").time_of_day_s;
+    };
+    EXPECT_EQ(begun("<configuration time_of_day=\"1594356783.16\" data_file=\"x.data\">"), 1594356783.16);
+    EXPECT_EQ(begun("<configuration>"), std::nullopt);
+    EXPECT_EQ(begun("<configuration time_of_day=\"noon\">"), std::nullopt);
+    EXPECT_EQ(begun("<configuration time_of_day=\"0.\">"), std::nullopt) << "a clock that was not set";
+}
+
 void expect_error(const std::string& text, std::size_t line, const std::string& message) {
     try {
         parse_log_configuration(text, "x.log");

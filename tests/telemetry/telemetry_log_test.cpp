@@ -118,7 +118,7 @@ TEST(TelemetryLog, KeepsSendersInTheOrderOfTheirFirstLine) {
     text += "100 20 PONG \n101 3 ENERGY 69 11.5 3. 34.5 0.1 0.2\n";
     const auto log = parse_telemetry(
         text, "x.data",
-        LogConfiguration{{}, {{"ENERGY", builtin_definitions("ENERGY")[1]}, {"PONG", {"PONG", {}, ".log"}}}, {}},
+        LogConfiguration{{}, {}, {{"ENERGY", builtin_definitions("ENERGY")[1]}, {"PONG", {"PONG", {}, ".log"}}}, {}},
         energy);
     ASSERT_EQ(log.senders.size(), 3u);
     EXPECT_EQ(log.senders[0].id, "7");

@@ -1,15 +1,18 @@
+#include "battery/identification/circuit_errors.h"
+
 #include "base/statistics.h"
-#include "battery/identification/circuit_fit.h"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <Eigen/Cholesky>
 
 namespace flightwatt::battery {
 namespace {
 
-constexpr double wanted_blocks = 30.0;
+constexpr double wanted_blocks = 30.0;  // of one record; each further one adds a dozen, for its own parameters
+constexpr double more_blocks = 12.0;
 constexpr double shortest_block_s = 15.0;
 constexpr std::size_t enough_records = 3;
 constexpr double tells_nothing = 10.0;  // of a logarithm: beyond a factor e^10 an interval is all there is
@@ -65,83 +68,158 @@ std::vector<Block> blocks_of_records(std::span<const AlignedRecord> records) {
     return blocks;
 }
 
-/// Standard errors; `columns` are the derivatives, scaled to unit length.
-Eigen::VectorXd jackknife(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
-                          const std::vector<Block>& blocks) {
-    const auto width = columns.cols();
+/// The joint problem, each parameter scaled to length 1.
+struct Scaled {
+    Eigen::MatrixXd columns;
+    Eigen::MatrixXd believed;
+    Eigen::VectorXd residual_v;
+    Eigen::VectorXd length;
+};
+
+/// Of the first `width` parameters; the others are held.
+Scaled scaled(const AlignedFit& aligned, Eigen::Index width) {
+    Scaled problem;
+    problem.columns = joint_derivatives(aligned).leftCols(width);
+    problem.believed = joint_belief(aligned).rows.leftCols(width);
+    problem.residual_v = aligned.fit.residual_v;
+    problem.length = (problem.columns.colwise().squaredNorm() + problem.believed.colwise().squaredNorm())
+                         .cwiseSqrt()
+                         .transpose()
+                         .cwiseMax(1e-12);
+    const Eigen::VectorXd inverse = problem.length.cwiseInverse();
+    problem.columns = problem.columns * inverse.asDiagonal();
+    problem.believed = problem.believed * inverse.asDiagonal();
+    return problem;
+}
+
+/// Covariance of the scaled parameters.
+Eigen::MatrixXd jackknife(const Scaled& problem, const std::vector<Block>& blocks) {
+    const auto width = problem.columns.cols();
     // A knot that one block alone has seen cannot be estimated without it: then it stays where it is.
     constexpr double ridge = 1e-9;
-    const Eigen::MatrixXd gram = columns.transpose() * columns + ridge * Eigen::MatrixXd::Identity(width, width);
-    const auto all = gram.ldlt();
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(width);
+    const Eigen::MatrixXd normal = problem.columns.transpose() * problem.columns +
+                                   problem.believed.transpose() * problem.believed +
+                                   ridge * Eigen::MatrixXd::Identity(width, width);
+    const auto all = normal.ldlt();
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(width, width);
     Eigen::VectorXd rounding = Eigen::VectorXd::Zero(width);
     for (const auto& [first, rows, rounding_v] : blocks) {
-        const auto part = columns.middleRows(first, rows);
-        const Eigen::VectorXd score = part.transpose() * residual.segment(first, rows);
-        const Eigen::MatrixXd others = gram - part.transpose() * part;
+        const auto part = problem.columns.middleRows(first, rows);
+        const Eigen::VectorXd score = part.transpose() * problem.residual_v.segment(first, rows);
+        const Eigen::MatrixXd others = normal - part.transpose() * part;
         const Eigen::VectorXd change = others.ldlt().solve(score);
-        squares += change.cwiseAbs2();
+        covariance += change * change.transpose();
         // Packs rest at the same voltages, and so do their roundings: they add up.
         const Eigen::VectorXd shift = all.solve(part.colwise().sum().transpose()) * rounding_v;
         rounding += shift.cwiseAbs();
     }
     const auto count = static_cast<double>(blocks.size());
-    return ((count - 1.0) / count * squares + rounding.cwiseAbs2()).cwiseSqrt();
+    covariance *= (count - 1.0) / count;
+    covariance.diagonal() += rounding.cwiseAbs2();
+    return covariance;
 }
 
-/// How far the parameters move, in the order of the derivatives, if the curve has twice the segments.
-Eigen::VectorXd moved_by_finer_curve(std::span<const AlignedRecord> records, const CircuitFit& fit) {
-    std::vector<double> knots_ah{fit.knots_ah.front()};
-    for (std::size_t i = 1; i < fit.knots_ah.size(); ++i) {
-        knots_ah.push_back((fit.knots_ah[i - 1] + fit.knots_ah[i]) / 2.0);
-        knots_ah.push_back(fit.knots_ah[i]);
+/// How far the parameters move, in the order of the joint derivatives, if the curve has twice the segments.
+Eigen::VectorXd moved_by_finer_curve(const AlignedFit& aligned) {
+    const auto& fit = aligned.fit;
+    const auto segments = static_cast<int>(fit.knots_ah.size()) - 1;
+    auto finer = aligned;
+    finer.fit = fit_circuit(aligned.records, equal_knots(aligned.records, 2 * segments), fit.weights);
+    const auto at = columns_of(fit);
+    const auto flights = static_cast<Eigen::Index>(aligned.records.size());
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(at.width + flights);
+    for (Eigen::Index k = 0; k < at.resistance; ++k) {
+        const auto knot = static_cast<std::size_t>(k);
+        moved[k] = finer.fit.open_circuit_v[2 * knot] - fit.open_circuit_v[knot];
     }
-    const auto finer = fit_circuit(records, knots_ah);
-    const auto knots = fit.knots_ah.size();
-    const bool has_rc = fit.rc_resistance_ohm > 0.0;
-    Eigen::VectorXd moved(static_cast<Eigen::Index>(has_rc ? knots + 3 : knots + 1));
-    for (std::size_t i = 0; i < knots; ++i)
-        moved[static_cast<Eigen::Index>(i)] = std::abs(finer.open_circuit_v[2 * i] - fit.open_circuit_v[i]);
-    const auto k = static_cast<Eigen::Index>(knots);
-    moved[k] = std::abs(finer.resistance_ohm - fit.resistance_ohm);
-    if (has_rc) {
-        moved[k + 1] = std::abs(finer.rc_resistance_ohm - fit.rc_resistance_ohm);
-        moved[k + 2] = finer.rc_time_constant_s > 0.0
-                           ? std::abs(std::log(finer.rc_time_constant_s / fit.rc_time_constant_s))
-                           : tells_nothing;
+    moved[at.resistance] = finer.fit.resistance_ohm - fit.resistance_ohm;
+    if (fit.rc_resistance_ohm > 0.0) {
+        moved[at.rc] = finer.fit.rc_resistance_ohm - fit.rc_resistance_ohm;
+        moved[at.rc + 1] = finer.fit.rc_time_constant_s > 0.0
+                               ? std::log(finer.fit.rc_time_constant_s / fit.rc_time_constant_s)
+                               : tells_nothing;
     }
+    moved.tail(flights) = joint_step(finer).tail(flights);
     return moved;
+}
+
+/// Standard deviations of the scaled parameters if samples were independent, each with its effective error: what counts
+/// where no sample tells a parameter, and only what is believed does.
+Eigen::VectorXd believed_deviation(const Scaled& problem, double sample_error_v) {
+    Eigen::MatrixXd normal =
+        problem.columns.transpose() * problem.columns + problem.believed.transpose() * problem.believed;
+    normal.diagonal().array() += 1e-9;
+    const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+    return inverse.diagonal().cwiseMax(0.0).cwiseSqrt() * sample_error_v;
+}
+
+/// A half width made at least as wide, the covariance with it.
+void widen(Eigen::MatrixXd& covariance, Eigen::VectorXd& half_width, Eigen::Index i, double wider) {
+    if (wider <= half_width[i]) return;
+    const double factor = half_width[i] > 0.0 ? wider / half_width[i] : 1.0;
+    covariance.row(i) *= factor;
+    covariance.col(i) *= factor;
+    half_width[i] = wider;
+}
+
+/// Half widths of 95 % intervals, of all parameters.
+Eigen::VectorXd half_widths(const AlignedFit& aligned, const std::vector<Block>& in_time, Eigen::MatrixXd& covariance) {
+    const auto at = columns_of(aligned.fit);
+    const auto problem = scaled(aligned, at.width + static_cast<Eigen::Index>(aligned.records.size()));
+    const double degrees_of_freedom = static_cast<double>(in_time.size()) - static_cast<double>(problem.columns.cols());
+    const Eigen::VectorXd inverse = problem.length.cwiseInverse();
+    covariance = inverse.asDiagonal() * jackknife(problem, in_time) * inverse.asDiagonal();
+    const double t_in_time = student_t_half_width(degrees_of_freedom);
+    covariance *= std::pow(t_in_time / normal_half_width(), 2);
+    Eigen::VectorXd half_width = covariance.diagonal().cwiseSqrt() * normal_half_width();
+    const auto believed = believed_deviation(problem, aligned.fit.weights.sample_error_v);
+    for (Eigen::Index f = 0; f < static_cast<Eigen::Index>(aligned.records.size()); ++f) {
+        const auto i = at.width + f;
+        if (static_cast<std::size_t>(f) != aligned.reference)
+            widen(covariance, half_width, i, believed[i] * inverse[i] * normal_half_width());
+    }
+    for (Eigen::Index k = 0; k < at.resistance; ++k)
+        widen(covariance, half_width, k, believed[k] * inverse[k] * normal_half_width());
+    if (aligned.records.size() < enough_records) return half_width;
+    const auto held = scaled(aligned, at.width);
+    const Eigen::VectorXd of_records = jackknife(held, blocks_of_records(aligned.records)).diagonal().cwiseSqrt();
+    const double t = student_t_half_width(static_cast<double>(aligned.records.size()) - 1.0);
+    for (Eigen::Index i = 0; i < at.width; ++i) widen(covariance, half_width, i, of_records[i] / held.length[i] * t);
+    return half_width;
 }
 
 }  // namespace
 
-CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const CircuitFit& fit) {
+CircuitErrors circuit_errors(const AlignedFit& aligned) {
+    const auto& [records, fit] = std::tie(aligned.records, aligned.fit);
     double total_s = 0.0;
     for (const auto& [record, charge] : records) total_s += record->time_s.back() - record->time_s.front();
     CircuitErrors errors;
-    errors.block_s = std::max(shortest_block_s, total_s / wanted_blocks);
-    auto columns = voltage_derivatives(records, fit);
-    const Eigen::VectorXd length = columns.colwise().norm();
-    for (Eigen::Index i = 0; i < columns.cols(); ++i) columns.col(i) /= length[i];
+    const double blocks = wanted_blocks + more_blocks * (static_cast<double>(records.size()) - 1.0);
+    errors.block_s = std::max(shortest_block_s, total_s / blocks);
     const auto in_time = blocks_of_time(records, errors.block_s);
     errors.blocks = in_time.size();
-    const double degrees_of_freedom = static_cast<double>(errors.blocks) - static_cast<double>(columns.cols());
-    Eigen::VectorXd half_width = jackknife(columns, fit.residual_v, in_time) * student_t_half_width(degrees_of_freedom);
-    if (records.size() >= enough_records) {
-        const double t = student_t_half_width(static_cast<double>(records.size()) - 1.0);
-        half_width = half_width.cwiseMax(jackknife(columns, fit.residual_v, blocks_of_records(records)) * t);
-    }
-    half_width = half_width.cwiseQuotient(length) + moved_by_finer_curve(records, fit);
+    Eigen::MatrixXd covariance;
+    Eigen::VectorXd half_width = half_widths(aligned, in_time, covariance);
+    const auto moved = moved_by_finer_curve(aligned);
+    half_width += moved.cwiseAbs();
 
-    const auto knots = static_cast<Eigen::Index>(fit.knots_ah.size());
+    const auto at = columns_of(fit);
+    const auto knots = at.resistance;
     for (Eigen::Index i = 0; i < knots; ++i)
         errors.open_circuit_standard_error_v.push_back(half_width[i] / normal_half_width());
+    errors.open_circuit_covariance_v2 =
+        covariance.topLeftCorner(knots, knots) + moved.head(knots) * moved.head(knots).transpose();
     const auto around = [](double value, double half) { return Interval{std::max(0.0, value - half), value + half}; };
     errors.resistance_ohm = around(fit.resistance_ohm, half_width[knots]);
     if (fit.rc_resistance_ohm > 0.0) {
-        errors.rc_resistance_ohm = around(fit.rc_resistance_ohm, half_width[knots + 1]);
-        const double factor = std::exp(std::min(tells_nothing, half_width[knots + 2]));
+        errors.rc_resistance_ohm = around(fit.rc_resistance_ohm, half_width[at.rc]);
+        const double factor = std::exp(std::min(tells_nothing, half_width[at.rc + 1]));
         errors.rc_time_constant_s = {fit.rc_time_constant_s / factor, fit.rc_time_constant_s * factor};
+    }
+    for (std::size_t f = 0; f < records.size(); ++f) {
+        errors.initial_charge_error_ah.push_back(half_width[at.width + static_cast<Eigen::Index>(f)] /
+                                                 normal_half_width());
     }
     return errors;
 }

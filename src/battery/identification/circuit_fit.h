@@ -3,6 +3,7 @@
 #include "battery/battery.h"
 #include "battery/identification/discharge_record.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,46 +11,72 @@
 
 namespace flightwatt::battery {
 
-/// A record and the charge [Ah] that was missing from the battery when it began.
+/// A record and the charge [Ah] that was missing from the battery when it began, counted from where the curve begins.
 struct AlignedRecord {
     const DischargeRecord* record = nullptr;
     double initial_charge_ah = 0.0;
 };
 
+/// What is believed of a pack before its voltages are looked at, as standard deviations. A resting voltage lies beside
+/// the curve that holds under load, because a pack goes on relaxing for an hour: in all flights alike (50 mV a cell), and
+/// in each: 10 mV a cell of packs that come from the charger, and 0.3 of what it rests lower than the fullest. The curve's
+/// slope does not jump by more than some 0.15 V a segment and cell.
+inline constexpr double common_rest_sd_v = 0.05;
+inline constexpr double charged_rest_sd_v = 0.01;
+inline constexpr double lower_rest_part = 0.3;
+inline constexpr double bend_sd_v = 0.15;
+
+/// How much that counts beside the samples.
+struct FitWeights {
+    int cells = 3;
+    double fullest_rest_v = 0.0;  ///< of all records
+    /// Of one sample, as if samples were independent; what is believed counts in proportion.
+    double sample_error_v = 0.05;
+};
+
+/// [V] How unsure a resting voltage is: the standard deviation of a record's own part.
+double rest_sd_v(const DischargeRecord& record, const FitWeights& weights);
+
 /// A Thévenin circuit fitted to voltages: over charge drawn, because capacity is not needed for that.
 struct CircuitFit {
-    std::vector<double> knots_ah;        ///< rising
+    std::vector<double> knots_ah;        ///< rising, equally far apart
     std::vector<double> open_circuit_v;  ///< at the knots, straight lines between
     double resistance_ohm = 0.0;
-    double rc_resistance_ohm = 0.0;   ///< 0: no RC pair explains anything
-    double rc_time_constant_s = 0.0;  ///< 0 without an RC pair
-    Eigen::VectorXd residual_v;       ///< measured less fitted; the used samples of the records, in their order
+    double rc_resistance_ohm = 0.0;     ///< 0: no RC pair explains anything
+    double rc_time_constant_s = 0.0;    ///< 0 without an RC pair
+    std::vector<double> rest_offset_v;  ///< of each record before its first load: so much above the curve
+    double common_rest_offset_v = 0.0;
+    FitWeights weights;
+    Eigen::VectorXd residual_v;  ///< measured less fitted; the used samples of the records, in their order
     double rms_v = 0.0;
+    double objective = 0.0;  ///< sum of squares [V^2], with what was believed
 };
 
 /// The fit of least squares with these knots. Given the time constant all else is linear (variable projection: Golub
 /// and Pereyra 1973), so that one alone is searched for: on a grid from two usual intervals to a quarter of the longest
-/// record, then by Brent's method. Throws NoAnswerError where the records do not determine the curve or the resistance.
-CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector<double>& knots_ah);
+/// record, then by Brent's method; or it is given (0: no RC pair). Throws NoAnswerError where the records do not
+/// determine the resistance.
+CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector<double>& knots_ah,
+                       const FitWeights& weights, std::optional<double> rc_time_constant_s = std::nullopt);
 
-/// Derivatives of the fitted voltages, one row a used sample: by the voltages at the knots, resistance,
-/// rc_resistance and the logarithm of rc_time_constant; the last two columns are absent without an RC pair.
+/// Where the parameters of a fit stand in its derivatives.
+struct FitColumns {
+    Eigen::Index knots = 0;       ///< from column 0 on
+    Eigen::Index resistance = 0;  ///< this column
+    Eigen::Index rest = 0;        ///< from this one on, one a record; then the common one
+    Eigen::Index rc = 0;          ///< rc_resistance, then the logarithm of rc_time_constant; absent without an RC pair
+    Eigen::Index width = 0;
+};
+FitColumns columns_of(const CircuitFit& fit);
+
+/// Derivatives of the fitted voltages, one row a used sample.
 Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
-/// 95 % intervals of a fitted circuit.
-struct CircuitErrors {
-    Interval resistance_ohm;
-    Interval rc_resistance_ohm;   ///< not below 0
-    Interval rc_time_constant_s;  ///< symmetric in the logarithm
-    /// Half the knots' intervals over 1.96: what a normal distribution of the same interval has.
-    std::vector<double> open_circuit_standard_error_v;
-    std::size_t blocks = 0;  ///< of time, that the intervals rest on
-    double block_s = 0.0;
-};
+/// What is believed, as rows beneath those derivatives: of each record its rest, then the common rest, then the bends of
+/// the curve.
+Eigen::MatrixXd believed_rows(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
-/// By the jackknife over blocks of time, and from three records on over whole records too (docs/methods.md). Two errors
-/// that residuals do not show come on top: rounding of a voltage that stands still, and how far a curve of twice the
-/// segments moves the parameter.
-CircuitErrors circuit_errors(std::span<const AlignedRecord> records, const CircuitFit& fit);
+/// [V/Ah] The curve's slope at the used samples of one record.
+Eigen::VectorXd slopes_v_per_ah(const AlignedRecord& aligned, const CircuitFit& fit);
 
 }  // namespace flightwatt::battery

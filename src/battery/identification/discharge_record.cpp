@@ -1,6 +1,7 @@
 #include "battery/identification/discharge_record.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "base/units.h"
 #include "battery/identification/pack_changes.h"
 #include "flight/chosen_track.h"
@@ -120,6 +121,7 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
         voltages_v.push_back(record.voltage_v[i]);
         currents_a.push_back(record.current_a[i]);
     }
+    record.rest_samples = end;
     record.resting_voltage_v = median_of(std::move(voltages_v));
     record.resting_current_a = median_of(std::move(currents_a));
 }
@@ -133,6 +135,10 @@ void fill_record(const flight::FlightSeries& series, const PackRecord& part, Dis
     mark_used(part.throttle_percent, record);
     add_rest(series, record);
     record.resolution_v = least_difference(record.voltage_v);
+    if (series.start_clock_s) record.start_clock_s = *series.start_clock_s + record.time_s.front();
+    if (!part.counter_ah.empty()) record.counter_ah = Interval{part.counter_ah.front(), part.counter_ah.back()};
+    const auto temperature_c = chosen_at(series, "air_temperature_c", record.time_s);
+    if (!temperature_c.empty()) record.air_temperature_c = mean(temperature_c);
 }
 
 }  // namespace
@@ -150,6 +156,7 @@ DischargeRecords discharge_records(const flight::FlightSeries& series) {
     for (std::size_t p = 0; p < parts.size(); ++p) {
         DischargeRecord record;
         record.flight = p == 0 ? series.flight : fmt::format("{}#{}", series.flight, p + 1);
+        record.is_other_pack = p > 0;
         try {
             fill_record(series, parts[p], record);
             found.records.push_back(std::move(record));

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "battery/battery.h"
 #include "flight/flight_series.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,12 @@ struct DischargeRecord {
     double resting_voltage_v = 0.0;      ///< before the first load
     double resting_current_a = 0.0;      ///< what the electronics draw meanwhile
     double resolution_v = 0.0;           ///< least difference between two voltages
+    std::size_t rest_samples = 0;        ///< before the first load
+    // What tells whose pack it was; known of a log, not of every CSV.
+    std::optional<double> start_clock_s;      ///< of the first sample, by the clock: Unix time
+    std::optional<Interval> counter_ah;       ///< the autopilot's counter, at the first and the last sample
+    bool is_other_pack = false;               ///< than the record before it of the same log
+    std::optional<double> air_temperature_c;  ///< mean over the record
 };
 
 /// The discharges of a log: one, or one a pack where it was changed on the ground.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include <fmt/format.h>
 
@@ -18,13 +19,23 @@ constexpr std::array chart_soc_percent{0.0,  5.0,  10.0, 15.0, 20.0, 25.0, 30.0,
                                        55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 90.0, 95.0, 100.0};
 constexpr std::array chart_cell_v{3.27, 3.61, 3.69, 3.71, 3.73, 3.75, 3.77, 3.79, 3.80, 3.82, 3.84,
                                   3.85, 3.87, 3.91, 3.95, 3.98, 4.02, 4.08, 4.11, 4.15, 4.20};
-constexpr double empty_cell_v = 3.5;        // at rest: the chart's knee
-constexpr double least_part_percent = 3.0;  // of the chart: less tells no capacity
+constexpr double least_part = 0.03;  // of the charge: less tells no capacity
+constexpr double flown_part = 0.95;
 constexpr double added_step_percent = 5.0;
 
-double chart_capacity_ah(double drawn_ah, double cell_voltage_v) {
-    const double used_percent = units::percent_per_whole - lipo_chart_soc_percent(cell_voltage_v);
-    return drawn_ah / std::max(used_percent, least_part_percent) * units::percent_per_whole;
+/// A knot that the chart adds, parallel to it from one that was flown.
+struct AddedKnots {
+    double from_percent = 0.0;
+    double from_v = 0.0;
+    double standard_error_v = 0.0;
+    int cells = 0;
+};
+
+void add_knot(ExtendedCurve& extended, const AddedKnots& flown, double percent) {
+    const double above_v = flown.cells * (lipo_chart_voltage_v(percent) - lipo_chart_voltage_v(flown.from_percent));
+    extended.curve.soc_percent.push_back(percent);
+    extended.curve.voltage_v.push_back(std::max(flown.from_v + above_v, flown.from_v / 2.0));
+    extended.standard_error_v.push_back(std::hypot(flown.standard_error_v, flown.cells * lipo_chart_uncertainty_v));
 }
 
 }  // namespace
@@ -42,55 +53,52 @@ int lipo_cells(double resting_voltage_v) {
 }
 
 std::string to_string(CapacityOrigin origin) {
-    constexpr std::array names{"given", "a flight drew all of it", "the LiPo chart"};
+    constexpr std::array names{"given", "flights drew nearly all of it", "the LiPo chart"};
     return names.at(static_cast<std::size_t>(origin));
 }
 
-Capacity capacity_of(const CircuitFit& fit, double last_error_v, int cells, std::optional<double> given_ah) {
-    const double drawn_ah = fit.knots_ah.back();
-    if (given_ah) {
-        if (*given_ah < drawn_ah) {
-            throw UsageError(fmt::format("--capacity is {} Ah, and a flight drew {:.3f} Ah", *given_ah, drawn_ah));
-        }
-        return {*given_ah, CapacityOrigin::given, std::nullopt};
+Capacity capacity_of(double drawn_ah, std::span<const ChargeScale> posterior, std::optional<double> given_ah) {
+    if (given_ah) return {*given_ah, CapacityOrigin::given, std::nullopt};
+    constexpr double tail = (1.0 - confidence_level) / 2.0;
+    Capacity capacity{capacity_quantile_ah(posterior, 0.5), CapacityOrigin::chart,
+                      Interval{capacity_quantile_ah(posterior, tail), capacity_quantile_ah(posterior, 1.0 - tail)}};
+    if (drawn_ah < least_part * capacity.value_ah) {
+        throw NoAnswerError(fmt::format(
+            "the flights drew {:.3f} Ah: too little to tell the capacity; give it with --capacity", drawn_ah));
     }
-    const double last_v = fit.open_circuit_v.back() / cells;
-    if (last_v <= empty_cell_v) return {drawn_ah, CapacityOrigin::flown, std::nullopt};
-    if (units::percent_per_whole - lipo_chart_soc_percent(last_v) < least_part_percent) {
-        throw NoAnswerError(
-            fmt::format("the flights drew {:.3f} Ah, down to {:.3f} V a cell: too little to tell the capacity; give it "
-                        "with --capacity",
-                        drawn_ah, last_v));
-    }
-    const double reach_v = normal_half_width() * std::hypot(lipo_chart_uncertainty_v, last_error_v / cells);
-    return {chart_capacity_ah(drawn_ah, last_v), CapacityOrigin::chart,
-            Interval{chart_capacity_ah(drawn_ah, last_v - reach_v), chart_capacity_ah(drawn_ah, last_v + reach_v)}};
+    if (drawn_ah >= flown_part * capacity.value_ah) capacity.origin = CapacityOrigin::flown;
+    return capacity;
 }
 
 ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
-                             int cells) {
+                             double missing_ah) {
     const auto soc_at = [&](double charge_ah) {
-        return std::max(0.0, units::percent_per_whole - units::percent_of(charge_ah, capacity_ah));
+        return std::max(0.0, units::percent_per_whole - units::percent_of(missing_ah + charge_ah, capacity_ah));
     };
     ExtendedCurve extended;
-    auto& [soc, volts] = extended.curve;
+    auto& soc = extended.curve.soc_percent;
     const double known_to = soc_at(fit.knots_ah.back());
-    const double last_v = fit.open_circuit_v.back();
+    const double known_from = soc_at(fit.knots_ah.front());
     constexpr double same_percent = 1e-6;
-    const bool extends = known_to > same_percent;
-    extended.known_down_to_percent = extends ? known_to : 0.0;
-    for (double percent = 0.0; extends && percent < known_to - 0.5; percent += added_step_percent) {
-        const double below_v = lipo_chart_voltage_v(known_to) - lipo_chart_voltage_v(percent);
-        soc.push_back(percent);
-        volts.push_back(std::max(last_v - cells * below_v, last_v / 2.0));
-        extended.standard_error_v.push_back(std::hypot(standard_error_v.back(), cells * lipo_chart_uncertainty_v));
-    }
+    extended.known_down_to_percent = known_to > same_percent ? known_to : 0.0;
+    extended.known_up_to_percent = known_from;
+    const int cells = fit.weights.cells;
+    const AddedKnots below{known_to, fit.open_circuit_v.back(), standard_error_v.back(), cells};
+    for (double percent = 0.0; percent < extended.known_down_to_percent - 0.5; percent += added_step_percent)
+        add_knot(extended, below, percent);
     for (std::size_t i = fit.knots_ah.size(); i-- > 0;) {
+        // Knots beyond a capacity that was given are of no use, but for the last that is.
+        if (i > 0 && soc_at(fit.knots_ah[i - 1]) <= 0.0) continue;
         soc.push_back(soc_at(fit.knots_ah[i]));
-        volts.push_back(fit.open_circuit_v[i]);
+        extended.curve.voltage_v.push_back(fit.open_circuit_v[i]);
         extended.standard_error_v.push_back(standard_error_v[i]);
     }
+    const AddedKnots above{known_from, fit.open_circuit_v.front(), standard_error_v.front(), cells};
+    for (double percent = added_step_percent * std::ceil(known_from / added_step_percent + 0.1);
+         missing_ah > 0.0 && percent <= units::percent_per_whole; percent += added_step_percent)
+        add_knot(extended, above, percent);
     soc.front() = 0.0;  // the last knot, where it is as good as empty
+    soc.back() = units::percent_per_whole;
     return extended;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "battery/battery.h"
+#include "battery/identification/chart_match.h"
 #include "battery/identification/circuit_fit.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,8 +13,7 @@ namespace flightwatt::battery {
 
 /// The open-circuit voltage that lithium-polymer packs are commonly said to have, a cell: 4.20 V full, 3.84 V half,
 /// 3.27 V empty (the voltage chart that sellers of packs print, e.g. blog.ampow.com/lipo-voltage-chart). Packs differ
-/// from it by some 30 mV; it stands in only for what no flight has shown.
-inline constexpr double lipo_chart_uncertainty_v = 0.03;
+/// from it by some 80 mV (chart_match.h); it stands in only for what no flight has shown.
 
 /// [V] a cell at a state of charge, 0 to 100.
 double lipo_chart_voltage_v(double soc_percent);
@@ -26,7 +27,7 @@ int lipo_cells(double resting_voltage_v);
 /// Where a capacity comes from.
 enum class CapacityOrigin {
     given,  ///< by the user
-    flown,  ///< a flight drew all of it
+    flown,  ///< the flights drew nearly all of it
     chart   ///< from the part of the LiPo chart that the open-circuit voltage went down
 };
 
@@ -35,24 +36,24 @@ std::string to_string(CapacityOrigin origin);
 struct Capacity {
     double value_ah = 0.0;
     CapacityOrigin origin = CapacityOrigin::given;
-    /// 95 %, of a chart's: normal errors of the voltage at the end and of the chart, 30 mV a cell (1 sd).
-    std::optional<Interval> interval_ah;
+    std::optional<Interval> interval_ah;  ///< 95 %; none of one that is given
 };
 
-/// The capacity of a battery whose open-circuit voltage was followed from full down; `last_error_v` is the standard
-/// error of the voltage at the last knot. Throws UsageError if the given one
-/// is less than a flight drew, and NoAnswerError if none is given and the flights hardly drew anything.
-Capacity capacity_of(const CircuitFit& fit, double last_error_v, int cells, std::optional<double> given_ah);
+/// The capacity as the posterior of match_chart has it: its median and quantiles. It is `flown` where the flights leave
+/// at most 5 % of it. Throws UsageError if the given one is less than what was drawn from the pack, and NoAnswerError if
+/// none is given and the flights drew too little: less than 3 % of the median.
+Capacity capacity_of(double drawn_ah, std::span<const ChargeScale> posterior, std::optional<double> given_ah);
 
-/// The fitted curve over state of charge, full at its first knot; below its last one it goes on in parallel
-/// to the LiPo chart of that many cells.
+/// The fitted curve over state of charge; beyond its ends it goes on in parallel to the LiPo chart of that many cells.
 struct ExtendedCurve {
     OpenCircuitVoltage curve;
-    std::vector<double> standard_error_v;  ///< 30 mV a cell more where the chart stands in
+    std::vector<double> standard_error_v;  ///< 80 mV a cell more where the chart stands in
     double known_down_to_percent = 0.0;
+    double known_up_to_percent = 0.0;
 };
 
+/// `missing_ah` is what was missing from the full pack where the curve begins.
 ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& standard_error_v, double capacity_ah,
-                             int cells);
+                             double missing_ah);
 
 }  // namespace flightwatt::battery

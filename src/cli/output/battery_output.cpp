@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 
+#include <algorithm>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -14,6 +15,22 @@ std::string describe(const battery::Capacity& capacity) {
     return text + fmt::format(", {:.3g} to {:.3g} Ah in 95 % if packs differ from the chart by {:.0f} mV a cell (1 sd)",
                               capacity.interval_ah->low, capacity.interval_ah->high,
                               units::mv_from_v(battery::lipo_chart_uncertainty_v));
+}
+
+std::string describe_link(const battery::IdentifiedFlight& flight) {
+    if (!flight.link) return "";
+    return fmt::format(
+        "{}: assumed to be flown on the pack of {}, as it begins {:.0f} min after that one ends, {}rests lower as far as "
+        "was drawn, and its voltage under load agrees",
+        flight.flight, flight.pack_of, units::minute_from_second(flight.link->pause_s),
+        flight.link->counter_goes_on ? "its charge counter goes on, it " : "");
+}
+
+std::string describe(const battery::ResistanceTrend& trend) {
+    const auto& [low, high] = trend.interval_ohm_a_flight;
+    return fmt::format("series resistance over {} flights: {:+.2f} mohm a flight, {:+.2f} to {:+.2f} in 95 %{}",
+                       trend.flights, units::mohm_from_ohm(trend.ohm_a_flight), units::mohm_from_ohm(low),
+                       units::mohm_from_ohm(high), low <= 0.0 && high >= 0.0 ? ": no trend is seen" : "");
 }
 
 TextTable parameters_table(const battery::BatteryIdentification& identified) {
@@ -33,18 +50,37 @@ TextTable parameters_table(const battery::BatteryIdentification& identified) {
 
 TextTable flights_table(const battery::BatteryIdentification& identified,
                         const std::vector<battery::LeftOutCheck>& left_out) {
+    const auto& flights = identified.flights;
+    const bool has_air = std::ranges::any_of(flights, [](const auto& f) { return f.air_temperature_c.has_value(); });
+    const bool has_packs = std::ranges::any_of(flights, [](const auto& f) { return f.link.has_value(); });
     TextTable table;
-    table.header = {"flight", "at rest V", "missing Ah", "drawn Ah", "samples", "unused", "fitted mV"};
+    table.header = {"flight",  "at rest V", "missing Ah", "low Ah",  "high Ah", "drawn Ah",
+                    "own ohm", "low ohm",   "high ohm",   "samples", "unused",  "fitted mV"};
+    if (has_air) table.header.emplace_back("air C");
+    if (has_packs) table.header.emplace_back("pack of");
     if (!left_out.empty()) {
-        for (const auto* name : {"leave-one-out mV", "beyond the others %"}) table.header.emplace_back(name);
+        for (const auto* name : {"leave-one-out mV", "under load mV", "placed best mV", "beyond the others %"})
+            table.header.emplace_back(name);
     }
-    for (std::size_t i = 0; i < identified.flights.size(); ++i) {
-        const auto& flight = identified.flights[i];
-        table.rows.push_back({flight.flight, fixed(flight.resting_voltage_v, 3), fixed(flight.initial_charge_ah, 3),
-                              fixed(flight.drawn_ah, 3), fmt::format("{}", flight.samples),
-                              fmt::format("{}", flight.unused), fixed(units::mv_from_v(flight.voltage_rms_v), 1)});
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const auto& flight = flights[i];
+        const auto& resistance = flight.resistance;
+        const auto ohm = [&](const auto& member) {
+            return resistance ? fixed(member(*resistance), 4) : fixed(std::nullopt, 4);
+        };
+        table.rows.push_back(
+            {flight.flight, fixed(flight.resting_voltage_v, 3), fixed(flight.initial_charge_ah, 3),
+             fixed(flight.initial_charge_interval_ah.low, 3), fixed(flight.initial_charge_interval_ah.high, 3),
+             fixed(flight.drawn_ah, 3), ohm([](const auto& own) { return own.value_ohm; }),
+             ohm([](const auto& own) { return own.interval_ohm.low; }),
+             ohm([](const auto& own) { return own.interval_ohm.high; }), fmt::format("{}", flight.samples),
+             fmt::format("{}", flight.unused), fixed(units::mv_from_v(flight.voltage_rms_v), 1)});
+        if (has_air) table.rows.back().push_back(fixed(flight.air_temperature_c, 1));
+        if (has_packs) table.rows.back().push_back(flight.link ? flight.pack_of : "-");
         if (left_out.empty()) continue;
         table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].voltage_rms_v), 1));
+        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].load_rms_v), 1));
+        table.rows.back().push_back(fixed(units::mv_from_v(left_out[i].placed_load_rms_v), 1));
         table.rows.back().push_back(fixed(left_out[i].beyond_percent, 0));
     }
     return table;
@@ -57,22 +93,56 @@ std::string provenance(const battery::BatteryIdentification& identified) {
     text += fmt::format("# Flights follow the open-circuit voltage down to {:.1f} % ({:.3f} Ah drawn)",
                         identified.known_down_to_percent, identified.fit.knots_ah.back());
     text += identified.known_down_to_percent > 0.0
-                ? "; below, it goes on in\n# parallel to the usual chart of LiPo cells, 30 mV a cell unsure.\n"
+                ? fmt::format(
+                      "; below, it goes on in\n# parallel to the usual chart of LiPo cells, {:.0f} mV a cell unsure.\n",
+                      units::mv_from_v(battery::lipo_chart_uncertainty_v))
                 : ".\n";
+    if (identified.missing_ah > 0.0) {
+        text += fmt::format("# No flight begins full: above {:.1f} % it is parallel to that chart, too.\n",
+                            identified.known_up_to_percent);
+    }
+    for (const auto& flight : identified.flights)
+        if (flight.link) text += fmt::format("# {}.\n", describe_link(flight));
     text += fmt::format("# Voltages are met within {:.1f} mV RMS; intervals rest on {} blocks of {:.0f} s.\n",
                         units::mv_from_v(identified.fit.rms_v), identified.errors.blocks, identified.errors.block_s);
     return text;
 }
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+Json interval(const std::optional<battery::Interval>& range) {
+    return range ? Json{{"low", range->low}, {"high", range->high}} : Json();
+}
+
+Json estimate(double value, const battery::Interval& range) {
+    return Json{{"value", value}, {"low", range.low}, {"high", range.high}};
+}
+
+Json flight_json(const battery::IdentifiedFlight& flight) {
+    Json json{{"flight", flight.flight},
+              {"resting_voltage_v", flight.resting_voltage_v},
+              {"initial_charge_ah", flight.initial_charge_ah},
+              {"initial_charge_interval_ah", interval(flight.initial_charge_interval_ah)},
+              {"drawn_ah", flight.drawn_ah},
+              {"pack_of", text_or_null(flight.pack_of)},
+              {"pause_s", flight.link ? Json(flight.link->pause_s) : Json()},
+              {"resistance_ohm", Json()},
+              {"air_temperature_c", flight.air_temperature_c ? Json(*flight.air_temperature_c) : Json()},
+              {"samples", flight.samples},
+              {"unused_samples", flight.unused},
+              {"voltage_rms_mv", units::mv_from_v(flight.voltage_rms_v)}};
+    if (const auto& own = flight.resistance) json["resistance_ohm"] = estimate(own->value_ohm, own->interval_ohm);
+    return json;
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
                                const std::vector<battery::LeftOutCheck>& left_out) {
-    using Json = nlohmann::ordered_json;
-    const auto interval = [](const std::optional<battery::Interval>& range) {
-        return range ? Json{{"low", range->low}, {"high", range->high}} : Json();
-    };
-    const auto estimate = [](double value, const battery::Interval& range) {
-        return Json{{"value", value}, {"low", range.low}, {"high", range.high}};
-    };
     const auto& [fit, errors] = std::tie(identified.fit, identified.errors);
     Json json;
     json["capacity_ah"] = identified.capacity.value_ah;
@@ -88,23 +158,26 @@ nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
     json["open_circuit"] = {{"soc_percent", curve.soc_percent},
                             {"voltage_v", curve.voltage_v},
                             {"standard_error_v", identified.battery.intervals.open_circuit_standard_error_v},
+                            {"known_up_to_percent", identified.known_up_to_percent},
                             {"known_down_to_percent", identified.known_down_to_percent},
                             {"known_down_to_ah", fit.knots_ah.back()}};
     json["voltage_rms_mv"] = units::mv_from_v(fit.rms_v);
     json["flights"] = Json::array();
-    for (const auto& flight : identified.flights) {
-        json["flights"].push_back({{"flight", flight.flight},
-                                   {"resting_voltage_v", flight.resting_voltage_v},
-                                   {"initial_charge_ah", flight.initial_charge_ah},
-                                   {"drawn_ah", flight.drawn_ah},
-                                   {"samples", flight.samples},
-                                   {"unused_samples", flight.unused},
-                                   {"voltage_rms_mv", units::mv_from_v(flight.voltage_rms_v)}});
+    for (const auto& flight : identified.flights) json["flights"].push_back(flight_json(flight));
+    json["resistance_trend"] = Json();
+    if (const auto& trend = identified.trend) {
+        json["resistance_trend"] = {{"flights", trend->flights},
+                                    {"ohm_a_flight", estimate(trend->ohm_a_flight, trend->interval_ohm_a_flight)}};
     }
     json["left_out"] = Json::array();
     for (const auto& check : left_out) {
         json["left_out"].push_back({{"flight", check.flight},
+                                    {"initial_charge_ah", check.initial_charge_ah},
+                                    {"pack_of", text_or_null(check.pack_of)},
                                     {"voltage_rms_mv", units::mv_from_v(check.voltage_rms_v)},
+                                    {"load_voltage_rms_mv", units::mv_from_v(check.load_rms_v)},
+                                    {"placed_charge_ah", check.placed_charge_ah},
+                                    {"placed_load_voltage_rms_mv", units::mv_from_v(check.placed_load_rms_v)},
                                     {"beyond_others_percent", check.beyond_percent}});
     }
     return json;

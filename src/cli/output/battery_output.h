@@ -14,6 +14,12 @@ namespace flightwatt::cli {
 /// "capacity 4.2 Ah (chart), 3.6 to 5.1 Ah in 95 % if ...".
 std::string describe(const battery::Capacity& capacity);
 
+/// Why a flight is taken for one on the pack of another; empty if it is not.
+std::string describe_link(const battery::IdentifiedFlight& flight);
+
+/// How the resistance goes on over the flights: "series resistance over 6 flights in time order: +0.4 mohm a flight ...".
+std::string describe(const battery::ResistanceTrend& trend);
+
 /// One row a resistance or time constant, with its 95 % interval.
 TextTable parameters_table(const battery::BatteryIdentification& identified);
 

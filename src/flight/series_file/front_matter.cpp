@@ -93,6 +93,7 @@ FrontMatter read_matter(const TomlTable& table) {
     series.firmware = table.optional_string("firmware").value_or("");
     series.current_origin = read_origin(table);
     series.planned_ground_altitude_m = table.optional_number("planned_ground_altitude_m");
+    series.start_clock_s = table.optional_number("start_clock_s");
     series.lacks_log = table.optional_boolean("lacks_log").value_or(false);
     if (table.has("notes")) series.notes = table.strings("notes");
     if (const auto names = table.optional_table("block_names")) series.block_names = read_block_names(*names);
@@ -130,6 +131,7 @@ std::string front_matter(const FlightSeries& series) {
     if (const auto ground_m = series.planned_ground_altitude_m) {
         toml += fmt::format("planned_ground_altitude_m = {}\n", toml_real(*ground_m));
     }
+    if (series.start_clock_s) toml += fmt::format("start_clock_s = {}\n", toml_real(*series.start_clock_s));
     if (series.lacks_log) toml += "lacks_log = true\n";
     if (!series.notes.empty()) toml += fmt::format("notes = {}\n", strings(series.notes));
     if (!series.block_names.empty()) toml += "[block_names]\n";

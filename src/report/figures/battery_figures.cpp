@@ -1,4 +1,5 @@
 #include "base/statistics.h"
+#include "base/units.h"
 #include "report/figures/flight_figures.h"
 
 #include <algorithm>
@@ -21,10 +22,11 @@ void add_curve(FigureData& data, const battery::DischargeRecord& record, const s
     }
 }
 
-VegaJson voltage_panel(const battery::Battery& battery, const battery::DischargeRecord& record) {
+VegaJson voltage_panel(const battery::Battery& battery, const battery::DischargeRecord& record,
+                       double initial_charge_ah) {
     FigureData data({"time_s", "voltage_v"}, {"curve"});
     add_curve(data, record, record.voltage_v, "measured");
-    add_curve(data, record, predict_voltage(battery, record).voltage_v, "model");
+    add_curve(data, record, predict_voltage(battery, record, initial_charge_ah).voltage_v, "model");
     VegaJson encoding{{"x", quantity("time_s", record_time_title)},
                       {"y", quantity("voltage_v", "voltage [V]", {{"scale", {{"zero", false}}}})}};
     add_measured_and_model(encoding, 3.2,
@@ -86,20 +88,21 @@ VegaJson knot_layer() {
 
 }  // namespace
 
-Figure voltage_figure(const battery::Battery& battery, std::span<const battery::DischargeRecord> records,
-                      const std::string& id) {
+Figure voltage_figure(const battery::BatteryIdentification& identified,
+                      std::span<const battery::DischargeRecord> records, const std::string& id) {
     auto description = fmt::format("Terminal voltage of {} flights over time, measured and modelled.", records.size());
     auto panels = VegaJson::array();
-    for (const auto& record : records) {
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const auto& record = records[i];
         const auto [low, high] = std::ranges::minmax_element(record.voltage_v);
         description += fmt::format(" {}: {:.2f} to {:.2f} V.", record.flight, *low, *high);
-        panels.push_back(voltage_panel(battery, record));
+        panels.push_back(voltage_panel(identified.battery, record, identified.flights[i].initial_charge_ah));
     }
-    auto figure =
-        new_figure(id,
-                   "The model predicts the voltage from the measured current and the voltage at rest before the flight "
-                   "alone. Both are broken where the record contradicts itself: a current that the motor did not draw.",
-                   description);
+    auto figure = new_figure(
+        id,
+        "The model's voltage follows from the measured current and the charge that was missing at the start. "
+        "Both are broken where the record contradicts itself: a current that the motor did not draw.",
+        description);
     set_panels(figure, 2, 66, panels);
     return figure;
 }
@@ -110,8 +113,8 @@ Figure open_circuit_figure(const battery::BatteryIdentification& identified, con
     if (identified.known_down_to_percent > 0.0) {
         caption += fmt::format(
             " Below {:.0f} % no flight shows it: there it goes on in parallel to the usual chart of {} LiPo "
-            "cells, 30 mV a cell unsure.",
-            identified.known_down_to_percent, identified.cells);
+            "cells, {:.0f} mV a cell unsure.",
+            identified.known_down_to_percent, identified.cells, units::mv_from_v(battery::lipo_chart_uncertainty_v));
     }
     auto figure = new_figure(
         id, caption,

@@ -52,10 +52,10 @@ Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, c
 Figure physical_figure(const mechanical::PhysicalModel& model, std::span<const mechanical::FlightMotion> flights,
                        const std::string& id);
 
-/// Terminal voltage over time, measured and modelled, a panel a flight: the model predicts it from the
-/// current and the resting voltage alone. `records` is not empty.
-Figure voltage_figure(const battery::Battery& battery, std::span<const battery::DischargeRecord> records,
-                      const std::string& id);
+/// Terminal voltage over time, measured and modelled, a panel a flight: the model follows from the current and the
+/// charge missing at the start. `records` is not empty: those that were identified, in their order.
+Figure voltage_figure(const battery::BatteryIdentification& identified,
+                      std::span<const battery::DischargeRecord> records, const std::string& id);
 
 /// The open-circuit voltage over the state of charge with the 95 % intervals of its knots, and from where on
 /// the chart of LiPo cells stands in.

@@ -5,6 +5,8 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -51,47 +53,57 @@ TEST(LipoCells, AreAsManyAsTheRestingVoltageNeeds) {
     EXPECT_EQ(lipo_cells(0.0), 1);
 }
 
-TEST(OpenCircuit, TakesTheCapacityThatIsGivenOrFlown) {
-    EXPECT_EQ(capacity_of(fit_down_to(3.8), 0.0, 3, 2.2).value_ah, 2.2);
-    EXPECT_EQ(capacity_of(fit_down_to(3.8), 0.0, 3, 2.2).origin, CapacityOrigin::given);
-    EXPECT_THROW(capacity_of(fit_down_to(3.8), 0.0, 3, 1.1), UsageError);
-    const auto flown = capacity_of(fit_down_to(3.4), 0.0, 3, std::nullopt);
-    EXPECT_EQ(flown.value_ah, 1.2);
-    EXPECT_EQ(flown.origin, CapacityOrigin::flown);
-}
-
-TEST(OpenCircuit, ReadsTheCapacityOffTheChartOtherwise) {
-    const auto half = capacity_of(fit_down_to(3.84), 0.0, 3, std::nullopt);
-    EXPECT_EQ(half.origin, CapacityOrigin::chart);
-    EXPECT_NEAR(half.value_ah, 2.4, 1e-9);
-    ASSERT_TRUE(half.interval_ah);
-    EXPECT_NEAR(half.interval_ah->low, 1.2 / (100.0 - lipo_chart_soc_percent(3.84 - 1.96 * 0.03)) * 100.0, 1e-3);
-    EXPECT_GT(half.interval_ah->high, 2.9);
-    const auto unsure =
-        capacity_of(fit_down_to(3.84), 3.0 * 0.03, 3, std::nullopt);  // the voltage as much as the chart
-    EXPECT_LT(unsure.interval_ah->low, half.interval_ah->low);
-    EXPECT_GT(unsure.interval_ah->high, half.interval_ah->high);
-    EXPECT_THROW(capacity_of(fit_down_to(4.19), 0.0, 3, std::nullopt), NoAnswerError);
+TEST(OpenCircuit, TakesTheMedianOfWhatIsProbable) {
+    const std::vector<ChargeScale> posterior{{1.0, 0.0, 0.2}, {2.0, 0.0, 0.5}, {3.0, 0.0, 0.3}};
+    const auto capacity = capacity_of(1.0, posterior, std::nullopt);
+    EXPECT_EQ(capacity.value_ah, 2.0);
+    EXPECT_EQ(capacity.origin, CapacityOrigin::chart);
+    ASSERT_TRUE(capacity.interval_ah);
+    EXPECT_EQ(*capacity.interval_ah, (Interval{1.0, 3.0}));
+    EXPECT_EQ(capacity_of(1.95, posterior, std::nullopt).origin, CapacityOrigin::flown);
+    EXPECT_THROW(capacity_of(0.05, posterior, std::nullopt), NoAnswerError);
+    EXPECT_EQ(capacity_of(1.0, posterior, 2.2).value_ah, 2.2);
+    EXPECT_EQ(capacity_of(1.0, posterior, 2.2).origin, CapacityOrigin::given);
+    EXPECT_FALSE(capacity_of(1.0, posterior, 2.2).interval_ah);
 }
 
 TEST(OpenCircuit, GoesOnInParallelToTheChart) {
-    const auto [curve, error_v, known_to] = extended_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, 2.4, 3);
-    EXPECT_DOUBLE_EQ(known_to, 50.0);
+    const auto extended = extended_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, 2.4, 0.0);
+    const auto& curve = extended.curve;
+    EXPECT_DOUBLE_EQ(extended.known_down_to_percent, 50.0);
+    EXPECT_DOUBLE_EQ(extended.known_up_to_percent, 100.0);
     EXPECT_EQ(curve.soc_percent.front(), 0.0);
     EXPECT_EQ(curve.soc_percent.back(), 100.0);
     EXPECT_EQ(curve.voltage_v.back(), 12.5);
     EXPECT_NEAR(curve.voltage_v.front(), 3.0 * 3.27, 1e-9);
     EXPECT_TRUE(std::is_sorted(curve.voltage_v.begin(), curve.voltage_v.end()));
     EXPECT_EQ(curve.soc_percent.size(), 13U);  // 0 to 45 in steps of 5, and the three knots
-    EXPECT_NEAR(error_v.front(), 0.0949, 1e-4);
-    EXPECT_EQ(error_v.back(), 0.01);
+    EXPECT_NEAR(extended.standard_error_v.front(), std::hypot(0.03, 3.0 * lipo_chart_uncertainty_v), 1e-9);
+    EXPECT_EQ(extended.standard_error_v.back(), 0.01);
+}
+
+TEST(OpenCircuit, GoesOnAboveWhatWasFlownToo) {
+    const auto extended = extended_curve(fit_down_to(3.84), {0.01, 0.02, 0.03}, 2.4, 0.6);  // from 75 to 25 %
+    const auto& [soc, volts] = extended.curve;
+    EXPECT_DOUBLE_EQ(extended.known_up_to_percent, 75.0);
+    EXPECT_DOUBLE_EQ(extended.known_down_to_percent, 25.0);
+    EXPECT_EQ(soc.back(), 100.0);
+    EXPECT_NEAR(volts.back(), 12.5 + 3.0 * (4.20 - 3.98), 1e-9);
+    EXPECT_TRUE(std::ranges::adjacent_find(soc, std::greater_equal<>()) == soc.end());
 }
 
 TEST(OpenCircuit, NeedsNoChartWhereAllWasFlown) {
-    const auto [curve, error_v, known_to] = extended_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, 1.2, 3);
-    EXPECT_EQ(known_to, 0.0);
-    EXPECT_EQ(curve.soc_percent, (std::vector<double>{0.0, 50.0, 100.0}));
-    EXPECT_EQ(error_v, (std::vector<double>{0.03, 0.02, 0.01}));
+    const auto extended = extended_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, 1.2, 0.0);
+    EXPECT_EQ(extended.known_down_to_percent, 0.0);
+    EXPECT_EQ(extended.curve.soc_percent, (std::vector<double>{0.0, 50.0, 100.0}));
+    EXPECT_EQ(extended.standard_error_v, (std::vector<double>{0.03, 0.02, 0.01}));
+}
+
+TEST(OpenCircuit, EndsWhereACapacityThatWasGivenEnds) {
+    const auto extended = extended_curve(fit_down_to(3.4), {0.01, 0.02, 0.03}, 1.15, 0.0);
+    EXPECT_EQ(extended.curve.soc_percent.size(), 3U);
+    EXPECT_EQ(extended.curve.soc_percent.front(), 0.0);
+    EXPECT_EQ(extended.curve.voltage_v.front(), 3.0 * 3.4);
 }
 
 }  // namespace

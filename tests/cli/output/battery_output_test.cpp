@@ -36,7 +36,36 @@ TEST_F(BatteryOutput, HasARowAParameterAndAFlight) {
     const auto flights = flights_table(identified_, checks_);
     ASSERT_EQ(flights.rows.size(), 2U);
     EXPECT_EQ(flights.rows[0].size(), flights.header.size());
-    EXPECT_EQ(flights_table(identified_, {}).header.size() + 2, flights.header.size());
+    EXPECT_EQ(flights_table(identified_, {}).header.size() + 4, flights.header.size());
+}
+
+TEST_F(BatteryOutput, SaysWhosePackWasAssumed) {
+    EXPECT_EQ(describe_link(identified_.flights[1]), "");
+    const auto columns = flights_table(identified_, {}).header.size();
+    auto& flight = identified_.flights[1];
+    flight.link = battery::PackLink{0, 0.4, 0.01, 1380.0, false};
+    flight.pack_of = "synthetic_1";
+    flight.air_temperature_c = 21.5;
+    EXPECT_THAT(describe_link(flight),
+                HasSubstr("synthetic_2: assumed to be flown on the pack of synthetic_1, as it begins 23 min after"));
+    const auto table = flights_table(identified_, {});
+    EXPECT_EQ(table.header.size(), columns + 2);
+    EXPECT_THAT(table.rows[1], testing::IsSupersetOf({"synthetic_1", "21.5"}));
+    EXPECT_THAT(table.rows[0], testing::Contains("-"));
+    EXPECT_THAT(provenance(identified_), HasSubstr("pack of synthetic_1"));
+    const auto json = to_json(identified_, checks_);
+    EXPECT_EQ(json["flights"][1]["pack_of"], "synthetic_1");
+    EXPECT_EQ(json["flights"][1]["pause_s"], 1380.0);
+    EXPECT_TRUE(json["flights"][0]["pack_of"].is_null());
+    EXPECT_EQ(json["left_out"][1]["load_voltage_rms_mv"], 1e3 * checks_[1].load_rms_v);
+    EXPECT_LE(json["left_out"][1]["placed_load_voltage_rms_mv"], json["left_out"][1]["load_voltage_rms_mv"]);
+    EXPECT_TRUE(json["resistance_trend"].is_null()) << "two flights have none";
+}
+
+TEST_F(BatteryOutput, SaysWhetherTheResistanceGoesOn) {
+    EXPECT_THAT(describe({4, 0.001, {0.0005, 0.0015}}),
+                HasSubstr("over 4 flights: +1.00 mohm a flight, +0.50 to +1.50"));
+    EXPECT_THAT(describe({4, 0.001, {-0.0005, 0.0025}}), HasSubstr("no trend is seen"));
 }
 
 TEST_F(BatteryOutput, HasNoRowOfAnAbsentRcPair) {

@@ -1,0 +1,248 @@
+#include "battery/identification/aligned_fit.h"
+
+#include "base/error.h"
+#include "base/piecewise_linear.h"
+#include "battery/identification/segment_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include <Eigen/Cholesky>
+
+namespace flightwatt::battery {
+namespace {
+
+constexpr int first_segments = 6;
+constexpr int most_steps = 15;
+constexpr int places_tried = 80;
+
+bool falls_throughout(const CircuitFit& fit) {
+    return std::ranges::adjacent_find(fit.open_circuit_v, std::less<>()) == fit.open_circuit_v.end();
+}
+
+/// What a sample counts for: residuals that follow each other are alike.
+double effective_error_v(std::span<const AlignedRecord> records, const Eigen::VectorXd& residual_v) {
+    double product = 0.0;
+    double squares = 0.0;
+    Eigen::Index row = 0;
+    for (const auto& aligned : records) {
+        const auto n = used_samples(*aligned.record);
+        const auto part = residual_v.segment(row, n);
+        if (n > 1) product += part.head(n - 1).dot(part.tail(n - 1));
+        squares += part.squaredNorm();
+        row += n;
+    }
+    constexpr double most_alike = 0.99;
+    const double r = squares > 0.0 ? std::clamp(product / squares, 0.0, most_alike) : 0.0;
+    constexpr double least_v = 1e-6;
+    return std::max(least_v, std::sqrt(squares / static_cast<double>(residual_v.size()) * (1.0 + r) / (1.0 - r)));
+}
+
+/// Mean square of what is left of a record's voltage if it begins at `initial_ah` of the curve.
+double misfit_v2(const DischargeRecord& record, const CircuitFit& fit, double initial_ah) {
+    const auto settled_a = fit.rc_resistance_ohm > 0.0 ? settled_current_a(record, fit.rc_time_constant_s)
+                                                       : std::vector<double>(record.time_s.size(), 0.0);
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t i = record.rest_samples; i < record.used.size(); ++i) {
+        if (!record.used[i]) continue;
+        const double source_v =
+            interpolate_extended(fit.knots_ah, fit.open_circuit_v, initial_ah + record.charge_ah[i]);
+        const double left_v = record.voltage_v[i] - source_v + fit.resistance_ohm * record.current_a[i] +
+                              fit.rc_resistance_ohm * settled_a[i];
+        squares += left_v * left_v;
+        count += 1.0;
+    }
+    return squares / std::max(1.0, count);
+}
+
+/// Where on the curve a record lies best.
+double best_place_ah(const DischargeRecord& record, const CircuitFit& fit) {
+    const double length_ah = fit.knots_ah.back() - fit.knots_ah.front();
+    double best_ah = 0.0;
+    double least_v2 = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= places_tried; ++i) {
+        const double tried_ah = fit.knots_ah.front() + length_ah * (1.2 * i / places_tried - 0.1);
+        const double left_v2 = misfit_v2(record, fit, tried_ah);
+        if (left_v2 >= least_v2) continue;
+        least_v2 = left_v2;
+        best_ah = tried_ah;
+    }
+    return best_ah;
+}
+
+/// The sum of squares that the joint fit makes least.
+double objective_of(const AlignedFit& aligned) {
+    double sum = aligned.fit.objective;
+    const double sample_v = aligned.fit.weights.sample_error_v;
+    for (const auto& link : aligned.links) {
+        const double apart_ah = aligned.records[link.later].initial_charge_ah -
+                                aligned.records[link.earlier].initial_charge_ah - link.charge_ah;
+        sum += std::pow(sample_v * apart_ah / link.error_ah, 2);
+    }
+    return sum;
+}
+
+/// The fit anew, at the initial charges that stand there; with the time constant that it has if `keep_rc`.
+void refit(AlignedFit& aligned, int segments, bool keep_rc) {
+    std::optional<double> tau_s;
+    if (keep_rc) tau_s = aligned.fit.rc_time_constant_s;
+    aligned.fit = fit_circuit(aligned.records, equal_knots(aligned.records, segments), aligned.fit.weights, tau_s);
+}
+
+/// Steps until they no longer help.
+void step_to_optimum(AlignedFit& aligned, int segments) {
+    if (aligned.records.size() < 2) return;
+    const auto flights = static_cast<Eigen::Index>(aligned.records.size());
+    for (int i = 0; i < most_steps; ++i) {
+        const double length_ah = aligned.fit.knots_ah.back() - aligned.fit.knots_ah.front();
+        const Eigen::VectorXd step = joint_step(aligned).tail(flights);
+        double part = std::min(1.0, 0.1 * length_ah / std::max(1e-12, step.cwiseAbs().maxCoeff()));
+        const double before = objective_of(aligned);
+        auto tried = aligned;
+        bool helps = false;
+        for (int halved = 0; halved < 4 && !helps; ++halved, part /= 2.0) {
+            tried = aligned;
+            for (Eigen::Index f = 0; f < flights; ++f)
+                tried.records[static_cast<std::size_t>(f)].initial_charge_ah += part * step[f];
+            refit(tried, segments, true);
+            helps = objective_of(tried) < before;
+        }
+        if (!helps) break;
+        aligned = std::move(tried);
+        if (step.cwiseAbs().maxCoeff() < 1e-4 * length_ah) break;
+    }
+    refit(aligned, segments, false);
+}
+
+/// The records laid onto each other one by one, the fullest first.
+AlignedFit laid_out(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links) {
+    std::vector<std::size_t> order(records.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return records[i].resting_voltage_v; });
+    AlignedFit growing;
+    growing.fit.weights.cells = cells;
+    growing.fit.weights.fullest_rest_v = records[order.front()].resting_voltage_v;
+    std::vector<double> initial_ah(records.size(), 0.0);
+    for (const auto at : order) {
+        const auto linked = std::ranges::find(links, at, &ChargeLink::later);
+        if (at == order.front()) {
+            initial_ah[at] = 0.0;
+        } else if (linked != links.end() &&
+                   records[linked->earlier].resting_voltage_v >= records[at].resting_voltage_v) {
+            initial_ah[at] = initial_ah[linked->earlier] + linked->charge_ah;
+        } else {
+            initial_ah[at] = best_place_ah(records[at], growing.fit);
+        }
+        growing.records.push_back({&records[at], initial_ah[at]});
+        refit(growing, first_segments, false);
+    }
+    AlignedFit aligned;
+    for (std::size_t i = 0; i < records.size(); ++i) aligned.records.push_back({&records[i], initial_ah[i]});
+    aligned.links.assign(links.begin(), links.end());
+    aligned.reference = order.front();
+    aligned.fit.weights = growing.fit.weights;
+    refit(aligned, first_segments, false);
+    aligned.fit.weights.sample_error_v = effective_error_v(aligned.records, aligned.fit.residual_v);
+    refit(aligned, first_segments, false);
+    return aligned;
+}
+
+/// Moves all so that the curve begins at charge 0.
+void begin_at_zero(AlignedFit& aligned) {
+    const double low_ah = aligned.fit.knots_ah.front();
+    for (auto& knot : aligned.fit.knots_ah) knot -= low_ah;
+    for (auto& record : aligned.records) record.initial_charge_ah -= low_ah;
+}
+
+}  // namespace
+
+std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segments) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const auto& [record, initial] : records) {
+        const auto [least, most] = std::ranges::minmax_element(record->charge_ah);
+        low = std::min(low, std::max(0.0, *least) + initial);  // a counter that falls has drifted
+        high = std::max(high, *most + initial);
+    }
+    std::vector<double> knots;
+    for (int i = 0; i <= segments; ++i) knots.push_back(std::lerp(low, high, static_cast<double>(i) / segments));
+    return knots;
+}
+
+Eigen::MatrixXd joint_derivatives(const AlignedFit& aligned) {
+    auto columns = voltage_derivatives(aligned.records, aligned.fit);
+    const auto width = columns.cols();
+    columns.conservativeResize(Eigen::NoChange, width + static_cast<Eigen::Index>(aligned.records.size()));
+    columns.rightCols(static_cast<Eigen::Index>(aligned.records.size())).setZero();
+    Eigen::Index row = 0;
+    for (std::size_t f = 0; f < aligned.records.size(); ++f) {
+        const auto slopes = slopes_v_per_ah(aligned.records[f], aligned.fit);
+        if (f != aligned.reference) columns.block(row, width + static_cast<Eigen::Index>(f), slopes.size(), 1) = slopes;
+        row += slopes.size();
+    }
+    return columns;
+}
+
+JointBelief joint_belief(const AlignedFit& aligned) {
+    const auto& fit = aligned.fit;
+    const auto at = columns_of(fit);
+    const auto circuit = believed_rows(aligned.records, fit);
+    const auto flights = static_cast<Eigen::Index>(aligned.records.size());
+    const auto links = static_cast<Eigen::Index>(aligned.links.size());
+    JointBelief belief;
+    belief.rows = Eigen::MatrixXd::Zero(circuit.rows() + links, at.width + flights);
+    belief.rows.topLeftCorner(circuit.rows(), at.width) = circuit;
+    Eigen::VectorXd now = Eigen::VectorXd::Zero(at.width + flights);
+    for (Eigen::Index k = 0; k < at.resistance; ++k) now[k] = fit.open_circuit_v[static_cast<std::size_t>(k)];
+    for (Eigen::Index f = 0; f < flights; ++f) now[at.rest + f] = fit.rest_offset_v[static_cast<std::size_t>(f)];
+    now[at.rest + flights] = fit.common_rest_offset_v;
+    belief.residual = -belief.rows * now;
+    for (Eigen::Index l = 0; l < links; ++l) {
+        const auto& [later, earlier, charge_ah, error_ah] = aligned.links[static_cast<std::size_t>(l)];
+        const double weight = fit.weights.sample_error_v / error_ah;
+        const auto row = circuit.rows() + l;
+        belief.rows(row, at.width + static_cast<Eigen::Index>(later)) = weight;
+        belief.rows(row, at.width + static_cast<Eigen::Index>(earlier)) = -weight;
+        belief.residual[row] = weight * (charge_ah - aligned.records[later].initial_charge_ah +
+                                         aligned.records[earlier].initial_charge_ah);
+    }
+    const auto reference = at.width + static_cast<Eigen::Index>(aligned.reference);
+    belief.rows.col(reference).setZero();
+    return belief;
+}
+
+Eigen::VectorXd joint_step(const AlignedFit& aligned) {
+    const auto columns = joint_derivatives(aligned);
+    const auto belief = joint_belief(aligned);
+    Eigen::MatrixXd normal = columns.transpose() * columns + belief.rows.transpose() * belief.rows;
+    const Eigen::VectorXd pull =
+        columns.transpose() * aligned.fit.residual_v + belief.rows.transpose() * belief.residual;
+    // Parameters have their own units: each is scaled to length 1 first, and what nothing tells stays where it is.
+    const Eigen::VectorXd length = normal.diagonal().cwiseSqrt().cwiseMax(1e-12);
+    normal = length.cwiseInverse().asDiagonal() * normal * length.cwiseInverse().asDiagonal();
+    constexpr double ridge = 1e-10;
+    normal.diagonal().array() += ridge;
+    const Eigen::VectorXd scaled = normal.ldlt().solve(pull.cwiseQuotient(length));
+    return scaled.cwiseQuotient(length);
+}
+
+AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links) {
+    auto rough = laid_out(records, cells, links);
+    step_to_optimum(rough, first_segments);
+    for (const int segments : segments_by_prediction(rough.records, rough.fit)) {
+        auto aligned = rough;
+        refit(aligned, segments, false);
+        if (segments != first_segments) step_to_optimum(aligned, segments);
+        if (!falls_throughout(aligned.fit)) continue;
+        begin_at_zero(aligned);
+        return aligned;
+    }
+    throw NoAnswerError("the open-circuit voltage does not fall as charge is drawn");
+}
+
+}  // namespace flightwatt::battery

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "battery/identification/circuit_fit.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flightwatt::battery {
+
+/// Two records of one pack: the later one began with what the earlier one left.
+struct ChargeLink {
+    std::size_t later = 0;
+    std::size_t earlier = 0;
+    double charge_ah = 0.0;  ///< drawn in between
+    double error_ah = 0.0;   ///< its standard deviation
+};
+
+/// A circuit, and the initial charges that belong to it.
+struct AlignedFit {
+    std::vector<AlignedRecord> records;
+    std::vector<ChargeLink> links;
+    CircuitFit fit;
+    std::size_t reference = 0;  ///< the record with the highest resting voltage: others are aligned with it
+};
+
+/// Circuit and initial charges in one least squares: what was missing from the pack is a parameter of each record but
+/// the reference's, told by the voltage under load, the resting voltage (as far as it can be believed, circuit_fit.h)
+/// and the links. Solved by Gauss-Newton steps from where each record's voltage lies best on the curve of the fuller
+/// ones. The curve has as many equal segments (12 at most) as predict best what was left out: each record in turn, or,
+/// of a single one, each twentieth of it. The curve begins at charge 0. Throws NoAnswerError where the records
+/// determine no circuit whose voltage falls as charge is drawn.
+AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links = {});
+
+/// Derivatives of the fitted voltages by all parameters: those of voltage_derivatives, then the initial charge of each
+/// record, the reference's being 0 throughout.
+Eigen::MatrixXd joint_derivatives(const AlignedFit& aligned);
+
+/// What is believed and what the links say, as rows beneath those derivatives, and what they leave, in the same order.
+struct JointBelief {
+    Eigen::MatrixXd rows;
+    Eigen::VectorXd residual;
+};
+JointBelief joint_belief(const AlignedFit& aligned);
+
+/// What the joint fit would change of its parameters: of a linear problem, all that is left to do.
+Eigen::VectorXd joint_step(const AlignedFit& aligned);
+
+/// Knots that part the charge of the records equally.
+std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segments);
+
+}  // namespace flightwatt::battery

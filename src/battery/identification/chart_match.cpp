@@ -1,0 +1,215 @@
+#include "battery/identification/chart_match.h"
+
+#include "base/error.h"
+#include "base/piecewise_linear.h"
+#include "base/statistics.h"
+#include "base/units.h"
+#include "battery/identification/open_circuit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <fmt/format.h>
+
+namespace flightwatt::battery {
+namespace {
+
+constexpr int capacities_tried = 120;
+constexpr double missing_step = 0.0125;
+constexpr double full_step = 0.005;
+constexpr double most_times_shown = 50.0;
+constexpr double most_missing_part = 0.9;
+constexpr double full_probability = 0.5;
+constexpr double full_sd = 0.03;           // of the capacity
+constexpr double resting_sd_v = 0.02;      // a cell; what it leaves at rest
+constexpr Eigen::Index most_compared = 4;  // points of the curve, evenly spread
+constexpr double loaded_sd_v = 0.03;       // a cell; what slow relaxation takes under load throughout
+constexpr double rounding_percent = 0.01;
+constexpr double most_beyond_percent = 10.0;
+
+/// What of the pack is compared with the chart: the rest first, then the curve.
+struct Compared {
+    Eigen::VectorXd charge_ah;
+    Eigen::VectorXd cell_v;
+    Eigen::MatrixXd covariance_v2;  ///< a cell, without the chart's error
+};
+
+Compared compared(const ShownCurve& shown) {
+    const auto knots = static_cast<Eigen::Index>(shown.charge_ah.size());
+    const auto points = std::min<Eigen::Index>(knots, most_compared);
+    Eigen::MatrixXd between = Eigen::MatrixXd::Zero(points, knots);
+    Compared all;
+    all.charge_ah.resize(points + 1);
+    all.charge_ah[0] = shown.resting_charge_ah;
+    for (Eigen::Index p = 0; p < points; ++p) {
+        const double part = static_cast<double>(p) / static_cast<double>(points - 1);
+        all.charge_ah[p + 1] = std::lerp(shown.charge_ah.front(), shown.charge_ah.back(), part);
+        const auto place = place_among(shown.charge_ah, all.charge_ah[p + 1]);
+        between(p, static_cast<Eigen::Index>(place.lower)) = 1.0 - place.fraction;
+        between(p, static_cast<Eigen::Index>(place.lower) + 1) = place.fraction;
+    }
+    all.cell_v.resize(points + 1);
+    all.cell_v << shown.resting_voltage_v / shown.cells,
+        between * Eigen::Map<const Eigen::VectorXd>(shown.voltage_v.data(), knots) / shown.cells;
+    all.covariance_v2 = Eigen::MatrixXd::Zero(points + 1, points + 1);
+    all.covariance_v2(0, 0) = resting_sd_v * resting_sd_v;
+    all.covariance_v2.bottomRightCorner(points, points) =
+        between * shown.covariance_v2 * between.transpose() / (shown.cells * shown.cells) +
+        Eigen::MatrixXd::Constant(points, points, loaded_sd_v * loaded_sd_v);
+    all.covariance_v2.diagonal().array() += lipo_chart_kink_v * lipo_chart_kink_v;
+    return all;
+}
+
+/// What may be missing, as a part of the capacity, and how probable that is beforehand.
+struct MissingPart {
+    double part = 0.0;
+    double probability = 0.0;
+    bool is_full = false;
+};
+
+std::vector<MissingPart> missing_parts() {
+    std::vector<MissingPart> parts;
+    double sum = 0.0;
+    for (int i = 0; full_step * i <= 3.0 * full_sd; ++i) {
+        const double part = full_step * i;
+        const double density = (i == 0 ? 0.5 : 1.0) * std::exp(-part * part / (2.0 * full_sd * full_sd));
+        parts.push_back({part, density, true});
+        sum += density;
+    }
+    for (auto& full : parts) full.probability *= full_probability / sum;
+    const auto cells = static_cast<int>(std::lround(most_missing_part / missing_step));
+    for (int i = 0; i < cells; ++i)
+        parts.push_back({missing_step * (i + 0.5), (1.0 - full_probability) / cells, false});
+    return parts;
+}
+
+/// The logarithm of the likelihood of a scale; -infinity where more was drawn than there is by so many percent.
+double log_likelihood(const Compared& shown, double capacity_ah, double missing_ah, double beyond_percent) {
+    const Eigen::VectorXd soc = (1.0 - (shown.charge_ah.array() + missing_ah) / capacity_ah) * units::percent_per_whole;
+    if (soc.minCoeff() < -beyond_percent) return -std::numeric_limits<double>::infinity();
+    const auto n = soc.size();
+    Eigen::VectorXd difference(n);
+    Eigen::VectorXd slope(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        difference[i] = shown.cell_v[i] - lipo_chart_voltage_v(soc[i]);
+        const double low = std::clamp(soc[i] - lipo_chart_charge_percent, 0.0, units::percent_per_whole - 1.0);
+        const double high = std::clamp(soc[i] + lipo_chart_charge_percent, 1.0, units::percent_per_whole);
+        slope[i] = (lipo_chart_voltage_v(high) - lipo_chart_voltage_v(low)) / (high - low);
+    }
+    Eigen::MatrixXd covariance = shown.covariance_v2;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        for (Eigen::Index j = 0; j < n; ++j) {
+            const double apart = (soc[i] - soc[j]) / lipo_chart_alike_percent;
+            const double variance = lipo_chart_uncertainty_v * lipo_chart_uncertainty_v +
+                                    slope[i] * slope[j] * lipo_chart_charge_percent * lipo_chart_charge_percent;
+            covariance(i, j) += variance * std::exp(-apart * apart / 2.0);
+        }
+    }
+    const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+    const Eigen::VectorXd whitened = root.matrixL().solve(difference);
+    return -0.5 * whitened.squaredNorm() - root.matrixLLT().diagonal().array().log().sum();
+}
+
+std::vector<double> capacities(const ShownCurve& shown, std::optional<double> given_ah) {
+    if (given_ah) return {*given_ah};
+    std::vector<double> tried;
+    for (int i = 0; i < capacities_tried; ++i)
+        tried.push_back(shown.charge_ah.back() *
+                        std::pow(most_times_shown, static_cast<double>(i) / (capacities_tried - 1)));
+    return tried;
+}
+
+/// The value below which that much of the probability lies.
+double weighted_quantile(std::vector<std::pair<double, double>> values, double probability) {
+    std::ranges::sort(values);
+    double below = 0.0;
+    for (const auto& [value, weight] : values) {
+        below += weight;
+        if (below >= probability) return value;
+    }
+    return values.back().first;
+}
+
+}  // namespace
+
+std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<double> given_ah) {
+    const auto all = compared(shown);
+    // A capacity that is given holds, though initial charges that are not exact may add up to more.
+    const double beyond_percent = given_ah ? most_beyond_percent : rounding_percent;
+    std::vector<ChargeScale> posterior;
+    double most = -std::numeric_limits<double>::infinity();
+    const auto parts = missing_parts();
+    for (const double capacity_ah : capacities(shown, given_ah)) {
+        for (const auto& [part, prior, is_full] : parts) {
+            const double missing_ah = part * capacity_ah;
+            // Any part of what the pack held may have been drawn; the grid is one of logarithms.
+            const double drawn_part = std::min(1.0, shown.charge_ah.back() / (capacity_ah - missing_ah));
+            const double logarithm =
+                log_likelihood(all, capacity_ah, missing_ah, beyond_percent) + std::log(prior * drawn_part);
+            if (!std::isfinite(logarithm)) continue;
+            posterior.push_back({capacity_ah, missing_ah, logarithm, is_full});
+            most = std::max(most, logarithm);
+        }
+    }
+    if (posterior.empty()) {
+        throw UsageError(fmt::format("--capacity is {} Ah, and {:.3f} Ah were drawn from the pack",
+                                     given_ah.value_or(0.0), shown.charge_ah.back()));
+    }
+    constexpr double negligible = 1e-7;
+    double sum = 0.0;
+    for (auto& scale : posterior) scale.probability = std::exp(scale.probability - most);
+    std::erase_if(posterior, [](const ChargeScale& scale) { return scale.probability < negligible; });
+    for (const auto& scale : posterior) sum += scale.probability;
+    for (auto& scale : posterior) scale.probability /= sum;
+    return posterior;
+}
+
+double capacity_quantile_ah(std::span<const ChargeScale> posterior, double probability) {
+    std::vector<std::pair<double, double>> values;
+    for (const auto& scale : posterior) values.emplace_back(scale.capacity_ah, scale.probability);
+    return weighted_quantile(std::move(values), probability);
+}
+
+double probable_missing_ah(std::span<const ChargeScale> posterior) {
+    const double capacity_ah = capacity_quantile_ah(posterior, 0.5);
+    std::vector<std::pair<double, double>> values;
+    double sum = 0.0;
+    for (const auto& scale : posterior) {
+        if (scale.capacity_ah != capacity_ah) continue;
+        values.emplace_back(scale.is_full ? 0.0 : scale.missing_ah, scale.probability);
+        sum += scale.probability;
+    }
+    return weighted_quantile(std::move(values), sum / 2.0);
+}
+
+Interval missing_interval_ah(std::span<const ChargeScale> posterior, double offset_ah, double standard_error_ah) {
+    constexpr int halvings = 40;
+    const double error_ah = std::max(1e-6, standard_error_ah);
+    const auto quantile = [&](double probability, bool full_is_full) {
+        const auto below = [&](double missing_ah) {
+            double sum = 0.0;
+            for (const auto& scale : posterior) {
+                const double begins_ah = offset_ah + (scale.is_full && full_is_full ? 0.0 : scale.missing_ah);
+                sum += scale.probability * std::erfc((begins_ah - missing_ah) / (error_ah * std::numbers::sqrt2)) / 2.0;
+            }
+            return sum;
+        };
+        double low_ah = -1.0 - std::abs(offset_ah) - 10.0 * error_ah;
+        double high_ah = 1.0 + std::abs(offset_ah) + 10.0 * error_ah;
+        for (const auto& scale : posterior) high_ah = std::max(high_ah, scale.missing_ah + offset_ah + 10.0 * error_ah);
+        for (int i = 0; i < halvings; ++i) {
+            const double middle_ah = std::midpoint(low_ah, high_ah);
+            (below(middle_ah) < probability ? low_ah : high_ah) = middle_ah;
+        }
+        return std::max(0.0, std::midpoint(low_ah, high_ah));
+    };
+    constexpr double tail = (1.0 - confidence_level) / 2.0;
+    return {quantile(tail, true), quantile(1.0 - tail, false)};
+}
+
+}  // namespace flightwatt::battery

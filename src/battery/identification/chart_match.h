@@ -1,0 +1,61 @@
+#pragma once
+
+#include "battery/battery.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flightwatt::battery {
+
+/// What flights show of a pack's open-circuit voltage, to be laid onto the LiPo chart.
+struct ShownCurve {
+    std::vector<double> charge_ah;   ///< from where the curve begins, 0; rising
+    std::vector<double> voltage_v;   ///< under load, falling
+    Eigen::MatrixXd covariance_v2;   ///< of these voltages
+    double resting_charge_ah = 0.0;  ///< of the fullest flight: at this charge
+    double resting_voltage_v = 0.0;  ///< it rested at this voltage before
+    int cells = 0;
+};
+
+/// How packs differ from the chart, a cell, as standard deviations: 80 mV, alike over 40 % of the charge, and 10 mV at
+/// each point that is compared. Chen's and Rincon-Mora's curve of a polymer cell (2006) differs from it by 55 mV, the two
+/// curves of the synthetic packs by 72 and 83 mV; the constants were chosen with these three in view. The 10 mV keep a
+/// curve's smoothness from telling the capacity: real curves are smoother than any model of their difference.
+inline constexpr double lipo_chart_uncertainty_v = 0.08;
+inline constexpr double lipo_chart_alike_percent = 40.0;
+inline constexpr double lipo_chart_kink_v = 0.01;
+inline constexpr double lipo_chart_charge_percent = 4.0;  ///< an error of its charge, which counts where it is steep
+
+/// How probable a capacity is, with a charge missing where the curve begins.
+struct ChargeScale {
+    double capacity_ah = 0.0;
+    double missing_ah = 0.0;
+    double probability = 0.0;
+    bool is_full = false;  ///< as a charger leaves it: then `missing_ah` is 0 to some percent
+};
+
+/// The posterior on a grid, probabilities summing to 1: the curve's voltages at four points are the chart's, with an
+/// error as above (a Gaussian process over charge), a common error of 30 mV a cell under load and one of 20 mV at rest.
+/// Beforehand each part of what the pack held may have been drawn, from all to a fiftieth (or the capacity is
+/// `given_ah`); and packs begin full in half of all cases (which leaves 3 % missing: half a normal distribution), and
+/// from 0 to 90 % short in the others. With a flight of a pack that is not full alone, capacity and initial charge are
+/// told by the chart alone, and the posterior is wide. Throws UsageError where the curve shows more than the given
+/// capacity, by a tenth.
+std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<double> given_ah);
+
+/// Quantile of the capacity.
+double capacity_quantile_ah(std::span<const ChargeScale> posterior, double probability);
+
+/// What was probably missing where the curve begins, if the capacity is its median: 0 where that counts as full, else a
+/// median.
+double probable_missing_ah(std::span<const ChargeScale> posterior);
+
+/// 95 % interval of the charge missing from a full pack where it began `offset_ah` behind the curve's beginning, with
+/// that standard error; not below 0.
+Interval missing_interval_ah(std::span<const ChargeScale> posterior, double offset_ah, double standard_error_ah);
+
+}  // namespace flightwatt::battery

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "battery/battery.h"
+#include "battery/identification/aligned_fit.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace flightwatt::battery {
+
+/// The series resistance that one flight alone shows.
+struct FlightResistance {
+    double value_ohm = 0.0;
+    double standard_error_ohm = 0.0;
+    double degrees_of_freedom = 1.0;
+    Interval interval_ohm;           ///< 95 %, not below 0
+    double charge_ah_per_ohm = 0.0;  ///< how far an error of it moves the initial charge that its voltage tells
+};
+
+/// Of each record, where the curve and the RC pair are those of all and its own initial charge is free; by least squares
+/// over its samples under load, with the jackknife over a dozen blocks of its time. None where its current or charge
+/// varies too little.
+std::vector<std::optional<FlightResistance>> flight_resistances(const AlignedFit& aligned);
+
+/// The standard deviation of resistances between flights: of what they differ by more than their errors say, and of 15 %,
+/// as packs differ within some 8 K, which counts as one further flight.
+inline constexpr double usual_scatter_part = 0.15;
+double resistance_scatter_ohm(std::span<const std::optional<FlightResistance>> resistances, double fitted_ohm);
+
+/// How a pack's resistance goes on from flight to flight: a straight line through the flights' resistances, by least
+/// squares, with Student's t of what is left.
+struct ResistanceTrend {
+    std::size_t flights = 0;
+    double ohm_a_flight = 0.0;
+    Interval interval_ohm_a_flight;  ///< 95 %
+};
+
+/// In the order given; none of fewer than three resistances.
+std::optional<ResistanceTrend> resistance_trend(std::span<const std::optional<FlightResistance>> in_order);
+
+}  // namespace flightwatt::battery

@@ -1,0 +1,74 @@
+// What each flight alone says of the resistance, and how it goes on.
+
+#include "battery/identification/flight_resistance.h"
+
+#include "helpers/synthetic_discharge.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::battery {
+namespace {
+
+std::optional<FlightResistance> resistance(double value_ohm, double error_ohm = 1e-3) {
+    return FlightResistance{value_ohm, error_ohm, 10.0, {value_ohm - 2e-3, value_ohm + 2e-3}};
+}
+
+TEST(FlightResistance, IsThatOfTheFlight) {
+    std::vector<DischargeRecord> records;
+    const std::vector<double> true_ohm{0.06, 0.08, 0.12};
+    for (std::size_t f = 0; f < true_ohm.size(); ++f) {
+        auto pack = test::known_pack();
+        pack.resistance_ohm = true_ohm[f];
+        records.push_back(test::discharge_record(test::synthetic_discharge(pack, {}, 40 + f)));
+    }
+    const auto found = flight_resistances(aligned_fit(records, 3));
+    for (std::size_t f = 0; f < true_ohm.size(); ++f) {
+        ASSERT_TRUE(found[f]);
+        EXPECT_NEAR(found[f]->value_ohm, true_ohm[f], 0.008) << f;
+        EXPECT_LT(found[f]->standard_error_ohm, 0.01) << f;
+    }
+    const auto trend = resistance_trend(found);
+    ASSERT_TRUE(trend);
+    EXPECT_NEAR(trend->ohm_a_flight, 0.03, 0.006);
+}
+
+TEST(FlightResistance, ScattersByMoreThanItsErrors) {
+    const auto scatter = [](const std::vector<std::optional<FlightResistance>>& all) {
+        return resistance_scatter_ohm(all, 0.1);
+    };
+    EXPECT_DOUBLE_EQ(scatter({resistance(0.1)}), 0.015) << "one flight says nothing of others";
+    EXPECT_DOUBLE_EQ(scatter({resistance(0.1), std::nullopt}), 0.015);
+    // Equal resistances: what stands beforehand counts as one flight of four.
+    EXPECT_NEAR(scatter({resistance(0.1), resistance(0.1), resistance(0.1), resistance(0.1)}), 0.0075, 1e-9);
+    // Their variance is 4e-4, of which 4e-6 is error.
+    const auto wide = scatter({resistance(0.08), resistance(0.10), resistance(0.12)});
+    EXPECT_NEAR(wide, std::sqrt((0.015 * 0.015 + 2.0 * (4e-4 - 1e-6)) / 3.0), 1e-9);
+}
+
+TEST(FlightResistance, SaysHowFarItsErrorMovesTheCharge) {
+    const std::vector records{test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 51)),
+                              test::discharge_record(test::synthetic_discharge(test::known_pack(), {}, 52))};
+    for (const auto& own : flight_resistances(aligned_fit(records, 3))) {
+        ASSERT_TRUE(own);
+        // More resistance takes more voltage at 2.5 A; less charge missing, where the curve falls by 0.4 V/Ah, gives it.
+        EXPECT_LT(own->charge_ah_per_ohm, -2.0);
+        EXPECT_GT(own->charge_ah_per_ohm, -15.0);
+    }
+}
+
+TEST(FlightResistance, HasATrendFromThreeFlightsOn) {
+    EXPECT_FALSE(resistance_trend(std::vector{resistance(0.08), std::optional<FlightResistance>(), resistance(0.09)}));
+    const auto rising = resistance_trend(
+        std::vector{resistance(0.080), resistance(0.0825), resistance(0.0845), resistance(0.087), resistance(0.089)});
+    ASSERT_TRUE(rising);
+    EXPECT_EQ(rising->flights, 5U);
+    EXPECT_NEAR(rising->ohm_a_flight, 0.00225, 1e-4);
+    EXPECT_GT(rising->interval_ohm_a_flight.low, 0.0);
+    const auto level = resistance_trend(std::vector{resistance(0.08), resistance(0.10), resistance(0.08)});
+    ASSERT_TRUE(level);
+    EXPECT_LT(level->interval_ohm_a_flight.low, 0.0);
+    EXPECT_GT(level->interval_ohm_a_flight.high, 0.0);
+}
+
+}  // namespace
+}  // namespace flightwatt::battery
