@@ -166,10 +166,10 @@ TEST(PhaseFit, TheSharedFrequencyIsTheSameForTwinsAsForOne) {
 
 TEST(PhaseFit, ReportsThatItStandsAtABound) {
     const auto flights = test::record_flights(flight::Phase::cruise, 2, 0.0, 8);  // theta is 5.04
-    const auto low = fit_phase(flight::Phase::cruise, flights, {.low_rad = 5.3});
+    const auto low = fit_phase(flight::Phase::cruise, flights, {.low_rad = 5.3, .curve = Curve::least_squares});
     EXPECT_EQ(low.range.at_bound, FrequencyBound::low);
     EXPECT_NEAR(low.theta_rad, 5.3, 1e-5);
-    const auto high = fit_phase(flight::Phase::cruise, flights, {.high_periods = 0.75});
+    const auto high = fit_phase(flight::Phase::cruise, flights, {.high_periods = 0.75, .curve = Curve::least_squares});
     EXPECT_EQ(high.range.at_bound, FrequencyBound::high);
     EXPECT_NEAR(high.theta_rad, 1.5 * std::numbers::pi, 1e-5);
 }

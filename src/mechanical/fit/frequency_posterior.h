@@ -1,0 +1,56 @@
+#pragma once
+
+#include "mechanical/fit/phase_samples.h"
+#include "mechanical/mechanical_model.h"
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flightwatt::mechanical {
+
+/// A frequency and an autocorrelation that the samples allow, and the curves if they are true: Student t about the
+/// coefficients of generalised least squares.
+struct PosteriorNode {
+    double theta_rad = 0.0;
+    double autocorrelation = 0.0;
+    double weight = 0.0;                        ///< the nodes' sum is 1
+    double log_likelihood = 0.0;                ///< of both, less the greatest
+    std::vector<Eigen::VectorXd> coefficients;  ///< a flight, in the samples' unit
+    Eigen::VectorXd mean;                       ///< of the flights, weighted
+    Eigen::MatrixXd scale;                      ///< of the mean's Student t, squared
+    double degrees_of_freedom = 0.0;            ///< Satterthwaite's for the mean's curve
+    double noise_variance = 0.0;                ///< mean over the flights
+};
+
+/// All that the samples tell of a phase's frequency, its noise and its curve (docs/methods.md, Eq. 13).
+struct FrequencyPosterior {
+    std::vector<PosteriorNode> nodes;      ///< by frequency, rising; those without weight left out
+    double highest_autocorrelation = 0.0;  ///< that was looked at
+    std::vector<double> theta_rad;         ///< the marginal density of the frequency at places that resolve it
+    std::vector<double> density;
+};
+
+/// What is integrated over, and which flights count how much in the mean.
+struct PosteriorOptions {
+    int order = 3;
+    FrequencyRange range;
+    double found_rad = 0.0;       ///< of least squares: one place where the density is looked for
+    std::vector<double> weights;  ///< of the flights
+};
+
+/// The highest autocorrelation of neighbours that is looked at: noise that lasts a fifth of the phase, from 0.9 (9.5
+/// samples) to 0.99. Longer noise is no noise but part of the curve.
+double highest_autocorrelation_of(std::span<const ScaledSamples> flights);
+
+/// Integrates over theta in the range and r in [0, highest]: density ~ 1 / theta^2 times the restricted likelihood of
+/// each flight (node_likelihood.h; each has a noise variance of its own, theta and r are common). Theta is first
+/// screened (promising_frequencies), then nodes are put where the density is. Order 0 has no frequency: one theta.
+/// Throws NoAnswerError if the samples determine no series at any frequency.
+FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> flights, const PosteriorOptions& options);
+
+/// The same samples in the order of time.
+ScaledSamples in_order_of_time(const ScaledSamples& samples);
+
+}  // namespace flightwatt::mechanical
