@@ -107,7 +107,7 @@ struct PhaseModel {
     std::size_t flights = 0;
     std::size_t edge_samples = 0;  ///< left out at the phase's ends: their power is the neighbouring phase's
     bool mean_curve = false;       ///< the mean over all frequencies that may be, for the samples leave it open
-    bool not_negative = false;     ///< the curve was kept from falling below 0, or below the least power measured
+    bool not_negative = false;     ///< the curve was kept from falling below 0, or below negative power measured
     std::optional<PhaseErrors> errors = {};  ///< absent unless they were asked for
     std::optional<PhaseSpread> spread = {};  ///< absent too where a single flight counts
     /// Absent with fewer than 2 flights, or if published without.

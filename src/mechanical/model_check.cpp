@@ -48,9 +48,10 @@ std::vector<std::string> model_warnings(const MechanicalModel& model) {
                             to_string(phase)));
         }
         if (fitted.not_negative) {
-            warnings.push_back(
-                fmt::format("{}: the fit would fall below 0 W, or below all that was measured, and was held above",
-                            to_string(phase)));
+            warnings.push_back(fmt::format(
+                "{}: the curve would fall below 0 W, or below the negative power that was measured, and was "
+                "held above",
+                to_string(phase)));
         }
         if (!fitted.errors || !fitted.errors->noise_lasts) continue;
         warnings.push_back(

@@ -46,7 +46,7 @@ TEST(ModelCheck, TellsWhatWasDoneToTheCurve) {
     landing.not_negative = true;
     EXPECT_THAT(model_warnings(model), ElementsAre(HasSubstr("landing: 2 samples were left out at its ends"),
                                                    HasSubstr("landing: the samples leave the frequency open"),
-                                                   HasSubstr("landing: the fit would fall below 0 W")));
+                                                   HasSubstr("landing: the curve would fall below 0 W")));
 }
 
 }  // namespace

@@ -87,8 +87,8 @@ std::size_t count_of_neighbour(const EdgeView& view) {
 
 /// Of the track from `first` in steps of `step` (1 or -1), as many as `most` while `wanted` says so of their times.
 template <typename Wanted>
-void take_samples(const flight::Track& track, std::ptrdiff_t first, std::ptrdiff_t step, std::size_t most, const Wanted& wanted,
-          std::vector<double>& time_s, std::vector<double>& power_w) {
+void take_samples(const flight::Track& track, std::ptrdiff_t first, std::ptrdiff_t step, std::size_t most,
+                  const Wanted& wanted, std::vector<double>& time_s, std::vector<double>& power_w) {
     const auto size = static_cast<std::ptrdiff_t>(track.time_s.size());
     for (auto i = first; i >= 0 && i < size && time_s.size() < most; i += step) {
         const auto place = static_cast<std::size_t>(i);

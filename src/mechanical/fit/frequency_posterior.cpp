@@ -1,6 +1,7 @@
 #include "mechanical/fit/frequency_posterior.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "mechanical/fit/density_nodes.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/frequency_scan.h"
@@ -132,6 +133,19 @@ std::vector<double> starts_of(std::span<const ScaledSamples> flights, const Post
     return starts;
 }
 
+PosteriorNode posterior_node(const FlightsAt& flights, double theta_rad, double autocorrelation) {
+    PosteriorNode node{theta_rad, autocorrelation};
+    for (const auto& flight : flights) {
+        const auto evidence = evidence_of(flight, autocorrelation);
+        const auto& back = flight.from_orthonormal;
+        const double variance = evidence.square_sum / evidence.degrees_of_freedom;
+        node.log_likelihood += evidence.log_likelihood;
+        node.flights.push_back({back * evidence.coordinates, variance * back * evidence.covariance * back.transpose(),
+                                evidence.degrees_of_freedom});
+    }
+    return node;
+}
+
 /// The mean over the phase of the squares of a curve with these coefficients: c' (this) c.
 Eigen::MatrixXd curve_gram(int order, double theta_rad) {
     constexpr int points = 64;
@@ -141,30 +155,22 @@ Eigen::MatrixXd curve_gram(int order, double theta_rad) {
     return basis.transpose() * basis / points;
 }
 
-PosteriorNode posterior_node(const FlightsAt& flights, const PosteriorOptions& options, const Eigen::MatrixXd& gram,
-                             double autocorrelation) {
-    PosteriorNode node;
-    node.autocorrelation = autocorrelation;
-    const auto size = gram.rows();
-    node.mean = Eigen::VectorXd::Zero(size);
-    node.scale = Eigen::MatrixXd::Zero(size, size);
+MeanNode mean_node(const PosteriorNode& node, std::span<const double> weights) {
+    const auto size = node.flights.front().coefficients.size();
+    MeanNode mean{node.theta_rad,      node.autocorrelation,        node.weight,
+                  node.log_likelihood, Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+    const auto gram = curve_gram(static_cast<int>(size - 1) / 2, node.theta_rad);
     double squares = 0.0;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const auto evidence = evidence_of(flights[i], autocorrelation);
-        const auto& back = flights[i].from_orthonormal;
-        node.log_likelihood += evidence.log_likelihood;
-        node.coefficients.emplace_back(back * evidence.coordinates);
-        node.mean += options.weights[i] * node.coefficients.back();
-        const double variance = evidence.square_sum / evidence.degrees_of_freedom;
-        node.noise_variance += variance / static_cast<double>(flights.size());
-        const Eigen::MatrixXd share =
-            options.weights[i] * options.weights[i] * variance * back * evidence.covariance * back.transpose();
-        node.scale += share;
-        squares += std::pow(gram.cwiseProduct(share).sum(), 2) / evidence.degrees_of_freedom;
+    for (std::size_t i = 0; i < node.flights.size(); ++i) {
+        const auto& flight = node.flights[i];
+        mean.coefficients += weights[i] * flight.coefficients;
+        const Eigen::MatrixXd share = weights[i] * weights[i] * flight.scale;
+        mean.scale += share;
+        squares += std::pow(gram.cwiseProduct(share).sum(), 2) / flight.degrees_of_freedom;
     }
-    const double sum = gram.cwiseProduct(node.scale).sum();
-    node.degrees_of_freedom = squares > 0.0 ? std::max(1.0, sum * sum / squares) : 1.0;
-    return node;
+    const double sum = gram.cwiseProduct(mean.scale).sum();
+    mean.degrees_of_freedom = squares > 0.0 ? std::max(1.0, sum * sum / squares) : 1.0;
+    return mean;
 }
 
 /// Frequencies and autocorrelations with their masses; the lightest are left out.
@@ -247,24 +253,44 @@ FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> unsorted, 
         posterior.density.push_back(std::exp(log_value - top));
     }
     FlightsAt at;
-    Eigen::MatrixXd gram;
     std::size_t computed = density.size();
     for (const auto& [frequency, autocorrelation, weight] : weighed(density, nodes)) {
         const double theta_rad = density[frequency].place;
-        if (computed != frequency) {
-            at = flights_at(flights, options.order, theta_rad);
-            gram = curve_gram(options.order, theta_rad);
-            computed = frequency;
-        }
-        auto node = posterior_node(at, options, gram, autocorrelation);
-        node.theta_rad = theta_rad;
-        node.weight = weight;
-        posterior.nodes.push_back(std::move(node));
+        if (computed != frequency) at = flights_at(flights, options.order, theta_rad);
+        computed = frequency;
+        posterior.nodes.push_back(posterior_node(at, theta_rad, autocorrelation));
+        posterior.nodes.back().weight = weight;
     }
     const auto likeliest = std::ranges::max_element(posterior.nodes, {}, &PosteriorNode::log_likelihood);
     const double greatest = likeliest->log_likelihood;
     for (auto& node : posterior.nodes) node.log_likelihood -= greatest;
     return posterior;
+}
+
+std::vector<MeanNode> mean_of_flights(const FrequencyPosterior& posterior, std::span<const double> weights) {
+    std::vector<MeanNode> nodes;
+    for (const auto& node : posterior.nodes) nodes.push_back(mean_node(node, weights));
+    return nodes;
+}
+
+bool noise_lasts(const FrequencyPosterior& posterior) {
+    constexpr double near_highest = 0.95;
+    double weight = 0.0;
+    for (const auto& node : posterior.nodes)
+        if (node.autocorrelation > near_highest * posterior.highest_autocorrelation) weight += node.weight;
+    return weight > 0.5;
+}
+
+Interval interval_of_frequency(const FrequencyPosterior& posterior) {
+    const double tail = (1.0 - confidence_level) / 2.0;
+    Interval interval{posterior.nodes.front().theta_rad, posterior.nodes.back().theta_rad};
+    double sum = 0.0;
+    for (const auto& node : posterior.nodes) {
+        if (sum < tail) interval.low = node.theta_rad;
+        if (sum < 1.0 - tail) interval.high = node.theta_rad;
+        sum += node.weight;
+    }
+    return interval;
 }
 
 }  // namespace flightwatt::mechanical

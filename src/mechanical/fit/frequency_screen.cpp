@@ -72,7 +72,7 @@ ScreenedFlight screened(const ScaledSamples& samples, const ScreenGrid& grid, do
 
 /// Logarithm of the likelihood at frequency i of the grid for the autocorrelation of that place, about.
 double screened_log_likelihood(const ScreenedFlight& flight, const ScreenGrid& grid, std::size_t i, std::size_t place,
-                      double autocorrelation) {
+                               double autocorrelation) {
     double gained = 0.0;           // of the residuals' square sum, by the harmonics here
     double gained_whitened = 0.0;  // of the whitened one
     double log_spectrum = 0.0;

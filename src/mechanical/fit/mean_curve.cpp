@@ -1,5 +1,6 @@
 #include "mechanical/fit/mean_curve.h"
 
+#include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/frequency_posterior.h"
 
@@ -8,6 +9,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -15,12 +18,19 @@
 namespace flightwatt::mechanical {
 namespace {
 
+/// The highest harmonic turns by no more than this over the phase between frequencies that are as good as one; so fine
+/// is the scan for the frequency, too.
+constexpr double turn_of_one_frequency_rad = 1.0;
+
 /// In standard deviations of the mean curve, root mean squares over the phase.
 constexpr double least_difference = 0.25;
 constexpr double nearness = 0.1;
 
 /// Curves that differ by less than this part of their size differ by rounding.
 constexpr double rounding_of_curve = 1e-7;
+
+/// Negative power lasts this part of the phase, or it is noise: so long noise lasts at most (frequency_posterior.h).
+constexpr double part_of_negative_power = 0.2;
 
 /// How much harmonics count against nearness, largest first; the last is rounding.
 constexpr std::array ridges{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-12};
@@ -36,9 +46,39 @@ struct CurveGrid {
     std::vector<double> tau;
     Eigen::MatrixXd mean;
     Eigen::MatrixXd least_squares;
-    Eigen::VectorXd floor_w;  ///< a flight: 0, or less if less was measured
-    double sd_w = 0.0;        ///< of the mean of the flights' curves, root mean square over the phase
+    Eigen::VectorXd floor_w;  ///< a flight
+    Eigen::VectorXd least_w;  ///< of its samples
+    Eigen::VectorXd most_w;
+    double sd_w = 0.0;  ///< of the mean of the flights' curves, root mean square over the phase
 };
+
+/// 0, or the least mean power over a part of the phase that is below 0 by more than chance (95 %).
+double least_power_w(const PhaseSamples& samples) {
+    const auto sorted = in_order_of_time({samples.tau, samples.power_w, samples.flight});
+    constexpr std::size_t least_samples = 3;
+    double least_w = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    std::size_t first = 0;
+    for (std::size_t last = 0; last < sorted.tau.size(); ++last) {
+        sum += sorted.value[last];
+        squares += sorted.value[last] * sorted.value[last];
+        // The shortest stretch that ends here and is long enough.
+        while (sorted.tau[last] - sorted.tau[first + (first < last ? 1 : 0)] >= part_of_negative_power) {
+            sum -= sorted.value[first];
+            squares -= sorted.value[first] * sorted.value[first];
+            ++first;
+        }
+        const std::size_t count = last - first + 1;
+        if (sorted.tau[last] - sorted.tau[first] < part_of_negative_power || count < least_samples) continue;
+        const auto size = static_cast<double>(count);
+        const double mean_w = sum / size;
+        if (mean_w >= 0.0) continue;
+        const double sd_w = std::sqrt(std::max(0.0, squares / size - mean_w * mean_w) * size / (size - 1.0));
+        least_w = std::min(least_w, mean_w + student_t_half_width(size - 1.0) * sd_w / std::sqrt(size));
+    }
+    return least_w;
+}
 
 std::size_t points_of(const PhaseFit& fit, const FrequencyPosterior& posterior) {
     const double highest_rad = std::max(fit.theta_rad, posterior.nodes.back().theta_rad);
@@ -52,7 +92,12 @@ CurveGrid curve_grid(std::span<const PhaseSamples> flights, const PhaseFit& fit,
     const auto order = static_cast<int>(fit.flights.front().fourier.cos_w.size());
     const auto rows = static_cast<Eigen::Index>(points);
     const auto columns = static_cast<Eigen::Index>(flights.size());
-    CurveGrid grid{{}, Eigen::MatrixXd::Zero(rows, columns), Eigen::MatrixXd(rows, columns), Eigen::VectorXd(columns)};
+    CurveGrid grid{{},
+                   Eigen::MatrixXd::Zero(rows, columns),
+                   Eigen::MatrixXd(rows, columns),
+                   Eigen::VectorXd(columns),
+                   Eigen::VectorXd(columns),
+                   Eigen::VectorXd(columns)};
     for (std::size_t i = 0; i < points; ++i) {
         grid.tau.push_back((static_cast<double>(i) + 0.5) / static_cast<double>(points));
     }
@@ -60,22 +105,28 @@ CurveGrid curve_grid(std::span<const PhaseSamples> flights, const PhaseFit& fit,
     for (Eigen::Index i = 0; i < columns; ++i) {
         const auto flight = static_cast<std::size_t>(i);
         grid.least_squares.col(i) = at_found * coefficients_of(fit.flights[flight].fourier);
-        grid.floor_w(i) = std::min(0.0, *std::ranges::min_element(flights[flight].power_w));
+        const auto [least, most] = std::ranges::minmax(flights[flight].power_w);
+        grid.least_w(i) = least;
+        grid.most_w(i) = most;
+        grid.floor_w(i) = least_power_w(flights[flight]);
     }
+    const std::vector<double> equal(flights.size(), 1.0 / static_cast<double>(columns));
+    const auto nodes = mean_of_flights(posterior, equal);
     double second_moment = 0.0;
-    for (auto first = posterior.nodes.begin(); first != posterior.nodes.end();) {
-        const auto last = std::find_if(first, posterior.nodes.end(),
-                                       [&](const auto& node) { return node.theta_rad != first->theta_rad; });
-        const auto basis = fourier_basis(grid.tau, order, first->theta_rad);
+    for (std::size_t k = 0; k < nodes.size();) {
+        const double theta_rad = nodes[k].theta_rad;
+        const auto basis = fourier_basis(grid.tau, order, theta_rad);
         const Eigen::MatrixXd gram = basis.transpose() * basis / static_cast<double>(points);
         Eigen::MatrixXd coefficients = Eigen::MatrixXd::Zero(basis.cols(), columns);
-        for (; first != last; ++first) {
+        for (; k < nodes.size() && nodes[k].theta_rad == theta_rad; ++k) {
+            const auto& node = nodes[k];
             for (Eigen::Index i = 0; i < columns; ++i) {
-                coefficients.col(i) += first->weight * first->coefficients[static_cast<std::size_t>(i)];
+                const auto& flight = posterior.nodes[k].flights[static_cast<std::size_t>(i)];
+                coefficients.col(i) += node.weight * flight.coefficients;
             }
-            const double freedom = std::max(3.0, first->degrees_of_freedom);
-            second_moment += first->weight * (first->mean.dot(gram * first->mean) +
-                                              freedom / (freedom - 2.0) * gram.cwiseProduct(first->scale).sum());
+            const double freedom = std::max(3.0, node.degrees_of_freedom);
+            second_moment += node.weight * (node.coefficients.dot(gram * node.coefficients) +
+                                            freedom / (freedom - 2.0) * gram.cwiseProduct(node.scale).sum());
         }
         grid.mean += basis * coefficients;
     }
@@ -127,44 +178,88 @@ std::vector<double> candidates(const FrequencyPosterior& posterior, const PhaseF
     return frequencies;
 }
 
-/// With the largest ridge that leaves a series near enough; if none does, the nearest.
-NearSeries near_series(const CurveGrid& grid, const Eigen::MatrixXd& wanted, int order,
-                       const std::vector<double>& frequencies) {
-    NearSeries best;
-    for (const double ridge : ridges) {
-        best = {};
-        for (const double theta_rad : frequencies) {
-            auto near = nearest_at(grid, wanted, order, theta_rad, ridge);
-            if (near.penalised_w2 < best.penalised_w2) best = std::move(near);
-        }
-        if (best.distance_w2 <= std::pow(nearness * grid.sd_w, 2)) break;
+/// Whether each flight's constant is a power that it may have had: constants of low frequencies may cancel each other.
+bool is_plausible(const NearSeries& near, const CurveGrid& grid) {
+    for (Eigen::Index i = 0; i < near.coefficients.cols(); ++i) {
+        const double a0_w = near.coefficients(0, i);
+        const double range_w = grid.most_w(i) - grid.least_w(i);
+        if (a0_w < std::max(grid.floor_w(i), grid.least_w(i) - range_w) || a0_w > grid.most_w(i) + range_w)
+            return false;
     }
-    return best;
+    return true;
 }
 
-/// Bends a flight's curve up where it falls below its floor, with ever more weight on these places; what is left of it
-/// after that is lifted.
+/// With the largest ridge that leaves a series near enough; if none does, the nearest. Of series with plausible
+/// constants, as long as there are some.
+NearSeries near_series(const CurveGrid& grid, int order, const std::vector<double>& frequencies) {
+    NearSeries nearest;
+    NearSeries implausible;
+    for (const double ridge : ridges) {
+        NearSeries best;
+        for (const double theta_rad : frequencies) {
+            auto near = nearest_at(grid, grid.mean, order, theta_rad, ridge);
+            auto& kept = is_plausible(near, grid) ? best : implausible;
+            if (near.penalised_w2 < kept.penalised_w2) kept = std::move(near);
+        }
+        if (best.distance_w2 < nearest.distance_w2) nearest = std::move(best);
+        if (nearest.distance_w2 <= std::pow(nearness * grid.sd_w, 2)) break;
+    }
+    return std::isfinite(nearest.distance_w2) ? nearest : implausible;
+}
+
+/// Bends a flight's curve up where it falls below its floor, with ever more weight on these places and on the mean
+/// power, which stays; what is left of it after that is taken by smaller harmonics.
 void hold_above(const CurveGrid& grid, Eigen::Ref<Eigen::VectorXd> coefficients, double theta_rad, double floor_w) {
     constexpr int most_rounds = 12;
+    constexpr double weight_of_mean = 1e3;
     const auto order = static_cast<int>(coefficients.size() - 1) / 2;
     const auto basis = fourier_basis(grid.tau, order, theta_rad);
+    const auto points = static_cast<double>(basis.rows());
     const Eigen::VectorXd found = basis * coefficients;
     if (found.minCoeff() >= floor_w) return;
     // A little higher, for what lies between the points.
     floor_w += between_points * (found.maxCoeff() - found.minCoeff());
+    const double mean_w = std::max(found.mean(), floor_w);
     const Eigen::VectorXd wanted = found.cwiseMax(floor_w);
+    const Eigen::RowVectorXd mean_row = basis.colwise().mean();
     Eigen::VectorXd weights = Eigen::VectorXd::Ones(basis.rows());
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < most_rounds && (basis * coefficients).minCoeff() < floor_w; ++round) {
         const Eigen::VectorXd curve = basis * coefficients;
-        if (curve.minCoeff() >= floor_w) return;
         for (Eigen::Index i = 0; i < curve.size(); ++i)
             if (curve(i) < floor_w) weights(i) *= 3.0;
+        const double of_mean = weight_of_mean * weights.sum();
         Eigen::MatrixXd normal = basis.transpose() * weights.asDiagonal() * basis;
-        normal.diagonal().tail(coefficients.size() - 1).array() += 1e-6 * static_cast<double>(basis.rows());
-        coefficients = normal.ldlt().solve(basis.transpose() * weights.cwiseProduct(wanted));
+        normal += of_mean * mean_row.transpose() * mean_row;
+        normal.diagonal().tail(coefficients.size() - 1).array() += 1e-6 * points;
+        coefficients = normal.ldlt().solve(basis.transpose() * weights.cwiseProduct(wanted) +
+                                           of_mean * mean_w * mean_row.transpose());
     }
-    const double lacking = floor_w - (basis * coefficients).minCoeff();
-    if (lacking > 0.0) coefficients(0) += lacking;
+    coefficients(0) += mean_w - mean_row.dot(coefficients);
+    const double least_w = (basis * coefficients).minCoeff();
+    if (least_w >= floor_w) return;
+    const double kept = (mean_w - floor_w) / (mean_w - least_w);
+    coefficients *= kept;
+    coefficients(0) += (1.0 - kept) * mean_w;
+}
+
+void hold_above(const CurveGrid& grid, NearSeries& near) {
+    for (Eigen::Index i = 0; i < near.coefficients.cols(); ++i) {
+        hold_above(grid, near.coefficients.col(i), near.theta_rad, grid.floor_w(i));
+    }
+}
+
+/// Of the series above the floors with plausible constants the nearest to the mean; std::nullopt if there is none.
+std::optional<NearSeries> near_series_above(const CurveGrid& grid, int order, const std::vector<double>& frequencies) {
+    constexpr double ridge = 1e-4;
+    std::optional<NearSeries> nearest;
+    for (const double theta_rad : frequencies) {
+        auto near = nearest_at(grid, grid.mean, order, theta_rad, ridge);
+        hold_above(grid, near);
+        if (!is_plausible(near, grid)) continue;
+        near.distance_w2 = (fourier_basis(grid.tau, order, theta_rad) * near.coefficients - grid.mean).squaredNorm();
+        if (!nearest || near.distance_w2 < nearest->distance_w2) nearest = std::move(near);
+    }
+    return nearest;
 }
 
 void take_series(PhaseFit& fit, std::span<const PhaseSamples> flights, const NearSeries& near) {
@@ -180,36 +275,51 @@ void take_series(PhaseFit& fit, std::span<const PhaseSamples> flights, const Nea
         flight.rms_w = std::sqrt(own_sum / static_cast<double>(flight.samples));
         square_sum += own_sum;
     }
-    fit.range.at_bound = FrequencyBound::none;  // of a mean over frequencies none stands at a bound
+    if (fit.mean_curve) fit.range.at_bound = FrequencyBound::none;  // no frequency of a mean stands at a bound
     fit.rms_w = std::sqrt(square_sum / static_cast<double>(fit.samples));
+}
+
+/// Whether frequencies may be at which the highest harmonic turns otherwise.
+bool is_open(const FrequencyPosterior& posterior, int order, double found_rad) {
+    if (noise_lasts(posterior)) return false;
+    const auto [low_rad, high_rad] = interval_of_frequency(posterior);
+    const double apart_rad = std::max(high_rad, found_rad) - std::min(low_rad, found_rad);
+    return order * apart_rad > turn_of_one_frequency_rad;
+}
+
+/// Whether the mean over frequencies is another curve than that of least squares.
+bool is_another(const CurveGrid& grid) {
+    const Eigen::VectorXd apart = (grid.mean - grid.least_squares).rowwise().mean();
+    const double difference_w = std::sqrt(apart.squaredNorm() / static_cast<double>(apart.size()));
+    const double size_w = std::sqrt(grid.mean.squaredNorm() / static_cast<double>(grid.mean.size()));
+    return difference_w > std::max(least_difference * grid.sd_w, rounding_of_curve * size_w);
 }
 
 }  // namespace
 
 void settle_curves(std::span<const PhaseSamples> flights, PhaseFit& fit) {
     const auto order = static_cast<int>(fit.flights.front().fourier.cos_w.size());
-    if (order == 0) return;
+    if (order == 0 || is_constant(flights)) return;
     std::vector<ScaledSamples> values;
     for (std::size_t i = 0; i < flights.size(); ++i) values.push_back(fitted_values(flights[i], fit.flights[i], fit));
-    const std::vector<double> weights(flights.size(), 1.0 / static_cast<double>(flights.size()));
-    const auto posterior = frequency_posterior(values, {order, fit.range, fit.theta_rad, weights});
+    auto posterior = frequency_posterior(values, {order, fit.range, fit.theta_rad});
     const auto grid = curve_grid(flights, fit, posterior);
-    const Eigen::VectorXd apart = (grid.mean - grid.least_squares).rowwise().mean();
-    const double difference_w = std::sqrt(apart.squaredNorm() / static_cast<double>(apart.size()));
-    const double size_w = std::sqrt(grid.mean.squaredNorm() / static_cast<double>(grid.mean.size()));
-    fit.mean_curve = difference_w > std::max(least_difference * grid.sd_w, rounding_of_curve * size_w);
-    const Eigen::MatrixXd& curves = fit.mean_curve ? grid.mean : grid.least_squares;
-    const bool negative = falls_below(curves, grid.floor_w);
-    if (!fit.mean_curve && !negative) return;
-    Eigen::MatrixXd wanted = curves;
-    for (Eigen::Index i = 0; i < wanted.cols(); ++i) wanted.col(i) = wanted.col(i).cwiseMax(grid.floor_w(i));
-    auto near = near_series(grid, wanted, order, candidates(posterior, fit));
-    const auto basis = fourier_basis(grid.tau, order, near.theta_rad);
-    fit.not_negative = negative || falls_below(basis * near.coefficients, grid.floor_w);
-    for (Eigen::Index i = 0; i < wanted.cols(); ++i) {
-        hold_above(grid, near.coefficients.col(i), near.theta_rad, grid.floor_w(i));
+    NearSeries near{fit.theta_rad, Eigen::MatrixXd(coefficient_count(order), grid.mean.cols())};
+    for (Eigen::Index i = 0; i < grid.mean.cols(); ++i) {
+        near.coefficients.col(i) = coefficients_of(fit.flights[static_cast<std::size_t>(i)].fourier);
     }
-    take_series(fit, flights, near);
+    fit.mean_curve = is_open(posterior, order, fit.theta_rad) &&
+                     (is_another(grid) || falls_below(grid.least_squares, grid.floor_w) || !is_plausible(near, grid));
+    if (fit.mean_curve) near = near_series(grid, order, candidates(posterior, fit));
+    const auto basis = fourier_basis(grid.tau, order, near.theta_rad);
+    fit.not_negative = falls_below(basis * near.coefficients, grid.floor_w);
+    if (fit.not_negative) {
+        const auto above = fit.mean_curve ? near_series_above(grid, order, candidates(posterior, fit)) : std::nullopt;
+        if (above) near = *above;
+        hold_above(grid, near);
+    }
+    if (fit.mean_curve || fit.not_negative) take_series(fit, flights, near);
+    fit.posterior = std::make_shared<const FrequencyPosterior>(std::move(posterior));
 }
 
 }  // namespace flightwatt::mechanical

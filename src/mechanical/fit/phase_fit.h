@@ -1,8 +1,10 @@
 #pragma once
 
 #include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/frequency_posterior.h"
 #include "mechanical/fit/refinement.h"
 
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -58,7 +60,8 @@ struct PhaseFit {
     Loss loss = Loss::none;
     double loss_scale_w = 0.0;  ///< of the noise as the loss saw it; 0 without a loss
     bool mean_curve = false;    ///< the curves are means over frequencies (settle_curves)
-    bool not_negative = false;  ///< and were kept from falling below 0, or the least power measured
+    bool not_negative = false;  ///< curves were kept from falling below 0, or below negative power that was measured
+    std::shared_ptr<const FrequencyPosterior> posterior = {};  ///< if it was needed
 };
 
 /// So many samples a flight needs at least: one more than its coefficients.

@@ -4,6 +4,7 @@
 #include "mechanical/covariates.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct PhaseSamples {
 /// Mean power [W] of a phase over time: trapezoids between the samples, the first and last value up to the
 /// phase's ends. The samples must not be empty.
 double mean_power_w(const PhaseSamples& samples);
+
+/// Whether each flight's power varies by no more than rounding: nothing tells a frequency.
+bool is_constant(std::span<const PhaseSamples> flights);
 
 /// The median of the gaps between samples, as a part of the phase; 0 if all samples are at one time.
 double median_gap(std::vector<double> tau);

@@ -19,9 +19,6 @@ namespace {
 constexpr double weight_of_low_frequencies = 0.005;
 constexpr std::array low_frequencies_rad{1.5 * std::numbers::pi, units::rad_per_turn};
 
-/// Below this part of the power's size its variation is rounding.
-constexpr double rounding_part_of_power = 1e-12;
-
 double square_sum_about_mean(const PhaseSamples& samples) {
     const auto power_w = as_vector(samples.power_w);
     return (power_w.array() - power_w.mean()).square().sum();
@@ -30,18 +27,15 @@ double square_sum_about_mean(const PhaseSamples& samples) {
 void describe_fit(PhaseErrors& errors, std::span<const PhaseSamples> flights, const PhaseFit& fit) {
     double left = 0.0;
     double about_means = 0.0;
-    double squares = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         left += std::pow(fit.flights[i].rms_w, 2) * static_cast<double>(fit.flights[i].samples);
         about_means += square_sum_about_mean(flights[i]);
-        squares += as_vector(flights[i].power_w).squaredNorm();
         const int order = static_cast<int>(fit.flights[i].fourier.cos_w.size());
         errors.condition =
             std::max(errors.condition, basis_condition(fourier_basis(flights[i].tau, order, fit.theta_rad)));
     }
     errors.r2 = about_means > 0.0 ? 1.0 - left / about_means : 1.0;
-    errors.frequency_is_given = fit.flights.front().fourier.cos_w.empty() ||
-                                about_means <= rounding_part_of_power * rounding_part_of_power * squares;
+    errors.frequency_is_given = fit.flights.front().fourier.cos_w.empty() || is_constant(flights);
 }
 
 /// The row of the mean curve at tau for a frequency.
@@ -51,7 +45,7 @@ Eigen::VectorXd curve_row(Eigen::Index coefficients, double theta_rad, double ta
 }
 
 StudentMixture curve_mixture(const ErrorAnalysis& analysis, double tau) {
-    return mixture_of(analysis.posterior,
+    return mixture_of(analysis.nodes,
                       [&](double theta_rad) { return curve_row(analysis.coefficients_w.size(), theta_rad, tau); });
 }
 
@@ -60,11 +54,11 @@ Interval around(Interval interval, double value) {
 }
 
 /// Of the nodes below a frequency alone; without weights if they hold too little.
-StudentMixture below(const StudentMixture& mixture, const FrequencyPosterior& posterior, double theta_rad) {
+StudentMixture below(const StudentMixture& mixture, std::span<const MeanNode> nodes, double theta_rad) {
     StudentMixture part;
     double sum = 0.0;
     for (std::size_t i = 0; i < mixture.weight.size(); ++i) {
-        if (posterior.nodes[i].theta_rad > theta_rad) break;
+        if (nodes[i].theta_rad > theta_rad) break;
         sum += mixture.weight[i];
         part.weight.push_back(mixture.weight[i]);
         part.location.push_back(mixture.location[i]);
@@ -81,7 +75,7 @@ Interval coefficient_interval(const ErrorAnalysis& analysis, const StudentMixtur
                               double value) {
     auto interval = around(mixture_interval(mixture, cdf), value);
     for (const double theta_rad : low_frequencies_rad) {
-        const auto part = below(mixture, analysis.posterior, theta_rad);
+        const auto part = below(mixture, analysis.nodes, theta_rad);
         if (part.weight.empty()) continue;
         const auto [low, high] = mixture_interval(part, cdf);
         interval = around(around(interval, low), high);
@@ -89,18 +83,18 @@ Interval coefficient_interval(const ErrorAnalysis& analysis, const StudentMixtur
     return interval;
 }
 
-double sd_of_frequency(const FrequencyPosterior& posterior) {
+double sd_of_frequency(std::span<const MeanNode> nodes) {
     double mean = 0.0;
-    for (const auto& node : posterior.nodes) mean += node.weight * node.theta_rad;
+    for (const auto& node : nodes) mean += node.weight * node.theta_rad;
     double sum = 0.0;
-    for (const auto& node : posterior.nodes) sum += node.weight * std::pow(node.theta_rad - mean, 2);
+    for (const auto& node : nodes) sum += node.weight * std::pow(node.theta_rad - mean, 2);
     return std::sqrt(sum);
 }
 
 /// Power without a frequency: what is known of a constant, as that of a series whose harmonics are 0.
-void add_harmonics(FrequencyPosterior& posterior, Eigen::Index size) {
-    for (auto& node : posterior.nodes) {
-        node.mean.conservativeResizeLike(Eigen::VectorXd::Zero(size));
+void add_harmonics(std::vector<MeanNode>& nodes, Eigen::Index size) {
+    for (auto& node : nodes) {
+        node.coefficients.conservativeResizeLike(Eigen::VectorXd::Zero(size));
         node.scale.conservativeResizeLike(Eigen::MatrixXd::Zero(size, size));
     }
 }
@@ -112,7 +106,7 @@ void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
     const auto size = analysis.coefficients_w.size();
     for (Eigen::Index k = 0; k < size; ++k) {
         const Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, k);
-        const auto mixture = mixture_of(analysis.posterior, [&](double) { return unit; });
+        const auto mixture = mixture_of(analysis.nodes, [&](double) { return unit; });
         const double sd = mixture_sd(mixture, errors.degrees_of_freedom);
         const auto [low, high] = coefficient_interval(analysis, mixture, cdf, analysis.coefficients_w(k));
         (k == 0 ? errors.a0_w : k % 2 == 1 ? errors.cos_w.emplace_back() : errors.sin_w.emplace_back()) = sd;
@@ -124,24 +118,28 @@ void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
         intervals.omega_rad_per_s = {analysis.theta_rad / duration_s, analysis.theta_rad / duration_s};
         return;
     }
-    const auto [low, high] = around(interval_of_frequency(analysis.posterior), analysis.theta_rad);
+    const auto [low, high] = around(interval_of_frequency(*analysis.posterior), analysis.theta_rad);
     intervals.omega_rad_per_s = {low / duration_s, high / duration_s};
-    errors.omega_rad_per_s = sd_of_frequency(analysis.posterior) / duration_s;
+    errors.omega_rad_per_s = sd_of_frequency(analysis.nodes) / duration_s;
 }
 
 void fill_noise(PhaseErrors& errors, const FrequencyPosterior& posterior, std::span<const PhaseSamples> flights) {
-    double at_highest = 0.0;
-    for (const auto& node : posterior.nodes) {
-        errors.autocorrelation += node.weight * node.autocorrelation;
-        if (node.autocorrelation > 0.95 * posterior.highest_autocorrelation) at_highest += node.weight;
-    }
+    for (const auto& node : posterior.nodes) errors.autocorrelation += node.weight * node.autocorrelation;
     errors.autocorrelation = std::clamp(errors.autocorrelation, 0.0, 1.0);
-    errors.noise_lasts = at_highest > 0.5;
+    errors.noise_lasts = noise_lasts(posterior);
     for (const auto& flight : flights) {
         const auto sorted = in_order_of_time({flight.tau, {flight.power_w}, {}});
         errors.effective_samples +=
             effective_samples(sample_correlation(sorted.tau, median_gap(sorted.tau), errors.autocorrelation));
     }
+}
+
+std::shared_ptr<const FrequencyPosterior> posterior_of_fit(std::span<const PhaseSamples> flights, const PhaseFit& fit,
+                                                           bool constant) {
+    std::vector<ScaledSamples> values;
+    for (std::size_t i = 0; i < flights.size(); ++i) values.push_back(fitted_values(flights[i], fit.flights[i], fit));
+    const int order = constant ? 0 : static_cast<int>(fit.flights.front().fourier.cos_w.size());
+    return std::make_shared<const FrequencyPosterior>(frequency_posterior(values, {order, fit.range, fit.theta_rad}));
 }
 
 }  // namespace
@@ -150,10 +148,8 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
                              std::span<const double> weights) {
     ErrorAnalysis analysis;
     auto& errors = analysis.errors;
-    std::vector<ScaledSamples> values;
     double duration_s = 0.0;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        values.push_back(fitted_values(flights[i], fit.flights[i], fit));
         const Eigen::VectorXd own = coefficients_of(fit.flights[i].fourier);
         if (i == 0) analysis.coefficients_w = Eigen::VectorXd::Zero(own.size());
         analysis.coefficients_w += weights[i] * own;
@@ -161,12 +157,11 @@ ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseF
     }
     analysis.theta_rad = fit.theta_rad;
     describe_fit(errors, flights, fit);
-    const int order = errors.frequency_is_given ? 0 : static_cast<int>(analysis.coefficients_w.size() - 1) / 2;
-    analysis.posterior =
-        frequency_posterior(values, {order, fit.range, fit.theta_rad, {weights.begin(), weights.end()}});
-    add_harmonics(analysis.posterior, analysis.coefficients_w.size());
-    errors.degrees_of_freedom = degrees_of_freedom(analysis.posterior);
-    fill_noise(errors, analysis.posterior, flights);
+    analysis.posterior = fit.posterior ? fit.posterior : posterior_of_fit(flights, fit, errors.frequency_is_given);
+    analysis.nodes = mean_of_flights(*analysis.posterior, weights);
+    add_harmonics(analysis.nodes, analysis.coefficients_w.size());
+    errors.degrees_of_freedom = degrees_of_freedom(analysis.nodes);
+    fill_noise(errors, *analysis.posterior, flights);
     fill_coefficients(analysis, duration_s);
     constexpr int points = 41;
     double variance = 0.0;

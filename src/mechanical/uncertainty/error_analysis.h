@@ -4,7 +4,9 @@
 #include "mechanical/fit/phase_fit.h"
 #include "mechanical/uncertainty/student_mixture.h"
 
+#include <memory>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -15,7 +17,8 @@ struct ErrorAnalysis {
     PhaseErrors errors;
     double theta_rad = 0.0;
     Eigen::VectorXd coefficients_w;  ///< of the mean curve: a0, a1, b1, ...
-    FrequencyPosterior posterior;    ///< of the flights' weighted mean
+    std::shared_ptr<const FrequencyPosterior> posterior;
+    std::vector<MeanNode> nodes;  ///< its weighted mean of the flights
 };
 
 /// Integrates over the frequency and the autocorrelation of the noise (frequency_posterior.h): the mean curve and its

@@ -33,11 +33,11 @@ FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const 
     FrequencyProfile profile{{}, {}, fit.range.low_rad, fit.range.high_rad, true, true};
     if (order == 0 || analysis.errors.frequency_is_given) return profile;
 
-    const auto& density = analysis.posterior.density;
-    const auto [low, high] = interval_of_frequency(analysis.posterior);
+    const auto& density = analysis.posterior->density;
+    const auto [low, high] = interval_of_frequency(*analysis.posterior);
     profile.low_rad = std::min(low, fit.theta_rad);
     profile.high_rad = std::max(high, fit.theta_rad);
-    const auto& places = analysis.posterior.theta_rad;
+    const auto& places = analysis.posterior->theta_rad;
     profile.low_is_open = places.front() <= fit.range.low_rad && density.front() >= open_density;
     profile.high_is_open = places.back() >= fit.range.high_rad && density.back() >= open_density;
     const auto square_sum = [&](double theta_rad) { return square_sum_w2(flights, order, theta_rad); };

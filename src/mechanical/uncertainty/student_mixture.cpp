@@ -88,21 +88,9 @@ Interval mixture_interval(const StudentMixture& mixture, const StudentCdf& cdf) 
     return {quantile_of(mixture, cdf, tail), quantile_of(mixture, cdf, 1.0 - tail)};
 }
 
-Interval interval_of_frequency(const FrequencyPosterior& posterior) {
-    const double tail = (1.0 - confidence_level) / 2.0;
-    Interval interval{posterior.nodes.front().theta_rad, posterior.nodes.back().theta_rad};
+double degrees_of_freedom(std::span<const MeanNode> nodes) {
     double sum = 0.0;
-    for (const auto& node : posterior.nodes) {
-        if (sum < tail) interval.low = node.theta_rad;
-        if (sum < 1.0 - tail) interval.high = node.theta_rad;
-        sum += node.weight;
-    }
-    return interval;
-}
-
-double degrees_of_freedom(const FrequencyPosterior& posterior) {
-    double sum = 0.0;
-    for (const auto& node : posterior.nodes) sum += node.weight * node.degrees_of_freedom;
+    for (const auto& node : nodes) sum += node.weight * node.degrees_of_freedom;
     return std::max(1.0, sum);
 }
 

@@ -2,6 +2,7 @@
 
 #include "mechanical/fit/frequency_posterior.h"
 
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,19 +35,16 @@ double mixture_sd(const StudentMixture& mixture, double degrees_of_freedom);
 Interval mixture_interval(const StudentMixture& mixture, const StudentCdf& cdf);
 
 /// The weighted mean of the nodes' degrees of freedom, for which all are computed.
-double degrees_of_freedom(const FrequencyPosterior& posterior);
+double degrees_of_freedom(std::span<const MeanNode> nodes);
 
-/// The 95 % interval of theta.
-Interval interval_of_frequency(const FrequencyPosterior& posterior);
-
-/// What the posterior says of a linear function of the coefficients which depends on theta: row(theta) c.
+/// What the nodes say of a linear function of the coefficients which depends on theta: row(theta) c.
 template <typename Row>
-StudentMixture mixture_of(const FrequencyPosterior& posterior, const Row& row) {
+StudentMixture mixture_of(std::span<const MeanNode> nodes, const Row& row) {
     StudentMixture mixture;
-    for (const auto& node : posterior.nodes) {
+    for (const auto& node : nodes) {
         const Eigen::VectorXd at = row(node.theta_rad);
         mixture.weight.push_back(node.weight);
-        mixture.location.push_back(at.dot(node.mean));
+        mixture.location.push_back(at.dot(node.coefficients));
         mixture.scale.push_back(std::sqrt(std::max(0.0, at.dot(node.scale * at))));
     }
     return mixture;
