@@ -18,10 +18,10 @@ void expect_honest(const test::CoverageCase& made, unsigned seed) {
     }
 }
 
-TEST(IntervalCoverage, OfSingleFlights) { expect_honest({.noise_w = 1.0, .flights = 40}, 1); }
+TEST(IntervalCoverage, OfSingleFlights) { expect_honest({.noise_w = 1.0, .flights = 16}, 1); }
 
 TEST(IntervalCoverage, OfFlightsInFours) {
-    expect_honest({.noise_w = 0.24, .autocorrelation = 0.4, .flights = 80, .together = 4}, 2);
+    expect_honest({.noise_w = 0.24, .autocorrelation = 0.4, .flights = 40, .together = 4}, 2);
 }
 
 double cruise_coverage(const test::CoverageCase& made) {
@@ -29,11 +29,11 @@ double cruise_coverage(const test::CoverageCase& made) {
 }
 
 TEST(IntervalCoverage, OfLongPhasesWhoseNoiseIsNotIndependent) {
-    EXPECT_GE(cruise_coverage({.autocorrelation = 0.6, .flights = 20}), 0.85);
+    EXPECT_GE(cruise_coverage({.autocorrelation = 0.6, .flights = 8}), 0.85);
 }
 
 TEST(IntervalCoverage, OfRobustFitsWithOutliers) {
-    EXPECT_GE(cruise_coverage({.flights = 20, .loss = Loss::huber, .outliers = 0.02}), 0.85);
+    EXPECT_GE(cruise_coverage({.flights = 8, .loss = Loss::huber, .outliers = 0.02}), 0.85);
 }
 
 }  // namespace
