@@ -47,6 +47,7 @@ void visit_measured_phase(Flight& flight, flight::Phase phase, Samples& samples,
     visit("airspeed_cubed_m3_per_s3", samples.airspeed_cubed_m3_per_s3);
     visit("airspeed_cubed_parts_m3_per_s3", samples.airspeed_cubed_parts);
     visit("covariates", samples.covariates);
+    visit("edge_samples", samples.edge_samples);
     visit("energy_wh", flight.energy_wh[phase]);
     visit("counter_energy_wh", flight.counter_energy_wh[phase]);
     visit("tau", samples.tau);

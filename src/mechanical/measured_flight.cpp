@@ -3,6 +3,7 @@
 #include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "mechanical/covariates.h"
+#include "mechanical/fit/edge_samples.h"
 
 #include <algorithm>
 #include <utility>
@@ -30,9 +31,12 @@ std::string why_too_few(const PhaseSamples& samples, std::size_t needed) {
 PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& span, const std::string& flight) {
     PhaseSamples samples{flight, span.duration_s(), {}, {}, span.start.time_s};
     const auto first = std::ranges::lower_bound(power.time_s, span.start.time_s) - power.time_s.begin();
-    for (auto i = static_cast<std::size_t>(first); i < power.time_s.size(); ++i) {
+    const auto last = std::ranges::upper_bound(power.time_s, span.end.time_s) - power.time_s.begin();
+    const auto edges = span.complete ? samples_of_neighbours(power, span) : EdgeSamples{};
+    samples.edge_samples = edges.at_start + edges.at_end;
+    for (auto i = static_cast<std::size_t>(first) + edges.at_start; i + edges.at_end < static_cast<std::size_t>(last);
+         ++i) {
         const double time_s = power.time_s[i];
-        if (time_s > span.end.time_s) break;
         samples.tau.push_back((time_s - span.start.time_s) / samples.duration_s);
         samples.power_w.push_back(power.value[i]);
     }

@@ -1,5 +1,6 @@
 #include "mechanical/mechanical_model.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
 
 #include <algorithm>
@@ -35,6 +36,20 @@ FourierModel flown_model(const PhaseModel& phase, double flown_s, PhaseClock clo
     FourierModel flown = phase.fourier;
     if (clock == PhaseClock::stretched) flown.omega_rad_per_s *= phase.duration_s / flown_s;
     return flown;
+}
+
+CoefficientIntervals coefficient_intervals(const PhaseModel& phase) {
+    const auto& errors = phase.errors.value();
+    if (errors.intervals) return *errors.intervals;
+    const double wide = student_t_half_width(errors.degrees_of_freedom);
+    const auto about = [&](double value, double error) { return Interval{value - wide * error, value + wide * error}; };
+    CoefficientIntervals intervals{
+        about(phase.fourier.omega_rad_per_s, errors.omega_rad_per_s), about(phase.fourier.a0_w, errors.a0_w), {}, {}};
+    for (std::size_t n = 0; n < phase.fourier.cos_w.size(); ++n) {
+        intervals.cos_w.push_back(about(phase.fourier.cos_w[n], errors.cos_w[n]));
+        intervals.sin_w.push_back(about(phase.fourier.sin_w[n], errors.sin_w[n]));
+    }
+    return intervals;
 }
 
 std::size_t points_of_curve(const FourierModel& model, double duration_s) {

@@ -38,27 +38,41 @@ struct FrequencyRange {
     FrequencyBound at_bound = FrequencyBound::none;
 };
 
-/// What a fit's autocorrelation is at most: there the errors are no more than a bound.
+/// What the noise's autocorrelation is at most, in the longest phases (highest_autocorrelation_of).
 inline constexpr double highest_autocorrelation = 0.99;
 
-/// How well the noise of the samples lets a phase's averaged coefficients be known: standard errors of the
-/// weighted mean of these very flights, weights and durations taken as given. How flights differ is another
-/// question: see PhaseSpread.
+/// A 95 % interval.
+struct Interval {
+    double low = 0.0;
+    double high = 0.0;
+};
+
+/// 95 % intervals of a phase's coefficients; not symmetric about them.
+struct CoefficientIntervals {
+    Interval omega_rad_per_s;
+    Interval a0_w;
+    std::vector<Interval> cos_w;
+    std::vector<Interval> sin_w;
+};
+
+/// How well the noise of the samples lets a phase's averaged coefficients be known: standard deviations of the
+/// weighted mean of these very flights, weights and durations taken as given, frequency and autocorrelation
+/// integrated over. How flights differ is another question: see PhaseSpread.
 struct PhaseErrors {
-    double omega_rad_per_s = 0.0;  ///< 0 if the frequency stands at a bound
+    double omega_rad_per_s = 0.0;
     double a0_w = 0.0;
     std::vector<double> cos_w;
     std::vector<double> sin_w;
     double curve_w = 0.0;             ///< root mean square over the phase of the curve's own standard error
-    double degrees_of_freedom = 0.0;  ///< of the Student's t that makes 95 % intervals of them
-    /// The errors hold for the frequency as given: it stands at a bound, or the data do not show it.
+    double degrees_of_freedom = 0.0;  ///< of the Student's t at each frequency
+    /// The errors hold for the frequency as given: the curve is a constant, or (of files of 0.2) it stands at a bound.
     bool frequency_is_given = false;
     double r2 = 0.0;                 ///< of all samples about their own flights' curves and means
     double condition = 0.0;          ///< of the basis on the samples, columns of length 1; the worst flight's
-    double autocorrelation = 0.0;    ///< of the noise of samples one median gap apart
+    double autocorrelation = 0.0;    ///< of the noise of samples one median gap apart; the mean over all that may be
     double effective_samples = 0.0;  ///< independent samples that would tell the mean as well
-    /// The errors are those of the flights' own differences, since the noise's autocorrelation is at its bound.
-    bool from_flights = false;
+    bool noise_lasts = false;  ///< most likely as long as noise was allowed to: the errors are no more than a bound
+    std::optional<CoefficientIntervals> intervals = {};  ///< absent in files of 0.2
 };
 
 /// How the flights' own curves differ over the phase, at evenly spread parts of it from begin to end.
@@ -77,6 +91,12 @@ struct LevelSpread {
     double correlation_s = 0.0;  ///< for how long that deviation lasts (exponential correlation)
 };
 
+struct PhaseModel;
+
+/// The coefficients' intervals: those of its errors, or of files of 0.2 symmetric ones by Student's t. The phase must
+/// have errors.
+CoefficientIntervals coefficient_intervals(const PhaseModel& phase);
+
 /// One phase of the model: the flights' weighted average (Eqs. 5-7) and what it rests on.
 struct PhaseModel {
     FourierModel fourier;
@@ -85,6 +105,9 @@ struct PhaseModel {
     std::optional<FrequencyRange> range;
     std::size_t samples = 0;
     std::size_t flights = 0;
+    std::size_t edge_samples = 0;  ///< left out at the phase's ends: their power is the neighbouring phase's
+    bool mean_curve = false;       ///< the mean over all frequencies that may be, for the samples leave it open
+    bool not_negative = false;     ///< the curve was kept from falling below 0, or below negative power measured
     std::optional<PhaseErrors> errors = {};  ///< absent unless they were asked for
     std::optional<PhaseSpread> spread = {};  ///< absent too where a single flight counts
     /// Absent with fewer than 2 flights, or if published without.

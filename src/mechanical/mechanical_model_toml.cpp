@@ -29,6 +29,43 @@ double positive(const TomlTable& table, std::string_view key) { return number_in
 
 double not_negative(const TomlTable& table, std::string_view key) { return number_in(at_least(0.0), table, key); }
 
+/// Two lists, low and high, as intervals.
+std::vector<Interval> read_interval_list(const TomlTable& table, const std::string& name, std::size_t count) {
+    const auto low_key = name + "_low_w";
+    const auto high_key = name + "_high_w";
+    const auto low = table.numbers(low_key);
+    const auto high = table.numbers(high_key);
+    std::vector<Interval> intervals;
+    for (const auto& [key, values] : {std::pair(low_key, low), std::pair(high_key, high)}) {
+        if (values.size() == count) continue;
+        throw InputError(table.where(key),
+                         fmt::format("{} has {} numbers, expected {}: one for each coefficient of the "
+                                     "phase",
+                                     key, values.size(), count));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        if (low[i] > high[i]) {
+            throw InputError(table.where(high_key), fmt::format("number {} of {}, {}, is below that of {}, {}", i + 1,
+                                                                high_key, high[i], low_key, low[i]));
+        }
+        intervals.push_back({low[i], high[i]});
+    }
+    return intervals;
+}
+
+Interval read_interval(const TomlTable& table, std::string_view key) {
+    const auto ends = table.numbers(key);
+    if (ends.size() == 2 && ends[0] <= ends[1]) return {ends[0], ends[1]};
+    throw InputError(table.where(key), fmt::format("{} is no interval, expected [low, high]", key));
+}
+
+CoefficientIntervals read_intervals(const TomlTable& table, std::size_t order) {
+    CoefficientIntervals intervals{read_interval(table, "omega_rad_per_s"), read_interval(table, "a0_w"),
+                                   read_interval_list(table, "cos", order), read_interval_list(table, "sin", order)};
+    table.refuse_unknown_keys();
+    return intervals;
+}
+
 PhaseErrors read_errors(const TomlTable& table, std::size_t order) {
     constexpr std::string_view as_coefficients = "one for each coefficient of the phase";
     PhaseErrors errors;
@@ -43,7 +80,10 @@ PhaseErrors read_errors(const TomlTable& table, std::size_t order) {
     errors.condition = number_in(at_least(1.0), table, "condition");
     errors.autocorrelation = number_in(between(0.0, 1.0), table, "autocorrelation");
     errors.effective_samples = not_negative(table, "effective_samples");
-    errors.from_flights = table.optional_boolean("from_flights").value_or(false);
+    table.optional_boolean("from_flights");  // of files of 0.2: it says how the errors were found, not what they are
+    errors.noise_lasts = table.optional_boolean("noise_lasts").value_or(false);
+    if (const auto intervals = table.optional_table("interval_95"))
+        errors.intervals = read_intervals(*intervals, order);
     table.refuse_unknown_keys();
     return errors;
 }
@@ -68,8 +108,28 @@ PhaseSpread read_spread(const TomlTable& table) {
     return spread;
 }
 
+std::string interval_toml(std::string_view key, const Interval& interval) {
+    return fmt::format("interval_95.{} = {}\n", key, toml_reals({interval.low, interval.high}));
+}
+
+std::string interval_list_toml(std::string_view name, const std::vector<Interval>& intervals) {
+    std::vector<double> low;
+    std::vector<double> high;
+    for (const auto& interval : intervals) {
+        low.push_back(interval.low);
+        high.push_back(interval.high);
+    }
+    return fmt::format("interval_95.{0}_low_w = {1}\ninterval_95.{0}_high_w = {2}\n", name, toml_reals(low),
+                       toml_reals(high));
+}
+
+std::string intervals_toml(const CoefficientIntervals& intervals) {
+    return interval_toml("omega_rad_per_s", intervals.omega_rad_per_s) + interval_toml("a0_w", intervals.a0_w) +
+           interval_list_toml("cos", intervals.cos_w) + interval_list_toml("sin", intervals.sin_w);
+}
+
 std::string errors_toml(const PhaseErrors& errors) {
-    return "# standard errors of the weighted mean of these flights, from the noise of their samples\n" +
+    return "# standard errors and intervals of the weighted mean of these flights, from the noise of their samples\n" +
            fmt::format("omega_rad_per_s = {}\nfrequency_is_given = {}\na0_w = {}\ncos_w = {}\nsin_w = {}\n",
                        toml_real(errors.omega_rad_per_s), errors.frequency_is_given, toml_real(errors.a0_w),
                        toml_reals(errors.cos_w), toml_reals(errors.sin_w)) +
@@ -77,7 +137,8 @@ std::string errors_toml(const PhaseErrors& errors) {
                        toml_real(errors.degrees_of_freedom), toml_real(errors.r2), toml_real(errors.condition)) +
            fmt::format("autocorrelation = {}\neffective_samples = {}\n", toml_real(errors.autocorrelation),
                        toml_real(errors.effective_samples)) +
-           (errors.from_flights ? "from_flights = true\n" : "");
+           (errors.noise_lasts ? "noise_lasts = true\n" : "") +
+           (errors.intervals ? intervals_toml(*errors.intervals) : "");
 }
 
 std::string spread_toml(const PhaseSpread& spread) {
@@ -175,6 +236,9 @@ PhaseModel read_phase(const TomlTable& table) {
     if (table.has("rms_w")) phase.rms_w = not_negative(table, "rms_w");
     phase.samples = count_in_or(table, "samples", 0, 0);
     phase.flights = count_in_or(table, "flights", 0, 0);
+    phase.edge_samples = count_in_or(table, "edge_samples", 0, 0);
+    phase.mean_curve = table.optional_boolean("mean_curve").value_or(false);
+    phase.not_negative = table.optional_boolean("not_negative").value_or(false);
     if (const auto range = table.optional_table("omega_duration")) phase.range = read_range(*range);
     const auto order = phase.fourier.cos_w.size();
     if (const auto errors = table.optional_table("errors")) phase.errors = read_errors(*errors, order);
@@ -228,6 +292,9 @@ std::string phase_toml(flight::Phase name, const PhaseModel& phase) {
     if (phase.rms_w) text += fmt::format("rms_w = {}\n", toml_real(*phase.rms_w));
     if (phase.samples > 0) text += fmt::format("samples = {}\n", phase.samples);
     if (phase.flights > 0) text += fmt::format("flights = {}\n", phase.flights);
+    if (phase.edge_samples > 0) text += fmt::format("edge_samples = {}\n", phase.edge_samples);
+    if (phase.mean_curve) text += "mean_curve = true\n";
+    if (phase.not_negative) text += "not_negative = true\n";
     if (const auto& spread = phase.level_spread) {
         text += fmt::format("level_spread = {{ flights = {}, level_sd_w = {}, drift_sd_w = {}, correlation_s = {} }}\n",
                             spread->flights, toml_real(spread->level_sd_w), toml_real(spread->drift_sd_w),

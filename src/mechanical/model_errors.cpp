@@ -19,21 +19,24 @@ void add_curve(CsvWriter& csv, const ModelFit& fit, flight::Phase phase, const E
     const auto& model = fit.model.phases[phase];
     const auto points = points_of_curve(model.fourier, model.duration_s) / 5 + 1;
     const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points);
-    const double wide = student_t_half_width(analysis.errors.degrees_of_freedom);
+    std::vector<double> taus;
+    for (std::size_t i = 0; i < points; ++i) taus.push_back(part_at(i, points));
+    const auto intervals = curve_intervals_w(analysis, taus);
     const double population_wide = spread ? student_t_half_width(spread->counted_flights - 1.0) : 0.0;
     for (std::size_t i = 0; i < points; ++i) {
         const double tau = part_at(i, points);
         const double time_s = tau * model.duration_s;
         const double power = power_w(model.fourier, time_s);
         const double error = curve_standard_error_w(analysis, tau);
+        const auto& [low, high] = intervals[i];
         std::array<std::optional<double>, 5> of_flights;
         if (spread) {
             const double reach = population_wide * population_standard_error_w(*spread, i);
             of_flights = {spread->low_w[i], spread->high_w[i], spread->standard_deviation_w[i], power - reach,
                           power + reach};
         }
-        csv.add(to_string(phase), tau, time_s, power, error, power - wide * error, power + wide * error, of_flights[0],
-                of_flights[1], of_flights[2], of_flights[3], of_flights[4]);
+        csv.add(to_string(phase), tau, time_s, power, error, low, high, of_flights[0], of_flights[1], of_flights[2],
+                of_flights[3], of_flights[4]);
     }
 }
 
@@ -96,15 +99,15 @@ flight::PerPhase<CurveBand> curve_bands(const ModelFit& fit, const flight::PerPh
     for (const auto phase : flight::all_phases) {
         const auto& fitted = fit.model.phases[phase];
         const auto& analysis = analyses[phase];
-        const double wide = student_t_half_width(analysis.errors.degrees_of_freedom);
         auto& band = bands[phase];
+        std::vector<double> taus;
         for (std::size_t i = 0; i < points; ++i) {
-            const double time_s = fitted.duration_s * static_cast<double>(i) / static_cast<double>(points - 1);
-            const double power = power_w(fitted.fourier, time_s);
-            const double reach = wide * curve_standard_error_w(analysis, time_s / fitted.duration_s);
-            band.time_s.push_back(time_s);
-            band.low_95_w.push_back(power - reach);
-            band.high_95_w.push_back(power + reach);
+            taus.push_back(part_at(i, points));
+            band.time_s.push_back(fitted.duration_s * taus.back());
+        }
+        for (const auto& [low, high] : curve_intervals_w(analysis, taus)) {
+            band.low_95_w.push_back(low);
+            band.high_95_w.push_back(high);
         }
         if (const auto spread = flight_envelope(fit.fits[phase], fit.weights[phase], points)) {
             band.flights_low_w = spread->low_w;

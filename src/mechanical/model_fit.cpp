@@ -34,9 +34,10 @@ std::string orders_of(const ModelFitOptions& options) {
 
 std::string described(const ModelFitOptions& options, std::size_t flights) {
     const auto loss = options.phases.loss;
-    return fmt::format("fitted to {} flight{}: Fourier series {}, {}weights: {}; flightwatt {}", flights,
+    return fmt::format("fitted to {} flight{}: Fourier series {}, {}{}weights: {}; flightwatt {}", flights,
                        flights == 1 ? "" : "s", orders_of(options),
                        loss == Loss::none ? "" : fmt::format("loss: {}, ", to_string(loss)),
+                       options.phases.curve == Curve::mean ? "" : "curve: least-squares, ",
                        to_string(options.weights.weighting), FLIGHTWATT_VERSION);
 }
 
@@ -102,6 +103,7 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     fitted.fit = fit_phase(phase, flights, phase_options);
     fitted.weights = flight_weights(fitted.fit, phase, options.weights);
     fitted.model = average_phase(fitted.fit, fitted.weights);
+    for (const auto& samples : flights) fitted.model.edge_samples += samples.edge_samples;
     refuse_what_is_no_number(phase, fitted.model.fourier);
     fitted.model.level_spread = level_spread(fitted.model, counted(flights, fitted.weights));
     if (phase == flight::Phase::cruise) {

@@ -102,6 +102,7 @@ OrderChoice choose_order(flight::Phase phase, std::span<const PhaseSamples> flig
     const bool by_hand = weights.weighting == Weighting::by_hand;
     const WeightOptions weighting{by_hand ? Weighting::uniform : weights.weighting, {}};
     auto tried = options;
+    tried.curve = Curve::least_squares;  // a mean over frequencies costs a fit a hundred times, and orders are many
     for (int order = 0; order <= highest_tried_order; ++order) {
         tried.order = order;
         choice.errors.push_back(error_of(phase, folds, tried, weighting));

@@ -1,7 +1,6 @@
 #include "mechanical/table_one.h"
 
 #include "base/number.h"
-#include "base/statistics.h"
 #include "base/units.h"
 
 #include <algorithm>
@@ -37,31 +36,41 @@ std::vector<std::string> row_names(std::size_t order) {
     return names;
 }
 
-/// A column as long as row_names(order): of a FourierModel or its PhaseErrors, with xi unless it has none.
-template <typename Coefficients, typename Print>
-std::vector<std::string> cells_of(const Coefficients& of, std::size_t order, double duration_s, bool has_xi,
-                                  const Print& print) {
-    std::vector<std::string> cells{print(of.a0_w)};
+/// A column as long as row_names(order).
+std::vector<std::string> column_of(const PhaseModel& phase, std::size_t order) {
+    const auto& of = phase.fourier;
+    std::vector<std::string> cells{as_printed(of.a0_w)};
     for (std::size_t n = 0; n < order; ++n) {
         const bool there = n < of.cos_w.size();
-        cells.push_back(there ? print(of.cos_w[n]) : "-");
-        cells.push_back(there ? print(of.sin_w[n]) : "-");
+        cells.push_back(there ? as_printed(of.cos_w[n]) : "-");
+        cells.push_back(there ? as_printed(of.sin_w[n]) : "-");
     }
-    cells.push_back(has_xi ? print(units::table_one_xi_from_rad(of.omega_rad_per_s * duration_s)) : "-");
+    const double theta_rad = of.omega_rad_per_s * phase.duration_s;
+    cells.push_back(of.cos_w.empty() ? "-" : as_printed(units::table_one_xi_from_rad(theta_rad)));
     return cells;
 }
 
-std::vector<std::string> column_of(const PhaseModel& phase, std::size_t order) {
-    const bool has_frequency = !phase.fourier.cos_w.empty();
-    return cells_of(phase.fourier, order, phase.duration_s, has_frequency, as_printed);
+/// Between the ends of an interval, which are not as far from the coefficient the one as the other.
+constexpr std::string_view between_ends = " to ";
+
+std::string interval_text(const Interval& interval) {
+    return as_printed(interval.low) + std::string(between_ends) + as_printed(interval.high);
 }
 
-/// Half the widths of the 95 % intervals of column_of's cells.
-std::vector<std::string> half_widths_of(const PhaseModel& phase, std::size_t order) {
+/// The 95 % intervals of column_of's cells.
+std::vector<std::string> intervals_of(const PhaseModel& phase, std::size_t order) {
     if (!phase.errors) return std::vector<std::string>(2 * order + 2, "-");
-    const double wide = student_t_half_width(phase.errors->degrees_of_freedom);
-    return cells_of(*phase.errors, order, phase.duration_s, !phase.errors->frequency_is_given,
-                    [&](double error) { return fmt::format("{:.2g}", wide * error); });
+    const auto intervals = coefficient_intervals(phase);
+    std::vector<std::string> cells{interval_text(intervals.a0_w)};
+    for (std::size_t n = 0; n < order; ++n) {
+        const bool there = n < intervals.cos_w.size();
+        cells.push_back(there ? interval_text(intervals.cos_w[n]) : "-");
+        cells.push_back(there ? interval_text(intervals.sin_w[n]) : "-");
+    }
+    const auto xi = [&](double omega) { return units::table_one_xi_from_rad(omega * phase.duration_s); };
+    const auto& [low, high] = intervals.omega_rad_per_s;
+    cells.push_back(phase.errors->frequency_is_given ? "-" : interval_text({xi(low), xi(high)}));
+    return cells;
 }
 
 void add_column(TextTable& table, const std::string& name, const std::vector<std::string>& cells) {
@@ -91,12 +100,18 @@ std::string number_text(std::string_view text) {
     return fmt::format("{} \\times 10^{{{:g}}}", text.substr(0, e), exponent.value_or(0.0));
 }
 
-bool is_half_width(std::string_view heading) { return heading.ends_with("+-"); }
+constexpr std::string_view interval_heading = "95 %";
+
+bool is_interval(std::string_view heading) { return heading.ends_with(interval_heading); }
 
 std::string cell(std::string_view text, std::string_view heading) {
     if (text == "-") return "--";
+    if (const auto split = text.find(between_ends); is_interval(heading) && split != std::string_view::npos) {
+        return fmt::format("$[{},\\, {}]$", number_text(text.substr(0, split)),
+                           number_text(text.substr(split + between_ends.size())));
+    }
     if (!parse_number(text)) return escaped(text);
-    return fmt::format("${}{}$", is_half_width(heading) ? "\\pm " : "", number_text(text));
+    return fmt::format("${}$", number_text(text));
 }
 
 /// a0 as $a_0$, xi as $\xi$; other rows as they are called.
@@ -109,7 +124,7 @@ std::string row_name(std::string_view name) {
 
 /// A heading of two words on two lines: numbers are narrower than "take-off regenerated".
 std::string heading_cell(std::string_view heading) {
-    if (is_half_width(heading)) return "";
+    if (is_interval(heading)) return "";
     const auto space = heading.rfind(' ');
     if (space == std::string_view::npos) return escaped(heading);
     return fmt::format("\\shortstack[r]{{{}\\\\{}}}", escaped(heading.substr(0, space)),
@@ -125,7 +140,8 @@ TextTable table_one(const MechanicalModel& model, TableIntervals intervals) {
     for (const auto phase : flight::all_phases) {
         add_column(table, std::string(column_names[phase]), column_of(model.phases[phase], order));
         if (intervals == TableIntervals::absent) continue;
-        add_column(table, fmt::format("{} +-", column_names[phase]), half_widths_of(model.phases[phase], order));
+        add_column(table, fmt::format("{} {}", column_names[phase], interval_heading),
+                   intervals_of(model.phases[phase], order));
     }
     return table;
 }
@@ -148,17 +164,17 @@ TextTable table_one_beside(const MechanicalModel& published, const MechanicalMod
         add_column(table, fmt::format("{} published", column_names[phase]), left);
         add_column(table, fmt::format("{} regenerated", column_names[phase]), right);
         if (intervals == TableIntervals::absent) continue;
-        auto half_widths = half_widths_of(is, order);
-        half_widths.insert(half_widths.end(), {"-", "-", "-"});
-        add_column(table, fmt::format("{} +-", column_names[phase]), half_widths);
+        auto intervals_of_cells = intervals_of(is, order);
+        intervals_of_cells.insert(intervals_of_cells.end(), {"-", "-", "-"});
+        add_column(table, fmt::format("{} {}", column_names[phase], interval_heading), intervals_of_cells);
     }
     return table;
 }
 
 std::string to_latex(const TextTable& table) {
-    const bool intervals = std::ranges::any_of(table.header, is_half_width);
+    const bool intervals = std::ranges::any_of(table.header, is_interval);
     std::string text = "\\begin{table}\n\\centering\n\\caption{Constants for the mechanical energy model";
-    if (intervals) text += " ($\\pm$: half widths of the 95\\,\\% intervals)";
+    if (intervals) text += " (in brackets: 95\\,\\% intervals)";
     text += "}\n\\label{tab:mechanical-energy-model}\n";
     // Beside published constants, or with intervals, the columns are wider than a page's text.
     constexpr std::size_t columns_that_fit = 4;

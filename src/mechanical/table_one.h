@@ -7,8 +7,8 @@
 
 namespace flightwatt::mechanical {
 
-/// Whether a table has a column beside each phase for half the width of the coefficients' 95 % intervals, as
-/// two digits ("+-"); '-' where the model has no errors, or none for the frequency.
+/// Whether a table has a column beside each phase for the coefficients' 95 % intervals, "LOW to HIGH"; '-' where the
+/// model has no errors, or none for the frequency.
 enum class TableIntervals { absent, present };
 
 /// The model as the paper's Table I: rows a0, a1, b1, ... and xi, a column a phase, four significant digits,
@@ -22,7 +22,7 @@ TextTable table_one_beside(const MechanicalModel& published, const MechanicalMod
                            TableIntervals intervals = TableIntervals::absent);
 
 /// Table I as a LaTeX table environment like the paper's: its caption on top, coefficients as $a_0$ ...
-/// $\xi$, numbers in mathematical mode, "+-" columns as half widths of 95 % intervals. Needs no package.
+/// $\xi$, numbers in mathematical mode, 95 % intervals in brackets. Needs no package.
 std::string to_latex(const TextTable& table);
 
 }  // namespace flightwatt::mechanical

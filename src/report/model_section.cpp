@@ -28,7 +28,7 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
         section.html += table_html(*model.table_one, {"Coefficients of the model as the paper's Table I", false, {}});
         std::string legend = "Coefficients in W. xi is the angular frequency on a time axis of 28 units a phase.";
         if (!model.bands[flight::Phase::cruise].time_s.empty()) {
-            legend += " +- is half the 95 % interval of the mean of these flights.";
+            legend += " Beside them the 95 % intervals of the mean of these flights.";
         }
         section.html += paragraph(legend, "soft");
     }

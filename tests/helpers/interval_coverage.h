@@ -7,8 +7,10 @@
 #include "mechanical/fit/phase_fit.h"
 #include "mechanical/uncertainty/error_analysis.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flightwatt::test {
@@ -38,10 +40,13 @@ struct CoverageCase {
 };
 
 struct Coverage {
-    double covered = 0.0;           ///< part of the points of the curves that lay in their intervals
-    double a0_covered = 0.0;        ///< part of the intervals of a0 that held it
-    double mean_error_ratio = 0.0;  ///< mean of (square error / square standard error) over the points
-    std::size_t at_bound = 0;       ///< fits
+    double covered = 0.0;          ///< part of the points of the curves that lay in their intervals
+    double a0_covered = 0.0;       ///< part of the intervals of a0 that held it
+    double half_width_w = 0.0;     ///< of the curve's intervals: mean over the curve, median of the fits
+    double a0_half_width_w = 0.0;  ///< median of the fits
+    double curve_error_w = 0.0;    ///< root mean square over the curve, median of the fits
+    double worst_curve_error_w = 0.0;
+    std::size_t mean_curves = 0;  ///< fits whose samples left the frequency open
     std::size_t fits = 0;
     std::size_t without_answer = 0;  ///< fits that did not converge, which say so and have no intervals
 };
@@ -53,7 +58,12 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     const auto truth = published_model().phases[phase];
+    std::vector<double> taus;
+    for (int i = 0; i < points; ++i) taus.push_back(static_cast<double>(i) / (points - 1));
     Coverage coverage;
+    std::vector<double> half_widths_w;
+    std::vector<double> a0_half_widths_w;
+    std::vector<double> curve_errors_w;
     for (std::size_t first = 0; first < made.flights; first += made.together) {
         std::vector<mechanical::PhaseSamples> flights;
         for (std::size_t i = 0; i < made.together; ++i) {
@@ -74,25 +84,60 @@ inline Coverage coverage_of(flight::Phase phase, const CoverageCase& made, unsig
         const auto weights = flight_weights(fit, phase, {mechanical::Weighting::uniform, {}});
         const auto analysis = analyse_errors(flights, fit, weights);
         const auto mean = average_phase(fit, weights);
-        const double half_width = student_t_half_width(analysis.errors.degrees_of_freedom);
-        for (int i = 0; i < points; ++i) {
-            const double tau = static_cast<double>(i) / (points - 1);
-            const double error_w =
-                power_w(mean.fourier, tau * mean.duration_s) - power_w(truth.fourier, tau * truth.duration_s);
-            const double standard_error_w = curve_standard_error_w(analysis, tau);
-            coverage.covered += std::abs(error_w) <= half_width * standard_error_w ? 1.0 : 0.0;
-            coverage.mean_error_ratio += std::pow(error_w / standard_error_w, 2);
+        const auto intervals = curve_intervals_w(analysis, taus);
+        double width_w = 0.0;
+        double square_w2 = 0.0;
+        for (std::size_t i = 0; i < taus.size(); ++i) {
+            const double true_w = power_w(truth.fourier, taus[i] * truth.duration_s);
+            const auto& [low_w, high_w] = intervals[i];
+            coverage.covered += low_w <= true_w && true_w <= high_w ? 1.0 : 0.0;
+            width_w += (high_w - low_w) / points;
+            square_w2 += std::pow(power_w(mean.fourier, taus[i] * mean.duration_s) - true_w, 2) / points;
         }
-        const double a0_error_w = mean.fourier.a0_w - truth.fourier.a0_w;
-        coverage.a0_covered += std::abs(a0_error_w) <= half_width * analysis.errors.a0_w ? 1.0 : 0.0;
-        coverage.at_bound += fit.range.at_bound != mechanical::FrequencyBound::none ? 1 : 0;
+        const auto& a0 = analysis.errors.intervals->a0_w;
+        coverage.a0_covered += a0.low <= truth.fourier.a0_w && truth.fourier.a0_w <= a0.high ? 1.0 : 0.0;
+        half_widths_w.push_back(width_w / 2.0);
+        a0_half_widths_w.push_back((a0.high - a0.low) / 2.0);
+        curve_errors_w.push_back(std::sqrt(square_w2));
+        coverage.mean_curves += fit.mean_curve ? 1 : 0;
         ++coverage.fits;
     }
     const auto fits = static_cast<double>(coverage.fits);
     coverage.covered /= fits * points;
-    coverage.mean_error_ratio /= fits * points;
     coverage.a0_covered /= fits;
+    if (coverage.fits == 0) return coverage;
+    coverage.worst_curve_error_w = *std::max_element(curve_errors_w.begin(), curve_errors_w.end());
+    coverage.half_width_w = median(std::move(half_widths_w));
+    coverage.a0_half_width_w = median(std::move(a0_half_widths_w));
+    coverage.curve_error_w = median(std::move(curve_errors_w));
     return coverage;
+}
+
+/// How far the curves of single flights are from the truth, sampled every 1.1 s with 15 % lost and 1 W of noise.
+struct RegularSeries {
+    double worst_curve_error_w = 0.0;  ///< root mean square over a fine grid: between the samples too
+    std::size_t without_answer = 0;
+};
+
+inline RegularSeries coverage_of_regular(flight::Phase phase, std::size_t fits, unsigned seed) {
+    constexpr std::size_t points = 4000;
+    const auto truth = published_model().phases[phase];
+    const auto true_w = mechanical::curve_w(truth.fourier, truth.duration_s, points);
+    RegularSeries found;
+    for (std::size_t fit = 0; fit < fits; ++fit) {
+        std::mt19937 random(seed + static_cast<unsigned>(fit));
+        const auto samples = record(truth, {truth.duration_s, 1.1, 1.0, 0.15}, random);
+        try {
+            const auto curve = fit_phase(phase, std::vector{samples}).flights.front();
+            const auto fitted_w = mechanical::curve_w(curve.fourier, curve.duration_s, points);
+            double square_w2 = 0.0;
+            for (std::size_t i = 0; i < points; ++i) square_w2 += std::pow(fitted_w[i] - true_w[i], 2) / points;
+            found.worst_curve_error_w = std::max(found.worst_curve_error_w, std::sqrt(square_w2));
+        } catch (const NoAnswerError&) {
+            ++found.without_answer;
+        }
+    }
+    return found;
 }
 
 }  // namespace flightwatt::test

@@ -33,12 +33,20 @@ TEST(ModelCheck, TellsWhereACurveFallsBelowZero) {
 TEST(ModelCheck, TellsWhereErrorsAreNoMoreThanABound) {
     auto model = published();
     auto& errors = model.phases[flight::Phase::takeoff].errors.emplace();
-    errors.autocorrelation = 0.98;
     EXPECT_THAT(model_warnings(model), IsEmpty());
-    errors.autocorrelation = highest_autocorrelation;
+    errors.noise_lasts = true;
     EXPECT_THAT(model_warnings(model), ElementsAre(HasSubstr("takeoff: the noise of neighbouring samples")));
-    errors.from_flights = true;
-    EXPECT_THAT(model_warnings(model), ElementsAre(HasSubstr("from the differences between the flights")));
+}
+
+TEST(ModelCheck, TellsWhatWasDoneToTheCurve) {
+    auto model = published();
+    auto& landing = model.phases[flight::Phase::landing];
+    landing.edge_samples = 2;
+    landing.mean_curve = true;
+    landing.not_negative = true;
+    EXPECT_THAT(model_warnings(model), ElementsAre(HasSubstr("landing: 2 samples were left out at its ends"),
+                                                   HasSubstr("landing: the samples leave the frequency open"),
+                                                   HasSubstr("landing: the curve would fall below 0 W")));
 }
 
 }  // namespace

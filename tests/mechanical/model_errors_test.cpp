@@ -79,6 +79,16 @@ TEST(ModelErrors, AFileWithImpossibleErrorsIsRefused) {
     EXPECT_THAT(refusal([](auto& phase) { phase.errors->cos_w.pop_back(); }),
                 HasSubstr("cos_w has 2 numbers, expected 3"));
     EXPECT_THAT(refusal([](auto& phase) { phase.errors->sin_w[1] = -0.5; }), HasSubstr("negative"));
+    EXPECT_THAT(refusal([](auto& phase) { phase.errors->intervals->cos_w.pop_back(); }),
+                HasSubstr("cos_low_w has 2 numbers, expected 3"));
+    EXPECT_THAT(refusal([](auto& phase) {
+                    phase.errors->intervals->a0_w = {2.0, 1.0};
+                }),
+                HasSubstr("a0_w is no interval, expected [low, high]"));
+    EXPECT_THAT(refusal([](auto& phase) {
+                    phase.errors->intervals->sin_w[1] = {2.0, 1.0};
+                }),
+                HasSubstr("number 2 of sin_high_w, 1, is below that of sin_low_w, 2"));
     EXPECT_THAT(refusal([](auto& phase) { phase.errors->r2 = 1.5; }), HasSubstr("r2 = 1.5, expected at most 1"));
     EXPECT_THAT(refusal([](auto& phase) { phase.spread->high_w.pop_back(); }), HasSubstr("as many of each"));
     EXPECT_THAT(refusal([](auto& phase) { std::swap(phase.spread->low_w, phase.spread->high_w); }),
@@ -114,11 +124,10 @@ TEST(TableOne, CanHaveIntervals) {
         PhaseErrors{1e-5, 0.05, {0.01, 0.02, 0.03}, {0.04, 0.05, 0.06}, 0.02, 1e9, false, 0.9, 2.0, 0.1, 400.0};
     const auto table = table_one(model, TableIntervals::present);
     ASSERT_EQ(table.header.size(), 7U);
-    EXPECT_EQ(table.header[4], "cruise +-");
-    EXPECT_EQ(table.rows[0][4], "0.098");  // 1.96 standard errors
-    EXPECT_EQ(table.rows[6][4], "0.12");
-    EXPECT_EQ(table.rows[7][4], "0.00042");  // of xi = omega * 600 / 28
-    EXPECT_EQ(table.rows[0][2], "-");        // no errors known
+    EXPECT_EQ(table.header[4], "cruise 95 %");
+    EXPECT_EQ(table.rows[0][4], "27.12 to 27.32");    // of a file of 0.2: 1.96 standard errors
+    EXPECT_EQ(table.rows[7][4], "0.1795 to 0.1803");  // of xi = omega * 600 / 28
+    EXPECT_EQ(table.rows[0][2], "-");                 // no errors known
     model.phases[flight::Phase::cruise].errors->frequency_is_given = true;
     EXPECT_EQ(table_one(model, TableIntervals::present).rows[7][4], "-");
     const auto beside = table_one_beside(test::published_model(), model, TableIntervals::present);
@@ -151,9 +160,10 @@ $\xi$ & $0.1525$ & $0.1799$ & $0.1296$ \\
 }
 
 TEST(TableOneLatex, LeavesNothingThatTexReadsOtherwise) {
-    const auto text = to_latex({{"coefficient", "take-off", "take-off +-"},
-                                {{"a0", "1.5e-05", "0.012"}, {"a0 difference [%]", "-", "-"}, {"x_y", "&", "#"}}});
-    EXPECT_THAT(text, HasSubstr(R"($a_{0}$ & $1.5 \times 10^{-5}$ & $\pm 0.012$ \\)"));
+    const auto text =
+        to_latex({{"coefficient", "take-off", "take-off 95 %"},
+                  {{"a0", "1.5e-05", "-0.012 to 3e-05"}, {"a0 difference [%]", "-", "-"}, {"x_y", "&", "#"}}});
+    EXPECT_THAT(text, HasSubstr(R"($a_{0}$ & $1.5 \times 10^{-5}$ & $[-0.012,\, 3 \times 10^{-5}]$ \\)"));
     EXPECT_THAT(text, HasSubstr(R"(a0 difference [\%] & -- & -- \\)"));
     EXPECT_THAT(text, HasSubstr(R"(x\_y & \& & \# \\)"));
     EXPECT_EQ(std::count(text.begin(), text.end(), '$') % 2, 0);

@@ -31,7 +31,7 @@ TEST(BatchContent, HoldsTheFlightsAndTheFitThatTheBatchStored) {
     const auto model = model_of(*content.fit, std::nullopt);
     EXPECT_FALSE(model.bands[flight::Phase::cruise].time_s.empty());
     ASSERT_TRUE(model.table_one);
-    EXPECT_EQ(model.table_one->header.size(), 7U) << "three phases, each with its half width";
+    EXPECT_EQ(model.table_one->header.size(), 7U) << "three phases, each with its intervals";
 }
 
 TEST(BatchContent, HasNoFitWhereTheBatchCouldNotFit) {

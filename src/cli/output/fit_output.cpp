@@ -1,7 +1,6 @@
 #include "cli/output/fit_output.h"
 
 #include "base/error.h"
-#include "base/statistics.h"
 #include "cli/output/json_text.h"
 #include "mechanical/model_check.h"
 #include "mechanical/model_fit.h"
@@ -13,21 +12,18 @@
 namespace flightwatt::cli {
 namespace {
 
-nlohmann::ordered_json interval_json(double value, double half_width) {
-    return {{"low", value - half_width}, {"high", value + half_width}};
+nlohmann::ordered_json interval_json(const mechanical::Interval& interval) {
+    return {{"low", interval.low}, {"high", interval.high}};
+}
+
+nlohmann::ordered_json interval_json(const std::vector<mechanical::Interval>& intervals) {
+    auto list = nlohmann::ordered_json::array();
+    for (const auto& interval : intervals) list.push_back(interval_json(interval));
+    return list;
 }
 
 nlohmann::ordered_json to_json(const mechanical::PhaseModel& phase, const mechanical::PhaseErrors& errors) {
-    using Json = nlohmann::ordered_json;
-    const double wide = student_t_half_width(errors.degrees_of_freedom);
-    const auto intervals = [&](const std::vector<double>& values, const std::vector<double>& standard_errors) {
-        Json list = Json::array();
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            list.push_back(interval_json(values[i], wide * standard_errors[i]));
-        }
-        return list;
-    };
-    const auto& fourier = phase.fourier;
+    const auto intervals = coefficient_intervals(phase);
     return {{"standard_error",
              {{"omega_rad_per_s", errors.omega_rad_per_s},
               {"a0_w", errors.a0_w},
@@ -35,17 +31,17 @@ nlohmann::ordered_json to_json(const mechanical::PhaseModel& phase, const mechan
               {"sin_w", errors.sin_w},
               {"curve_w", errors.curve_w}}},
             {"interval_95",
-             {{"omega_rad_per_s", interval_json(fourier.omega_rad_per_s, wide * errors.omega_rad_per_s)},
-              {"a0_w", interval_json(fourier.a0_w, wide * errors.a0_w)},
-              {"cos_w", intervals(fourier.cos_w, errors.cos_w)},
-              {"sin_w", intervals(fourier.sin_w, errors.sin_w)}}},
+             {{"omega_rad_per_s", interval_json(intervals.omega_rad_per_s)},
+              {"a0_w", interval_json(intervals.a0_w)},
+              {"cos_w", interval_json(intervals.cos_w)},
+              {"sin_w", interval_json(intervals.sin_w)}}},
             {"frequency_is_given", errors.frequency_is_given},
             {"degrees_of_freedom", errors.degrees_of_freedom},
             {"r2", errors.r2},
             {"condition", errors.condition},
             {"autocorrelation", errors.autocorrelation},
             {"effective_samples", errors.effective_samples},
-            {"from_flights", errors.from_flights}};
+            {"noise_lasts", errors.noise_lasts}};
 }
 
 nlohmann::ordered_json to_json(const mechanical::FrequencyProfile& profile) {
@@ -93,10 +89,12 @@ nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         auto& entry = json["phases"][std::string(to_string(phase))];
-        entry = {{"duration_s", fitted.duration_s}, {"omega_rad_per_s", fitted.fourier.omega_rad_per_s},
-                 {"a0_w", fitted.fourier.a0_w},     {"cos_w", fitted.fourier.cos_w},
-                 {"sin_w", fitted.fourier.sin_w},   {"rms_w", fitted.rms_w.value_or(0.0)},
-                 {"samples", fitted.samples},       {"flights", fitted.flights}};
+        entry = {{"duration_s", fitted.duration_s},     {"omega_rad_per_s", fitted.fourier.omega_rad_per_s},
+                 {"a0_w", fitted.fourier.a0_w},         {"cos_w", fitted.fourier.cos_w},
+                 {"sin_w", fitted.fourier.sin_w},       {"rms_w", fitted.rms_w.value_or(0.0)},
+                 {"samples", fitted.samples},           {"flights", fitted.flights},
+                 {"edge_samples", fitted.edge_samples}, {"mean_curve", fitted.mean_curve},
+                 {"not_negative", fitted.not_negative}};
         if (const auto& law = fitted.level_law) {
             entry["level_law"] = {{"covariate", to_string(law->covariate)},
                                   {"flights", law->flights},

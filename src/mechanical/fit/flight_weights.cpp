@@ -157,6 +157,8 @@ PhaseModel average_phase(const PhaseFit& fit, std::span<const double> weights) {
     model.range = fit.range;
     model.samples = fit.samples;
     model.flights = fit.flights.size();
+    model.mean_curve = fit.mean_curve;
+    model.not_negative = fit.not_negative;
     model.fourier.cos_w.resize(fit.flights.front().fourier.cos_w.size());
     model.fourier.sin_w.resize(model.fourier.cos_w.size());
     for (std::size_t i = 0; i < fit.flights.size(); ++i) {

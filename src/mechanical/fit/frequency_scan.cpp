@@ -75,10 +75,14 @@ std::vector<Candidate> minima(const FrequencyScan& scan) {
 
 }  // namespace
 
+double frequency_scan_step(const FrequencyRange& range, int order) {
+    return range.high_rad / std::ceil(range.high_rad * order / turn_between_rad);
+}
+
 FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range) {
     FrequencyScan scan;
-    const auto last = static_cast<std::size_t>(std::ceil(range.high_rad * order / turn_between_rad));
-    scan.step_rad = range.high_rad / static_cast<double>(last);
+    scan.step_rad = frequency_scan_step(range, order);
+    const auto last = static_cast<std::size_t>(std::round(range.high_rad / scan.step_rad));
     const auto first = static_cast<std::size_t>(std::ceil(range.low_rad / scan.step_rad));
     for (auto i = first; i <= last; ++i) scan.theta_rad.push_back(static_cast<double>(i) * scan.step_rad);
 

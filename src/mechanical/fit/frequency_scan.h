@@ -16,6 +16,10 @@ struct FrequencyScan {
     double step_rad = 0.0;
 };
 
+/// Spacing of the scan: the highest harmonic turns by at most 1 rad over the phase from one theta to the next; a whole
+/// number of steps reaches the range's high end.
+double frequency_scan_step(const FrequencyRange& range, int order);
+
 /// Scans the whole range, finely enough that the highest harmonic turns by at most 1 rad over the phase from
 /// one theta to the next, so that no minimum falls between two of them.
 FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range);

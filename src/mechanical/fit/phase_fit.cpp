@@ -4,6 +4,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/fit/frequency_scan.h"
+#include "mechanical/fit/mean_curve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -172,6 +173,23 @@ FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const Pha
     return range;
 }
 
+ScaledSamples fitted_values(const PhaseSamples& samples, const FlightCurve& curve, const PhaseFit& fit) {
+    ScaledSamples values{samples.tau, samples.power_w, samples.flight};
+    if (fit.loss == Loss::none || fit.loss_scale_w <= 0.0) return values;
+    double slope = 0.0;
+    std::vector<double> residuals;
+    for (std::size_t j = 0; j < values.tau.size(); ++j) {
+        const double fitted = power_w(curve.fourier, values.tau[j] * curve.duration_s);
+        const double scales = (values.value[j] - fitted) / fit.loss_scale_w;
+        slope += sample_influence(fit.loss, scales) / static_cast<double>(values.tau.size());
+        residuals.push_back((values.value[j] - fitted) * sample_weight(fit.loss, scales));
+        values.value[j] = fitted;
+    }
+    if (slope <= 0.0) throw NoAnswerError("too many samples are down-weighted to know the fit's errors");
+    for (std::size_t j = 0; j < residuals.size(); ++j) values.value[j] += residuals[j] / slope;
+    return values;
+}
+
 PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
     if (flights.empty()) throw NoAnswerError(fmt::format("no flight has a {} to fit", to_string(phase)));
@@ -191,6 +209,7 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
         if (options.loss != Loss::none) joint = refine_robustly(scaling.flights, range, std::move(joint));
         auto fit = result_of(flights, scaling, joint, range);
         fit.loss = options.loss;
+        if (options.curve == Curve::mean) settle_curves(flights, fit);
         return fit;
     } catch (const NoAnswerError& error) {
         throw NoAnswerError(fmt::format("{}: {}", to_string(phase), error.what()));

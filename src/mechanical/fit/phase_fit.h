@@ -1,14 +1,32 @@
 #pragma once
 
 #include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/frequency_posterior.h"
 #include "mechanical/fit/refinement.h"
 
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::mechanical {
+
+/// What a phase's curves are where the samples leave the frequency open.
+enum class Curve {
+    mean,          ///< the mean over all frequencies that may be; never below 0 unless that was measured
+    least_squares  ///< that of the least sum of squares, whatever it is
+};
+
+constexpr std::string_view to_string(Curve curve) { return curve == Curve::mean ? "mean" : "least-squares"; }
+
+constexpr std::optional<Curve> curve_from(std::string_view name) {
+    for (const auto curve : {Curve::mean, Curve::least_squares})
+        if (name == to_string(curve)) return curve;
+    return std::nullopt;
+}
 
 struct PhaseFitOptions {
     int order = 3;  ///< of the Fourier series, 0 (a constant) to max_order
@@ -20,6 +38,7 @@ struct PhaseFitOptions {
     /// an aircraft does over and over in cruise is faster.
     double high_periods = 120.0;
     Loss loss = Loss::none;  ///< huber: outliers count less in the last refinement
+    Curve curve = Curve::mean;
 };
 
 /// One flight's own curve in one phase, in that flight's own seconds.
@@ -40,6 +59,9 @@ struct PhaseFit {
     std::size_t samples = 0;
     Loss loss = Loss::none;
     double loss_scale_w = 0.0;  ///< of the noise as the loss saw it; 0 without a loss
+    bool mean_curve = false;    ///< the curves are means over frequencies (settle_curves)
+    bool not_negative = false;  ///< curves were kept from falling below 0, or below negative power that was measured
+    std::shared_ptr<const FrequencyPosterior> posterior = {};  ///< if it was needed
 };
 
 /// So many samples a flight needs at least: one more than its coefficients.
@@ -54,10 +76,15 @@ FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const Pha
 
 /// Fits Fourier series of the order to all flights: scans the whole range of theta, refines theta and all
 /// coefficients together. A loss other than none starts from that answer, so outliers still take part in the
-/// search for the frequency. Order 0 is each flight's own mean (its theta, one period, has no effect).
+/// search for the frequency. Where the samples leave the frequency open the curves are settled (mean_curve.h) unless
+/// options.curve says otherwise. Order 0 is each flight's own mean (its theta, one period, has no effect).
 /// Throws InputError for samples that are no samples (unequal lengths, tau outside [0, 1], not finite, duration
 /// not positive), NoAnswerError naming flight and phase for a flight with fewer than samples_needed(order)
 /// samples, for no flights, and for a fit that does not converge.
 PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options = {});
+
+/// A flight's samples; after a robust fit its curve with Huber's pseudo-residuals, psi / mean psi', on which least
+/// squares would have come to the same curve. Throws NoAnswerError if all samples are down-weighted.
+ScaledSamples fitted_values(const PhaseSamples& samples, const FlightCurve& curve, const PhaseFit& fit);
 
 }  // namespace flightwatt::mechanical

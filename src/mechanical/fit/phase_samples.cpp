@@ -3,6 +3,7 @@
 #include "base/statistics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace flightwatt::mechanical {
@@ -13,6 +14,14 @@ double mean_power_w(const PhaseSamples& samples) {
         sum += 0.5 * (samples.power_w[i] + samples.power_w[i - 1]) * (samples.tau[i] - samples.tau[i - 1]);
     }
     return sum + samples.power_w.back() * (1.0 - samples.tau.back());
+}
+
+bool is_constant(std::span<const PhaseSamples> flights) {
+    constexpr double rounding = 1e-12;
+    return std::ranges::all_of(flights, [](const PhaseSamples& samples) {
+        const auto [least, most] = std::ranges::minmax(samples.power_w);
+        return most - least <= rounding * std::max(std::abs(least), std::abs(most));
+    });
 }
 
 double median_gap(std::vector<double> tau) {

@@ -4,6 +4,7 @@
 #include "mechanical/covariates.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,16 @@ struct PhaseSamples {
     /// Of a cruise: the same in each of airspeed_parts equal parts of it; empty unless it was measured in all.
     std::vector<double> airspeed_cubed_parts = {};
     Covariates covariates = {};  ///< of the cruise, for a level that follows one
+    /// Samples at the phase's ends that are not among these: their power is the neighbouring phase's (edge_samples.h).
+    std::size_t edge_samples = 0;
 };
 
 /// Mean power [W] of a phase over time: trapezoids between the samples, the first and last value up to the
 /// phase's ends. The samples must not be empty.
 double mean_power_w(const PhaseSamples& samples);
+
+/// Whether each flight's power varies by no more than rounding: nothing tells a frequency.
+bool is_constant(std::span<const PhaseSamples> flights);
 
 /// The median of the gaps between samples, as a part of the phase; 0 if all samples are at one time.
 double median_gap(std::vector<double> tau);

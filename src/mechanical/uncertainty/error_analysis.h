@@ -1,8 +1,12 @@
 #pragma once
 
+#include "mechanical/fit/frequency_posterior.h"
 #include "mechanical/fit/phase_fit.h"
+#include "mechanical/uncertainty/student_mixture.h"
 
+#include <memory>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -13,22 +17,21 @@ struct ErrorAnalysis {
     PhaseErrors errors;
     double theta_rad = 0.0;
     Eigen::VectorXd coefficients_w;  ///< of the mean curve: a0, a1, b1, ...
-    Eigen::MatrixXd covariance;      ///< of theta and the coefficients, theta first
-    /// The standard error of theta were it free, also where it stands at a bound; 0 if the data do not show it.
-    double free_theta_rad = 0.0;
-    double theta_information = 0.0;  ///< half the curvature of the sum of squares over theta [W^2/rad^2]
+    std::shared_ptr<const FrequencyPosterior> posterior;
+    std::vector<MeanNode> nodes;  ///< its weighted mean of the flights
 };
 
-/// Linearised error propagation through the joint least squares of all flights, with noise that is correlated
-/// (residual_correlation.h) and has a variance of its own in each flight: every estimate is a linear function of the
-/// noise, whose covariance is carried through it (docs/methods.md, Eq. 13). Where theta stands at a bound it is taken
-/// as given. Where the autocorrelation stands at its bound, the flights' own differences are taken instead if they tell
-/// less (PhaseErrors::from_flights). After a robust fit the residuals are Huber's pseudo-residuals, psi / mean psi'.
-/// `flights`, `fit` and `weights` are in the same order; their samples are those that were fitted.
+/// Integrates over the frequency and the autocorrelation of the noise (frequency_posterior.h): the mean curve and its
+/// coefficients are mixtures of Student distributions (docs/methods.md, Eqs. 12 to 14). After a robust fit the samples
+/// are the curve with Huber's pseudo-residuals, psi / mean psi'. `flights`, `fit` and `weights` are in the same order;
+/// their samples are those that were fitted. Throws NoAnswerError for samples that do not determine the errors.
 ErrorAnalysis analyse_errors(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                              std::span<const double> weights);
 
-/// The standard error [W] of the mean curve at tau in [0, 1] of the phase.
+/// The standard deviation [W] of the mean curve at tau in [0, 1] of the phase.
 double curve_standard_error_w(const ErrorAnalysis& analysis, double tau);
+
+/// Many times of the same analysis: the mean curve's 95 % intervals [W], each with the fitted curve inside.
+std::vector<Interval> curve_intervals_w(const ErrorAnalysis& analysis, std::span<const double> tau);
 
 }  // namespace flightwatt::mechanical

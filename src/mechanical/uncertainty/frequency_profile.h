@@ -19,11 +19,10 @@ struct FrequencyProfile {
     bool high_is_open = false;
 };
 
-/// The profile about the frequency found, over twice the interval or as far as the range goes. The interval ends where
-/// the sum of squares has grown by the square of Student's t times its growth one standard error away (free_theta_rad,
-/// so correlated noise widens it); it is not symmetric and says when the data leave the frequency open. It is the one
-/// about the fit: another minimum further off is not looked for. A robust fit's profile is that of least squares. Order
-/// 0 and data without a frequency have an open interval and no points.
+/// The profile about the frequency found, over twice the interval or as far as the range goes. The interval is that of
+/// the analysis, all minima included, and holds the frequency found; it says when the data leave the frequency open. A
+/// robust fit's profile is that of least squares. Order 0 and data without a frequency have an open interval and no
+/// points.
 FrequencyProfile frequency_profile(std::span<const PhaseSamples> flights, const PhaseFit& fit,
                                    const ErrorAnalysis& analysis);
 

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace flightwatt::mechanical {
+
+/// The logarithm of a density, without its constant factor, at one place.
+struct DensityNode {
+    double place = 0.0;
+    double log_density = 0.0;
+};
+
+/// Nodes that resolve a density: `starts` (rising) and, wherever the density is not negligible, as many between them
+/// as it takes for neighbours to differ by no more than a factor of two. A peak is found if one of the starts is on it
+/// or if it spans several of them.
+template <typename LogDensity>
+std::vector<DensityNode> resolve_density(const LogDensity& log_density, const std::vector<double>& starts) {
+    constexpr double negligible = 7.0;    // e^-7 of the peak
+    constexpr double resolved = 0.7;      // a factor of two
+    constexpr double steep = 2.0;         // beside a steep interval even a level one is split: a peak may be inside
+    constexpr double same_place = 1e-10;  // relative
+    constexpr int most_rounds = 40;
+    constexpr std::size_t most_nodes = 600;
+    std::vector<DensityNode> nodes;
+    for (const double place : starts) nodes.push_back({place, log_density(place)});
+    for (int round = 0; round < most_rounds && nodes.size() < most_nodes; ++round) {
+        const double top = std::ranges::max_element(nodes, {}, &DensityNode::log_density)->log_density;
+        const auto rise = [&](std::size_t i) {
+            return i + 1 < nodes.size() ? std::abs(nodes[i + 1].log_density - nodes[i].log_density) : 0.0;
+        };
+        std::vector<DensityNode> added;
+        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+            const auto& [low, low_log] = nodes[i];
+            const auto& [high, high_log] = nodes[i + 1];
+            if (std::max(low_log, high_log) < top - negligible || high - low <= same_place * std::abs(high)) continue;
+            const double beside = std::max(i > 0 ? rise(i - 1) : 0.0, rise(i + 1));
+            if (rise(i) <= resolved && beside <= steep) continue;
+            const double middle = (low + high) / 2.0;
+            added.push_back({middle, log_density(middle)});
+        }
+        if (added.empty()) break;
+        nodes.insert(nodes.end(), added.begin(), added.end());
+        std::ranges::sort(nodes, {}, &DensityNode::place);
+    }
+    return nodes;
+}
+
+/// Each node's part of the integral by trapezoids, as a logarithm; a single node counts as its density.
+inline std::vector<double> log_masses(const std::vector<DensityNode>& nodes) {
+    std::vector<double> masses;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const double before = i > 0 ? nodes[i].place - nodes[i - 1].place : 0.0;
+        const double after = i + 1 < nodes.size() ? nodes[i + 1].place - nodes[i].place : 0.0;
+        const double width = nodes.size() > 1 ? (before + after) / 2.0 : 1.0;
+        masses.push_back(nodes[i].log_density + std::log(width));
+    }
+    return masses;
+}
+
+/// log sum exp.
+inline double log_sum(const std::vector<double>& logs) {
+    const double top = *std::ranges::max_element(logs);
+    double sum = 0.0;
+    for (const double value : logs) sum += std::exp(value - top);
+    return top + std::log(sum);
+}
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,296 @@
+#include "mechanical/fit/frequency_posterior.h"
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "mechanical/fit/density_nodes.h"
+#include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/frequency_scan.h"
+#include "mechanical/fit/frequency_screen.h"
+#include "mechanical/fit/node_likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include <boost/math/tools/minima.hpp>
+
+namespace flightwatt::mechanical {
+namespace {
+
+constexpr double no_likelihood = -1e300;
+
+/// Of the local maxima between the frequencies of the scan, as many are climbed.
+constexpr std::size_t climbed_maxima = 8;
+constexpr int climbed_bits = 20;
+
+/// Nodes that hold less than this of all weight together are left out.
+constexpr double negligible_weight = 1e-4;
+
+using FlightsAt = std::vector<FlightAtFrequency>;
+
+/// Empty if the samples of one of the flights determine no series there.
+FlightsAt flights_at(std::span<const ScaledSamples> flights, int order, double theta_rad) {
+    FlightsAt all;
+    for (const auto& samples : flights) {
+        auto flight = flight_at(samples, order, theta_rad);
+        if (!flight) return {};
+        all.push_back(*std::move(flight));
+    }
+    return all;
+}
+
+double log_likelihood(const FlightsAt& flights, double autocorrelation) {
+    double sum = 0.0;
+    for (const auto& flight : flights) sum += evidence_of(flight, autocorrelation).log_likelihood;
+    return sum;
+}
+
+/// One frequency, and the autocorrelations there.
+struct FrequencyNode {
+    double log_density = no_likelihood;  ///< of theta
+    std::vector<DensityNode> autocorrelations;
+};
+
+FrequencyNode node_at(std::span<const ScaledSamples> flights, const PosteriorOptions& options, double highest,
+                      double theta_rad) {
+    FrequencyNode node;
+    const auto at = flights_at(flights, options.order, theta_rad);
+    if (at.empty()) return node;
+    const auto density = [&](double r) { return log_likelihood(at, r); };
+    node.autocorrelations = resolve_density(density, coarse_autocorrelations(highest));
+    node.log_density = log_sum(log_masses(node.autocorrelations)) - 2.0 * std::log(theta_rad);
+    return node;
+}
+
+/// The peak of the density near a frequency, for the autocorrelation that is likeliest there.
+double climbed(std::span<const ScaledSamples> flights, const PosteriorOptions& options, double theta_rad,
+               double autocorrelation) {
+    const double reach = frequency_scan_step(options.range, options.order);
+    const double low = std::max(options.range.low_rad, theta_rad - reach);
+    const double high = std::min(options.range.high_rad, theta_rad + reach);
+    const auto behind = [&](double theta) {
+        const auto at = flights_at(flights, options.order, theta);
+        return at.empty() ? -no_likelihood : 2.0 * std::log(theta) - log_likelihood(at, autocorrelation);
+    };
+    return boost::math::tools::brent_find_minima(behind, low, high, climbed_bits).first;
+}
+
+/// A frequency whose likelihood at the coarse autocorrelations is further behind the best than this is left out.
+constexpr double hopeless = 12.0;
+
+struct CoarseNode {
+    double theta_rad = 0.0;
+    double log_density = no_likelihood;
+    double likeliest = 0.0;  ///< of the autocorrelations
+};
+
+CoarseNode coarse_node(std::span<const ScaledSamples> flights, const PosteriorOptions& options, double highest,
+                       double theta_rad) {
+    CoarseNode node{theta_rad};
+    const auto at = flights_at(flights, options.order, theta_rad);
+    if (at.empty()) return node;
+    for (const double r : {0.0, highest / 3.0, highest / 1.5, highest}) {
+        const double density = log_likelihood(at, r) - 2.0 * std::log(theta_rad);
+        if (density <= node.log_density) continue;
+        node.log_density = density;
+        node.likeliest = r;
+    }
+    return node;
+}
+
+/// Where the search for the density begins: the frequencies of the screen with both bounds, and every peak.
+std::vector<double> starts_of(std::span<const ScaledSamples> flights, const PosteriorOptions& options, double highest) {
+    const auto& range = options.range;
+    auto tried = promising_frequencies(flights, options.order, range, options.found_rad, highest);
+    tried.insert(tried.end(), {range.low_rad, range.high_rad, options.found_rad});
+    std::ranges::sort(tried);
+    tried.erase(std::unique(tried.begin(), tried.end()), tried.end());
+    std::vector<CoarseNode> nodes;
+    for (const double theta_rad : tried) nodes.push_back(coarse_node(flights, options, highest, theta_rad));
+    std::vector<CoarseNode> maxima;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const bool rises = i == 0 || nodes[i].log_density >= nodes[i - 1].log_density;
+        const bool falls = i + 1 == nodes.size() || nodes[i].log_density >= nodes[i + 1].log_density;
+        if (rises && falls) maxima.push_back(nodes[i]);
+    }
+    std::ranges::sort(maxima, std::greater(), &CoarseNode::log_density);
+    maxima.resize(std::min(maxima.size(), climbed_maxima));
+    for (const auto& [theta_rad, log_density, r] : maxima) {
+        nodes.push_back(coarse_node(flights, options, highest, climbed(flights, options, theta_rad, r)));
+    }
+    std::ranges::sort(nodes, {}, &CoarseNode::theta_rad);
+    const double best = std::ranges::max_element(nodes, {}, &CoarseNode::log_density)->log_density;
+    std::vector<double> starts;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        // With what lies beside it, for a peak is between its neighbours.
+        const bool near = (i > 0 && nodes[i - 1].log_density > best - hopeless) ||
+                          (i + 1 < nodes.size() && nodes[i + 1].log_density > best - hopeless);
+        if (!near && nodes[i].log_density <= best - hopeless) continue;
+        if (starts.empty() || nodes[i].theta_rad > starts.back()) starts.push_back(nodes[i].theta_rad);
+    }
+    return starts;
+}
+
+PosteriorNode posterior_node(const FlightsAt& flights, double theta_rad, double autocorrelation) {
+    PosteriorNode node{theta_rad, autocorrelation};
+    for (const auto& flight : flights) {
+        const auto evidence = evidence_of(flight, autocorrelation);
+        const auto& back = flight.from_orthonormal;
+        const double variance = evidence.square_sum / evidence.degrees_of_freedom;
+        node.log_likelihood += evidence.log_likelihood;
+        node.flights.push_back({back * evidence.coordinates, variance * back * evidence.covariance * back.transpose(),
+                                evidence.degrees_of_freedom});
+    }
+    return node;
+}
+
+/// The mean over the phase of the squares of a curve with these coefficients: c' (this) c.
+Eigen::MatrixXd curve_gram(int order, double theta_rad) {
+    constexpr int points = 64;
+    std::vector<double> tau;
+    for (int i = 0; i < points; ++i) tau.push_back((i + 0.5) / points);
+    const auto basis = fourier_basis(tau, order, theta_rad);
+    return basis.transpose() * basis / points;
+}
+
+MeanNode mean_node(const PosteriorNode& node, std::span<const double> weights) {
+    const auto size = node.flights.front().coefficients.size();
+    MeanNode mean{node.theta_rad,      node.autocorrelation,        node.weight,
+                  node.log_likelihood, Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+    const auto gram = curve_gram(static_cast<int>(size - 1) / 2, node.theta_rad);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < node.flights.size(); ++i) {
+        const auto& flight = node.flights[i];
+        mean.coefficients += weights[i] * flight.coefficients;
+        const Eigen::MatrixXd share = weights[i] * weights[i] * flight.scale;
+        mean.scale += share;
+        squares += std::pow(gram.cwiseProduct(share).sum(), 2) / flight.degrees_of_freedom;
+    }
+    const double sum = gram.cwiseProduct(mean.scale).sum();
+    mean.degrees_of_freedom = squares > 0.0 ? std::max(1.0, sum * sum / squares) : 1.0;
+    return mean;
+}
+
+/// Frequencies and autocorrelations with their masses; the lightest are left out.
+struct WeighedPlace {
+    std::size_t frequency = 0;  ///< which of the density's nodes
+    double autocorrelation = 0.0;
+    double weight = 0.0;
+};
+
+std::vector<WeighedPlace> weighed(const std::vector<DensityNode>& density, const std::vector<FrequencyNode>& nodes) {
+    const auto masses = log_masses(density);
+    const double total = log_sum(masses);
+    std::vector<WeighedPlace> places;
+    for (std::size_t i = 0; i < density.size(); ++i) {
+        if (nodes[i].autocorrelations.empty()) continue;
+        const auto parts = log_masses(nodes[i].autocorrelations);
+        const double all = log_sum(parts);
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            places.push_back({i, nodes[i].autocorrelations[k].place, std::exp(masses[i] - total + parts[k] - all)});
+        }
+    }
+    std::ranges::stable_sort(places, {}, &WeighedPlace::weight);
+    double left_out = 0.0;
+    std::size_t light = 0;
+    while (light + 1 < places.size() && left_out + places[light].weight < negligible_weight) {
+        left_out += places[light++].weight;
+    }
+    places.erase(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(light));
+    for (auto& place : places) place.weight /= 1.0 - left_out;
+    std::ranges::stable_sort(places, {}, &WeighedPlace::frequency);
+    return places;
+}
+
+}  // namespace
+
+ScaledSamples in_order_of_time(const ScaledSamples& samples) {
+    if (std::ranges::is_sorted(samples.tau)) return samples;
+    std::vector<std::size_t> places(samples.tau.size());
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    std::ranges::stable_sort(places, {}, [&](std::size_t place) { return samples.tau[place]; });
+    ScaledSamples sorted{{}, {}, samples.flight};
+    for (const auto place : places) {
+        sorted.tau.push_back(samples.tau[place]);
+        sorted.value.push_back(samples.value[place]);
+    }
+    return sorted;
+}
+
+double highest_autocorrelation_of(std::span<const ScaledSamples> flights) {
+    constexpr double part_of_phase = 0.2;
+    constexpr double least = 0.9;
+    double highest = highest_autocorrelation;
+    for (const auto& samples : flights) {
+        const double step = median_gap(samples.tau);
+        highest = std::min(highest, std::max(least, std::exp(-step / part_of_phase)));
+    }
+    return highest;
+}
+
+FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> unsorted, const PosteriorOptions& options) {
+    std::vector<ScaledSamples> flights;
+    for (const auto& samples : unsorted) flights.push_back(in_order_of_time(samples));
+    FrequencyPosterior posterior;
+    posterior.highest_autocorrelation = highest_autocorrelation_of(flights);
+    const auto starts = options.order == 0 ? std::vector{options.found_rad}
+                                           : starts_of(flights, options, posterior.highest_autocorrelation);
+    std::vector<std::pair<double, FrequencyNode>> known;
+    const auto log_density = [&](double theta_rad) {
+        known.emplace_back(theta_rad, node_at(flights, options, posterior.highest_autocorrelation, theta_rad));
+        return known.back().second.log_density;
+    };
+    const auto density = resolve_density(log_density, starts);
+    std::ranges::sort(known, {}, &std::pair<double, FrequencyNode>::first);
+    std::vector<FrequencyNode> nodes;
+    for (auto& [theta_rad, node] : known) nodes.push_back(std::move(node));
+    const double top = std::ranges::max_element(density, {}, &DensityNode::log_density)->log_density;
+    if (top <= no_likelihood) throw NoAnswerError("the times of the samples determine no series at any frequency");
+    for (const auto& [theta_rad, log_value] : density) {
+        posterior.theta_rad.push_back(theta_rad);
+        posterior.density.push_back(std::exp(log_value - top));
+    }
+    FlightsAt at;
+    std::size_t computed = density.size();
+    for (const auto& [frequency, autocorrelation, weight] : weighed(density, nodes)) {
+        const double theta_rad = density[frequency].place;
+        if (computed != frequency) at = flights_at(flights, options.order, theta_rad);
+        computed = frequency;
+        posterior.nodes.push_back(posterior_node(at, theta_rad, autocorrelation));
+        posterior.nodes.back().weight = weight;
+    }
+    const auto likeliest = std::ranges::max_element(posterior.nodes, {}, &PosteriorNode::log_likelihood);
+    const double greatest = likeliest->log_likelihood;
+    for (auto& node : posterior.nodes) node.log_likelihood -= greatest;
+    return posterior;
+}
+
+std::vector<MeanNode> mean_of_flights(const FrequencyPosterior& posterior, std::span<const double> weights) {
+    std::vector<MeanNode> nodes;
+    for (const auto& node : posterior.nodes) nodes.push_back(mean_node(node, weights));
+    return nodes;
+}
+
+bool noise_lasts(const FrequencyPosterior& posterior) {
+    constexpr double near_highest = 0.95;
+    double weight = 0.0;
+    for (const auto& node : posterior.nodes)
+        if (node.autocorrelation > near_highest * posterior.highest_autocorrelation) weight += node.weight;
+    return weight > 0.5;
+}
+
+Interval interval_of_frequency(const FrequencyPosterior& posterior) {
+    const double tail = (1.0 - confidence_level) / 2.0;
+    Interval interval{posterior.nodes.front().theta_rad, posterior.nodes.back().theta_rad};
+    double sum = 0.0;
+    for (const auto& node : posterior.nodes) {
+        if (sum < tail) interval.low = node.theta_rad;
+        if (sum < 1.0 - tail) interval.high = node.theta_rad;
+        sum += node.weight;
+    }
+    return interval;
+}
+
+}  // namespace flightwatt::mechanical

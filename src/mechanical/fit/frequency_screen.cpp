@@ -1,0 +1,148 @@
+#include "mechanical/fit/frequency_screen.h"
+
+#include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/frequency_scan.h"
+#include "mechanical/fit/node_likelihood.h"
+#include "mechanical/fit/projected_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+namespace flightwatt::mechanical {
+namespace {
+
+/// By so much the logarithm of a likelihood may be behind the best for its frequency to be computed.
+constexpr double slack = 15.0;
+
+/// Up to here, two periods, harmonics overlap and Whittle's approximation says little: all frequencies are computed.
+constexpr double overlapping_rad = 4.0 * std::numbers::pi;
+
+/// Not more frequencies than this are computed, the most likely ones.
+constexpr std::size_t most_frequencies = 300;
+
+/// Variance of noise at an angle per median gap, of all noise 1.
+double noise_spectrum(double autocorrelation, double angle_rad) {
+    const double r = autocorrelation;
+    return (1.0 - r * r) / (1.0 - 2.0 * r * std::cos(angle_rad) + r * r);
+}
+
+/// What the screen knows of one flight.
+struct ScreenedFlight {
+    double samples = 0.0;
+    double step = 0.0;                  ///< median gap
+    double square_sum = 0.0;            ///< of the residuals at the frequency found
+    std::vector<WhitenedSum> whitened;  ///< of them, one an autocorrelation
+    std::vector<double> projected;      ///< least sum of squares at each frequency of the scan
+    TrigonometricSums sums;             ///< of the residuals
+};
+
+struct ScreenGrid {
+    double step_rad = 0.0;
+    std::size_t first = 0;
+    std::size_t last = 0;
+    int order = 0;
+};
+
+ScreenedFlight screened(const ScaledSamples& samples, const ScreenGrid& grid, double found_rad,
+                        const std::vector<double>& autocorrelations) {
+    ScreenedFlight flight;
+    const auto count = 2 * static_cast<std::size_t>(grid.order) * grid.last + 1;
+    const auto of_values = sum_by_fft(samples, grid.step_rad, count);
+    const double total = as_vector(samples.value).squaredNorm();
+    for (auto i = grid.first; i <= grid.last; ++i) {
+        flight.projected.push_back(std::max(0.0, total - explained_square_sum(of_values, i, grid.order)));
+    }
+    auto residuals = samples;
+    if (const auto at = flight_at(samples, grid.order, found_rad)) {
+        const auto last_column = at->columns.rightCols(1);
+        std::copy(last_column.data(), last_column.data() + last_column.size(), residuals.value.begin());
+    }
+    flight.samples = static_cast<double>(samples.tau.size());
+    flight.step = median_gap(samples.tau);
+    flight.square_sum = std::max(as_vector(residuals.value).squaredNorm(), 1e-22 * total);
+    for (const double r : autocorrelations) {
+        flight.whitened.push_back(whitened_sum(residuals.value, gaps_of(samples), r));
+    }
+    flight.sums = sum_by_fft(residuals, grid.step_rad, count);
+    return flight;
+}
+
+/// Logarithm of the likelihood at frequency i of the grid for the autocorrelation of that place, about.
+double screened_log_likelihood(const ScreenedFlight& flight, const ScreenGrid& grid, std::size_t i, std::size_t place,
+                               double autocorrelation) {
+    double gained = 0.0;           // of the residuals' square sum, by the harmonics here
+    double gained_whitened = 0.0;  // of the whitened one
+    double log_spectrum = 0.0;
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(grid.order); ++k) {
+        const double angle = static_cast<double>(k * i) * grid.step_rad * flight.step;
+        const double spectrum = noise_spectrum(autocorrelation, angle);
+        const double power = 2.0 * std::norm(flight.sums.value[k * i]) / flight.samples;
+        gained += power;
+        gained_whitened += power / spectrum;
+        log_spectrum += std::log(spectrum);
+    }
+    const auto& whitened = flight.whitened[place];
+    const double lost = std::max(0.0, flight.projected[i - grid.first] - flight.square_sum + gained);
+    const double least = 1e-3 * whitened.square_sum;
+    const double square_sum =
+        std::max(least, whitened.square_sum + lost / noise_spectrum(autocorrelation, 0.0) - gained_whitened);
+    const double freedom = flight.samples - coefficient_count(grid.order);
+    return -0.5 * (whitened.log_determinant + freedom * std::log(std::max(square_sum, 1e-300))) + log_spectrum;
+}
+
+}  // namespace
+
+std::vector<double> coarse_autocorrelations(double highest) {
+    constexpr int intervals = 6;
+    std::vector<double> values;
+    for (int i = 0; i <= intervals; ++i) values.push_back(highest * i / intervals);
+    return values;
+}
+
+std::vector<double> promising_frequencies(std::span<const ScaledSamples> flights, int order,
+                                          const FrequencyRange& range, double found_rad, double highest) {
+    const auto scan_step = frequency_scan_step(range, order);
+    ScreenGrid grid{scan_step, 0, 0, order};
+    grid.first = static_cast<std::size_t>(std::ceil(range.low_rad / scan_step));
+    grid.last = static_cast<std::size_t>(std::round(range.high_rad / scan_step));
+    const auto autocorrelations = coarse_autocorrelations(highest);
+    std::vector<ScreenedFlight> known;
+    for (const auto& samples : flights) known.push_back(screened(samples, grid, found_rad, autocorrelations));
+
+    std::vector<std::pair<double, double>> found;  // likelihood, frequency
+    double best = -std::numeric_limits<double>::infinity();
+    for (std::size_t place = 0; place < autocorrelations.size(); ++place) {
+        double at_found = 0.0;
+        for (const auto& flight : known) {
+            const double freedom = flight.samples - coefficient_count(order);
+            at_found -= 0.5 * (flight.whitened[place].log_determinant +
+                               freedom * std::log(std::max(flight.whitened[place].square_sum, 1e-300)));
+        }
+        best = std::max(best, at_found);
+    }
+    for (auto i = grid.first; i <= grid.last; ++i) {
+        const double theta_rad = static_cast<double>(i) * grid.step_rad;
+        double likeliest = -std::numeric_limits<double>::infinity();
+        for (std::size_t place = 0; place < autocorrelations.size(); ++place) {
+            double sum = -2.0 * std::log(theta_rad / found_rad);
+            for (const auto& flight : known) {
+                sum += screened_log_likelihood(flight, grid, i, place, autocorrelations[place]);
+            }
+            likeliest = std::max(likeliest, sum);
+        }
+        if (theta_rad > overlapping_rad && likeliest < best - slack) continue;
+        found.emplace_back(theta_rad > overlapping_rad ? likeliest : std::numeric_limits<double>::infinity(),
+                           theta_rad);
+    }
+    std::ranges::stable_sort(found, std::greater(), &std::pair<double, double>::first);
+    if (found.size() > most_frequencies) found.resize(most_frequencies);
+    std::vector<double> frequencies;
+    for (const auto& [likelihood, theta_rad] : found) frequencies.push_back(theta_rad);
+    std::ranges::sort(frequencies);
+    return frequencies;
+}
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,111 @@
+#include "mechanical/fit/frequency_posterior.h"
+
+#include "helpers/interval_coverage.h"
+#include "mechanical/fit/density_nodes.h"
+#include "mechanical/fit/node_likelihood.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+TEST(DensityNodes, ResolveAPeakThatOneStartIsOn) {
+    for (const double sd : {0.3, 0.01, 1e-5}) {
+        const auto density = [&](double x) { return -0.5 * std::pow((x - 5.03) / sd, 2); };
+        const auto nodes = resolve_density(density, {3.0, 4.0, 5.0, 5.03, 6.0});
+        EXPECT_NEAR(std::exp(log_sum(log_masses(nodes))) / (sd * std::sqrt(2.0 * std::numbers::pi)), 1.0, 0.03) << sd;
+        EXPECT_LT(nodes.size(), 120U);
+    }
+}
+
+TEST(NodeLikelihood, IsThatOfTheWholeMatrices) {
+    std::mt19937 random(1);
+    auto samples = test::record(test::published_model().phases[flight::Phase::landing], {60.0, 1.1, 0.5, 0.3}, random);
+    const ScaledSamples scaled{samples.tau, samples.power_w, ""};
+    constexpr double r = 0.6;
+    constexpr double theta_rad = 4.1;
+    const auto flight = flight_at(scaled, 3, theta_rad).value();
+    const auto evidence = evidence_of(flight, r);
+    const auto gaps = gaps_of(scaled);
+    const auto count = static_cast<Eigen::Index>(gaps.size());
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(count, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        double apart = 0.0;
+        for (Eigen::Index j = i + 1; j < count; ++j) {
+            apart += gaps[static_cast<std::size_t>(j)];
+            correlation(i, j) = correlation(j, i) = std::pow(r, apart);
+        }
+    }
+    const auto basis = fourier_basis(samples.tau, 3, theta_rad);
+    const Eigen::MatrixXd inverse = correlation.inverse();
+    const Eigen::MatrixXd information = basis.transpose() * inverse * basis;
+    const auto values = as_vector(samples.power_w);
+    const Eigen::VectorXd coefficients = information.inverse() * basis.transpose() * inverse * values;
+    const Eigen::VectorXd left = values - basis * coefficients;
+    const double square_sum = left.dot(inverse * left);
+    EXPECT_NEAR(evidence.square_sum, square_sum, 1e-8 * square_sum);
+    EXPECT_LT((flight.from_orthonormal * evidence.coordinates - coefficients).norm(), 1e-6 * coefficients.norm());
+    const Eigen::MatrixXd covariance =
+        flight.from_orthonormal * evidence.covariance * flight.from_orthonormal.transpose();
+    EXPECT_LT((covariance - information.inverse()).norm(), 1e-6 * covariance.norm());
+    const double ratio = information.determinant() / (basis.transpose() * basis).determinant();
+    const double freedom = static_cast<double>(count) - 7.0;
+    EXPECT_NEAR(evidence.log_likelihood,
+                -0.5 * (std::log(correlation.determinant()) + std::log(ratio) + freedom * std::log(square_sum)), 1e-6);
+    const auto whitened = whitened_sum(samples.power_w, gaps, r);
+    EXPECT_NEAR(whitened.square_sum, values.dot(inverse * values), 1e-8 * whitened.square_sum);
+    EXPECT_NEAR(whitened.log_determinant, std::log(correlation.determinant()), 1e-8);
+}
+
+FrequencyPosterior posterior_of(const std::vector<PhaseSamples>& flights, flight::Phase phase) {
+    const auto fit = fit_phase(phase, flights, {.curve = Curve::least_squares});
+    std::vector<ScaledSamples> scaled;
+    for (const auto& samples : flights) scaled.push_back({samples.tau, samples.power_w, ""});
+    return frequency_posterior(scaled, {3, fit.range, fit.theta_rad});
+}
+
+TEST(FrequencyPosterior, OfPreciseFlightsIsAtTheTruth) {
+    for (const auto phase : flight::all_phases) {
+        const auto posterior = posterior_of(test::record_flights(phase, 2, 0.01, 1), phase);
+        double sum = 0.0;
+        for (const auto& node : posterior.nodes) sum += node.weight;
+        const double truth_rad = test::theta_rad(test::published_model().phases[phase]);
+        const auto [low_rad, high_rad] = interval_of_frequency(posterior);
+        EXPECT_LE(low_rad, truth_rad) << to_string(phase);
+        EXPECT_GE(high_rad, truth_rad) << to_string(phase);
+        EXPECT_LT(high_rad - low_rad, 0.3) << to_string(phase);
+        EXPECT_NEAR(sum, 1.0, 1e-9);
+    }
+}
+
+TEST(FrequencyPosterior, FindsTheAutocorrelationOfLongPhases) {
+    for (const double truth : {0.0, 0.4, 0.7}) {
+        auto flights = test::record_flights(flight::Phase::cruise, 2, 0.0, 2);
+        std::mt19937 random(5);
+        for (auto& samples : flights) test::add_noise(samples, 0.5, truth, random);
+        double mean = 0.0;
+        for (const auto& node : posterior_of(flights, flight::Phase::cruise).nodes) {
+            mean += node.weight * node.autocorrelation;
+        }
+        EXPECT_NEAR(mean, truth, 0.08) << truth;
+    }
+}
+
+TEST(FrequencyPosterior, DoesNotDependOnTheOrderOfTheSamples) {
+    auto flights = test::record_flights(flight::Phase::landing, 1, 0.3, 3);
+    const auto posterior = posterior_of(flights, flight::Phase::landing);
+    std::reverse(flights[0].tau.begin(), flights[0].tau.end());
+    std::reverse(flights[0].power_w.begin(), flights[0].power_w.end());
+    const auto again = posterior_of(flights, flight::Phase::landing);
+    ASSERT_FALSE(posterior.nodes.empty());
+    EXPECT_NEAR(again.nodes.front().flights[0].coefficients(0), posterior.nodes.front().flights[0].coefficients(0),
+                1e-3);
+}
+
+}  // namespace
+}  // namespace flightwatt::mechanical
