@@ -303,18 +303,34 @@ InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const M
     report.short_wh = units::part_of(full_energy_wh(problem.battery), report.short_percent);
     report.cut_off_at_s = plan.summary.cut_off_at_s;
     report.cruise_s = cruise_that_lands(mission_of, probability);
+    report.cruise_differs_now = probability && !problem.duration_is_stated[Phase::cruise] &&
+                                !problem.uncertainty.duration_sd_s[Phase::cruise] &&
+                                find_spreads(problem).duration_sd_s[Phase::cruise] > 0.0;
     report.fixed_spare_percent = spare_without_fixed(problem, probability);
     if (possible >= 0.0 && plan.summary.feasible) report.reserve_soc_percent = possible;
     report.capacity_ah = least_capacity_ah(problem, probability);
     return report;
 }
 
+namespace {
+
+/// What to state of the cruise. With an estimated duration goes its spread: then a longer cruise may do.
+std::string cruise_remedy(const MissionSetup& mission, const InfeasibilityReport& report) {
+    const double now_s = mission.duration_s[Phase::cruise];
+    if (!report.cruise_differs_now)
+        return fmt::format("a cruise {:.1f} s shorter ({:.1f} s)", now_s - *report.cruise_s, *report.cruise_s);
+    const double stated_s = std::floor(*report.cruise_s * 10.0) / 10.0;  // as it is printed, it has to do
+    return fmt::format(
+        "a stated cruise of at most {0:.1f} s (duration_s = {{ cruise = {0:.1f} }}: the {1:.1f} s of the model's flights "
+        "differ from flight to flight)",
+        stated_s, now_s);
+}
+
+}  // namespace
+
 std::string describe(const MissionSetup& mission, const InfeasibilityReport& report) {
     std::vector<std::string> remedies;
-    if (report.cruise_s) {
-        remedies.push_back(fmt::format("a cruise {:.1f} s shorter ({:.1f} s)",
-                                       mission.duration_s[Phase::cruise] - *report.cruise_s, *report.cruise_s));
-    }
+    if (report.cruise_s) remedies.push_back(cruise_remedy(mission, report));
     if (report.fixed_spare_percent) {
         remedies.push_back(fmt::format("lower quality where it is fixed (the least leaves {:.2f} points to spare)",
                                        *report.fixed_spare_percent));

@@ -64,7 +64,8 @@ struct InfeasibilityReport {
     double short_percent = 0.0;                 ///< of the schedule that demands least energy
     double short_wh = 0.0;                      ///< the same, as a part of what a full battery holds
     std::optional<double> cut_off_at_s;         ///< short is then also what is demanded after the cut-off
-    std::optional<double> cruise_s;             ///< the longest that lands
+    std::optional<double> cruise_s;             ///< the longest that lands, its duration stated by the mission
+    bool cruise_differs_now = false;            ///< between flights, as the mission does not state its duration
     std::optional<double> fixed_spare_percent;  ///< over the reserve, with the least where quality is fixed
     std::optional<double> reserve_soc_percent;  ///< the greatest that can be kept
     std::optional<double> capacity_ah;          ///< the least that suffices

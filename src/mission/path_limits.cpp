@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -17,18 +18,27 @@ constexpr double most_circles_tried = 1e4;
 /// Looks for the greatest extent that keeps the reserve. Short ones may not fit the schedule.
 class ExtentSearch {
   public:
+    /// How well a probability is computed: a rough one is much sooner known.
+    enum class Chance { rough, exact };
+
     ExtentSearch(const MissionOfExtent& mission_of, const std::optional<double>& probability)
         : mission_of_(mission_of), probability_(probability) {}
 
     Mission mission(double extent) const { return with_minimum_energy_schedule(mission_of_(extent)); }
 
     /// What is left above the reserve; none where the schedule does not fit.
-    std::optional<double> spare_percent(double extent) {
+    std::optional<double> spare_percent(double extent, Chance chance = Chance::exact) {
         try {
             const auto flown = mission(extent);
             if (!probability_) return mission::spare_percent(flown);
             require_known_spread(flown);
-            return landing_chance(flown, find_spreads(flown), *probability_).spare_percent(*probability_);
+            const auto spreads = find_spreads(flown);
+            if (chance == Chance::rough)
+                return rough_landing_chance(flown, spreads, *probability_).spare_percent(*probability_);
+            const auto landing = landing_chance(flown, spreads, *probability_);
+            const double spare = landing.spare_percent(*probability_);
+            margins_percent_[extent] = std::max(0.0, landing.stated_spare_percent - spare);
+            return spare;
         } catch (const InputError& error) {
             misfit_ = error;
             return std::nullopt;
@@ -36,11 +46,11 @@ class ExtentSearch {
     }
 
     /// Halves what lies between an extent that is too short or good and one that is too long, until they are `apart`.
-    std::optional<double> last_good(double low, double high, double apart) {
+    std::optional<double> last_good(double low, double high, double apart, Chance chance = Chance::exact) {
         std::optional<double> good;
         while (high - low > apart) {
             const double middle = apart == 1.0 ? std::floor(std::midpoint(low, high)) : std::midpoint(low, high);
-            const auto spare = spare_percent(middle);
+            const auto spare = spare_percent(middle, chance);
             if (spare && *spare < 0.0) {
                 high = middle;
             } else {
@@ -51,17 +61,11 @@ class ExtentSearch {
         return good;
     }
 
+    /// Of an extent whose exact chance was asked for.
     FeasibilityLimit limit(double extent, double beyond) const {
         const auto at = mission(extent);
-        double margin_percent = 0.0;
-        std::optional<DrawnSources> sources;
-        if (probability_) {
-            const auto spreads = find_spreads(at);
-            margin_percent = std::max(0.0, landing_quantile(at, spreads, *probability_).margin_percent);
-            sources = spreads.sources;
-        }
-        auto most = limit_at(extent, margin_percent, at, mission(beyond));
-        most.sources = std::move(sources);
+        auto most = limit_at(extent, probability_ ? margins_percent_.at(extent) : 0.0, at, mission(beyond));
+        if (probability_) most.sources = find_spreads(at).sources;
         return most;
     }
 
@@ -74,6 +78,7 @@ class ExtentSearch {
     const MissionOfExtent& mission_of_;
     std::optional<double> probability_;
     std::optional<InputError> misfit_;
+    std::map<double, double> margins_percent_;
 };
 
 }  // namespace
@@ -86,11 +91,12 @@ PathQuestion question_of(const FlightPath& path) {
 
 FeasibilityLimit most_circles(const MissionOfExtent& mission_of, const std::optional<double>& probability) {
     ExtentSearch search(mission_of, probability);
+    constexpr auto rough = ExtentSearch::Chance::rough;
     double low = 0.0;
     std::optional<double> good;
     double high = 1.0;
     while (high <= most_circles_tried) {
-        const auto spare = search.spare_percent(high);
+        const auto spare = search.spare_percent(high, rough);
         if (spare && *spare < 0.0) break;
         low = high;
         if (spare) good = high;
@@ -100,8 +106,17 @@ FeasibilityLimit most_circles(const MissionOfExtent& mission_of, const std::opti
         if (good) throw NoAnswerError(fmt::format("{:.0f} circles still land with the reserve", *good));
         search.refuse("the mission does not land with its reserve");
     }
-    if (const auto better = search.last_good(low, high, 1.0)) good = better;
-    if (!good) throw NoAnswerError("the fewest circles that fit do not land with the reserve");
+    if (const auto better = search.last_good(low, high, 1.0, rough)) good = better;
+    if (!good) good = high;  // near enough to be worth an exact look
+    const double roughly = *good;
+    const auto is_good = [&](double circles) {
+        const auto spare = search.spare_percent(circles);
+        return spare && *spare >= 0.0;
+    };
+    while (*good > 0.0 && !is_good(*good)) *good -= 1.0;
+    if (*good == 0.0) throw NoAnswerError("the fewest circles that fit do not land with the reserve");
+    if (*good == roughly)
+        while (is_good(*good + 1.0)) *good += 1.0;
     return search.limit(*good, *good + 1.0);
 }
 

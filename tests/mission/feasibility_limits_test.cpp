@@ -4,6 +4,7 @@
 #include "mission/planning/planner.h"
 #include "mission/simulation.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::mission {
@@ -115,6 +116,18 @@ TEST(InfeasibilityReport, NamesNothingThatIsNotEnough) {
     EXPECT_FALSE(report.cruise_s);
     EXPECT_FALSE(report.fixed_spare_percent);
     EXPECT_TRUE(report.reserve_soc_percent);
+}
+
+TEST(InfeasibilityReport, NamesTheCruiseToStateWhereItsDurationDiffers) {
+    MissionSetup mission;
+    mission.duration_s[flight::Phase::cruise] = 600.5;
+    InfeasibilityReport report;
+    report.cruise_s = 628.4;
+    report.cruise_differs_now = true;
+    EXPECT_THAT(describe(mission, report), testing::HasSubstr("do: a stated cruise of at most 628.4 s (duration_s"));
+    report.cruise_s = 590.0;
+    report.cruise_differs_now = false;
+    EXPECT_THAT(describe(mission, report), testing::HasSubstr("do: a cruise 10.5 s shorter (590.0 s)"));
 }
 
 }  // namespace

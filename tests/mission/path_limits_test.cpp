@@ -1,6 +1,7 @@
 #include "mission/path_limits.h"
 
 #include "helpers/path_missions.h"
+#include "mission/sampling/landing_quantile.h"
 #include "mission/simulation.h"
 
 #include <numbers>
@@ -74,6 +75,12 @@ TEST(PathLimits, KeepTheReserveWithAChance) {
     ASSERT_TRUE(likely.sources);
     EXPECT_GT(likely.margin_percent, 0.0);
     EXPECT_GE(likely.residual_percent, -1e-6);
+    const auto spare_percent = [&](double circles) {
+        const auto mission = std::get<Mission>(mission_of(circles));
+        return landing_chance(mission, find_spreads(mission), 0.95).spare_percent(0.95);
+    };
+    EXPECT_GE(spare_percent(likely.value), 0.0);
+    EXPECT_LT(spare_percent(likely.value + 1.0), 0.0);
     // One more would not keep it: less than what the margin asks for is left.
     EXPECT_LT(likely.residual_percent, 3.0);
 }

@@ -44,7 +44,7 @@ struct KnapsackSolution {
 struct KnapsackEffort {
     double relative_gap = 1e-6;       ///< between utility and bound, at which the search ends
     std::size_t most_labels = 20000;  ///< kept a slot; if more are needed, the bound says what that may cost
-    std::size_t value_cells = 64;     ///< of the bound over charge, where the battery's state counts (schedule_value.h)
+    std::size_t value_cells = 96;     ///< of the bound over charge, where the battery's state counts (schedule_value.h)
 };
 
 /// Lagrangian relaxation finds the slope of utility over cost and a bound; labels (cost, utility) are then

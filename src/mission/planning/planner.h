@@ -19,6 +19,7 @@ struct Planner {
     /// The step of schedule_search.h, for batteries whose depletion by a slot depends on what ran before: their source
     /// follows their charge, or they may be cut off. Such a planner's tables hold configurations alone.
     std::optional<double> step_s = std::nullopt;
+    double quick_step_s = 0.0;  ///< of quick_step_for
 };
 
 /// The configurations that [plan] allows, without those that draw more than another one of as much utility, and those

@@ -1,31 +1,16 @@
 #include "mission/planning/schedule_search.h"
 
+#include "mission/planning/label_merge.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 
 namespace flightwatt::mission {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// A part of a schedule that ends with a run; `before` is where the run before stands in the trail.
-struct RunStep {
-    std::size_t before = 0;
-    std::size_t choice = 0;
-    std::size_t to = 0;
-};
-
-/// A schedule of the first slots, by its last run, what it leaves of the battery, and its utility.
-struct StateLabel : RunStep {
-    battery::BatteryState state;
-    double utility = 0.0;
-    EffectiveCharge charge = {};
-    double weighed_percent = 0.0;  ///< the charge less what its RC voltage costs at least
-    double bound = 0.0;            ///< nothing that begins so has more utility
-};
 
 struct FoundSchedule {
     std::vector<std::size_t> choices;
@@ -43,28 +28,29 @@ bool follow(const SlotDynamics& dynamics, std::size_t from, StateLabel& label) {
     return true;
 }
 
+/// Where a schedule ends; minus infinity if it does not.
+double end_percent(const SlotDynamics& dynamics, const std::vector<std::size_t>& choices, battery::BatteryState state) {
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        const auto after = after_slot(dynamics, i, choices[i], state);
+        if (!after || after->soc_percent < 0.0) return -infinite;
+        state = *after;
+    }
+    return state.soc_percent;
+}
+
 void set_bound(const ScheduleValue& value, StateLabel& label) {
     label.charge = effective_charge(value, label.to, label.state);
     label.weighed_percent = label.state.soc_percent - value.rc_low[label.to] * label.state.rc_voltage_v;
-    label.bound = label.utility + utility_to_go(value, label.to, label.choice, label.charge);
+    label.bound = may_land(value, label.to, label.state)
+                      ? label.utility + utility_to_go(value, label.to, label.choice, label.charge)
+                      : -infinite;
 }
 
-/// Utilities by keys, of which none is less than another one's with both less key and less utility.
-class UtilityFront {
-  public:
-    /// Whether something with as much key has as much utility, or nearly.
-    bool dominates(double key, double utility, double as_good) const {
-        const auto found = utility_by_key_.lower_bound(key);
-        return found != utility_by_key_.end() && found->second + as_good >= utility;
-    }
-
-    void add(double key, double utility) {
-        auto at = utility_by_key_.insert_or_assign(key, utility).first;
-        while (at != utility_by_key_.begin() && std::prev(at)->second <= utility) utility_by_key_.erase(std::prev(at));
-    }
-
-  private:
-    std::map<double, double> utility_by_key_;
+/// What becomes of labels for which there is no room.
+enum class Crowd {
+    drop_by_bound,   ///< the least promising are dropped
+    drop_by_charge,  ///< the least promising of their charge: where a cut-off comes, bounds know little of it
+    join             ///< those that differ little become one
 };
 
 /// One pass from the first slot to the last with at most so many labels at a time.
@@ -73,14 +59,17 @@ class StatePass {
     struct Limits {
         std::size_t most_labels = 0;
         double utility_gap = 0.0;
-        bool is_proof = true;  ///< false: labels are compared as if nothing was cut off, to find a good schedule soon
+        Crowd crowd = Crowd::join;
     };
 
     StatePass(const ScheduleQuestion& question, const KnapsackGraph& graph, const ScheduleValue& value,
               const StateLabel& first, const Limits& limits)
         : question_(question), graph_(graph), value_(value), first_(first), limits_(limits) {
-        // Half of the gap for what is dropped as good as dominated, in two prunings a slot; half for bounds.
-        as_good_ = limits.utility_gap / 2.0 / static_cast<double>(2 * graph.slots + 2);
+        constexpr double part_for_rounding = 1e-3;
+        lost_ = part_for_rounding * limits.utility_gap;
+        as_good_ = lost_ / static_cast<double>(2 * graph.slots + 2);  // of two merges a slot
+        tolerance_ = limits.utility_gap / static_cast<double>(2 * graph.slots + 2);
+        utility_per_percent_ = first.bound / std::max(1e-9, value.spare_percent);
     }
 
     /// `best` becomes the best schedule found, if that is better. Returns what no schedule has more than.
@@ -94,16 +83,45 @@ class StatePass {
             expand(i, at);
             at[i].clear();
         }
-        const auto finished = merged(graph_.slots, at[graph_.slots]);
-        const auto most = std::ranges::max_element(finished, {}, &StateLabel::utility);
-        if (most != finished.end() && most->utility > best.utility)
-            best = {choices_of(*most), most->utility, most->state.soc_percent};
-        const double lost = as_good_ * static_cast<double>(2 * graph_.slots + 2);
-        return std::max(best.utility, dropped_bound_) + lost;
+        std::vector<StateLabel> finished;
+        for (const auto& labels : at[graph_.slots]) finished.insert(finished.end(), labels.begin(), labels.end());
+        std::ranges::sort(finished, std::ranges::greater(), &StateLabel::utility);
+        if (!finished.empty()) {
+            dropped_bound_ = std::max(dropped_bound_, finished.front().utility);
+            bound_is_flown_ = lands_quickly(choices_of(finished.front()));
+        }
+        constexpr std::size_t most_tried = 500;
+        if (finished.size() > most_tried) finished.resize(most_tried);
+        for (const auto& label : finished) try_schedule(label, best);
+        return std::max(best.utility, dropped_bound_) + lost_;
     }
+
+    /// Whether what has most utility lands, as far as the quick dynamics can tell: those limit the bound, and not the room.
+    bool bound_is_flown() const { return bound_is_flown_; }
 
   private:
     using Layer = std::vector<std::vector<StateLabel>>;
+
+    void try_schedule(const StateLabel& label, FoundSchedule& best) const {
+        if (label.utility <= best.utility) return;
+        FoundSchedule found{choices_of(label), 0.0, -infinite};
+        for (std::size_t i = 0; i < found.choices.size(); ++i) {
+            found.utility += question_.choices.utility_per_s[found.choices[i]] * question_.choices.slots[i].duration_s;
+        }
+        if (found.utility <= best.utility) return;
+        found.end_percent = end_percent(question_.exact, found.choices, question_.start);
+        if (found.end_percent >= question_.reserve_soc_percent) best = std::move(found);
+    }
+
+    bool lands_quickly(const std::vector<std::size_t>& choices) const {
+        auto state = question_.start;
+        for (std::size_t i = 0; i < choices.size(); ++i) {
+            const auto after = after_slot(question_.quick, i, choices[i], state);
+            if (!after) return false;
+            state = *after;
+        }
+        return state.soc_percent >= question_.reserve_soc_percent - question_.quick.error_percent;
+    }
 
     bool is_wanted(double bound) {
         if (bound > enough_utility_) return true;
@@ -112,7 +130,9 @@ class StatePass {
     }
 
     void expand(std::size_t i, std::vector<Layer>& at) {
-        auto free = merged(i, at[i]);
+        std::vector<StateLabel> free;
+        for (const auto& labels : at[i]) free.insert(free.end(), labels.begin(), labels.end());
+        merge(i, free);
         leave_trail(free);
         for (std::size_t r = 0; r < graph_.runs[i].size(); ++r) {
             const auto& run = graph_.runs[i][r];
@@ -121,17 +141,10 @@ class StatePass {
         for (std::size_t r = 0; r < graph_.one_more[i].size(); ++r) {
             const auto& run = graph_.one_more[i][r];
             auto& own = at[i][run.choice];
-            prune(i, own);
+            merge(i, own);
             leave_trail(own);
             carry(i, own, run, value_.one_more[i][r], at[run.to][run.choice]);
         }
-    }
-
-    std::vector<StateLabel> merged(std::size_t i, const Layer& layer) {
-        std::vector<StateLabel> all;
-        for (const auto& labels : layer) all.insert(all.end(), labels.begin(), labels.end());
-        prune(i, all);
-        return all;
     }
 
     /// Puts the labels' last runs into the trail: only those that survived, for it grows with every slot.
@@ -146,39 +159,70 @@ class StatePass {
     void carry(std::size_t i, const std::vector<StateLabel>& labels, const ChoiceRun& run, const RunReach& reach,
                std::vector<StateLabel>& to) {
         for (const auto& label : labels) {
-            const double utility = label.utility + run.sum.utility;
+            StateLabel next = label;
+            next.choice = run.choice;
+            next.to = run.to;
+            next.utility += run.sum.utility;
             // What is known of the run beforehand saves most integrations.
             const auto end = reached(value_, i, reach, label.charge);
-            if (!is_wanted(utility + utility_to_go(value_, run.to, run.choice, end))) continue;
-            StateLabel next{{label.before, run.choice, run.to}, label.state, utility};
-            if (!follow(question_.dynamics, i, next)) continue;
+            if (!is_wanted(next.utility + utility_to_go(value_, run.to, run.choice, end))) continue;
+            if (!follow(question_.quick, i, next)) continue;
             set_bound(value_, next);
             if (is_wanted(next.bound)) to.push_back(next);
         }
     }
 
-    /// Leaves labels that no other one at the same slot dominates, or nearly, and of those the most promising.
-    /// A label is as good as another one in any case if it has as much charge and, with RC voltage weighed by
-    /// what it may cost at most, as much again; or no more RC voltage, where that may end a flight.
-    void prune(std::size_t i, std::vector<StateLabel>& labels) {
-        std::ranges::sort(labels, [](const StateLabel& a, const StateLabel& b) {
-            if (a.weighed_percent != b.weighed_percent) return a.weighed_percent > b.weighed_percent;
-            return a.utility != b.utility ? a.utility > b.utility : a.state.soc_percent < b.state.soc_percent;
-        });
-        const double high = (limits_.is_proof ? value_.rc_high : value_.rc_usual)[i];
-        UtilityFront front;
-        std::erase_if(labels, [&](const StateLabel& label) {
-            const double key = std::isfinite(high) ? label.state.soc_percent - high * label.state.rc_voltage_v
-                                                   : -label.state.rc_voltage_v;
-            if (front.dominates(key, label.utility, as_good_)) return true;
-            front.add(key, label.utility);
-            return false;
-        });
-        if (labels.size() <= limits_.most_labels) return;
+    /// Of as many equal ranges of charge as half of the labels that there is room for. The labels are in the order of
+    /// their charge.
+    void move_best_of_each_charge_first(std::vector<StateLabel>& labels) const {
+        const double ranges = static_cast<double>(limits_.most_labels / 2);
+        const double most_percent = labels.front().weighed_percent;
+        const double all_percent = std::max(1e-9, most_percent - labels.back().weighed_percent);
+        const auto range_of = [&](const StateLabel& label) {
+            return std::min(ranges - 1.0, std::floor((most_percent - label.weighed_percent) / all_percent * ranges));
+        };
+        std::vector<StateLabel> best;
+        std::vector<StateLabel> others;
+        for (auto& label : labels) {
+            if (best.empty() || range_of(label) != range_of(best.back())) {
+                best.push_back(label);
+                continue;
+            }
+            if (label.bound > best.back().bound) std::swap(label, best.back());
+            others.push_back(label);
+        }
+        best.resize(limits_.most_labels / 2, best.back());
+        best.insert(best.end(), others.begin(), others.end());
+        labels = std::move(best);
+    }
+
+    /// But for the first `kept`.
+    void drop_least_promising(std::vector<StateLabel>& labels, std::size_t kept) {
         const auto last = labels.begin() + static_cast<std::ptrdiff_t>(limits_.most_labels);
-        std::ranges::nth_element(labels, last, std::ranges::greater(), &StateLabel::bound);
+        if (last >= labels.end()) return;
+        std::ranges::nth_element(labels.begin() + static_cast<std::ptrdiff_t>(kept), last, labels.end(),
+                                 std::ranges::greater(), &StateLabel::bound);
         dropped_bound_ = std::max(dropped_bound_, last->bound);
         labels.erase(last, labels.end());
+    }
+
+    void merge(std::size_t i, std::vector<StateLabel>& labels) {
+        constexpr double times_more = 1.5;
+        std::ranges::sort(labels, [](const StateLabel& a, const StateLabel& b) {
+            if (a.weighed_percent != b.weighed_percent) return a.weighed_percent > b.weighed_percent;
+            if (a.utility != b.utility) return a.utility > b.utility;
+            return a.state.soc_percent < b.state.soc_percent;
+        });
+        const MergeWeights weights{value_.rc_low[i], value_.rc_high[i], value_.rc_joined[i], utility_per_percent_,
+                                   as_good_};
+        auto kept = merged(labels, weights, tolerance_);
+        if (kept.size() > limits_.most_labels && limits_.crowd != Crowd::join) {
+            if (limits_.crowd == Crowd::drop_by_charge) move_best_of_each_charge_first(kept);
+            drop_least_promising(kept, limits_.crowd == Crowd::drop_by_charge ? limits_.most_labels / 2 : 0);
+        }
+        while (kept.size() > limits_.most_labels) kept = merged(labels, weights, tolerance_ *= times_more);
+        labels = std::move(kept);
+        for (auto& label : labels) set_bound(value_, label);
     }
 
     std::vector<std::size_t> choices_of(const StateLabel& label) const {
@@ -197,9 +241,13 @@ class StatePass {
     const ScheduleValue& value_;
     const StateLabel& first_;
     Limits limits_;
+    double lost_ = 0.0;
     double as_good_ = 0.0;
+    double tolerance_ = 0.0;
+    double utility_per_percent_ = 0.0;
     double enough_utility_ = 0.0;
     double dropped_bound_ = -infinite;
+    bool bound_is_flown_ = false;
     std::vector<RunStep> trail_;
 };
 
@@ -209,8 +257,8 @@ KnapsackGraph graph_of(const ScheduleQuestion& question) {
     for (std::size_t i = 0; i < choices.slots.size(); ++i) {
         auto& slot = choices.slots[i];
         slot.cost.clear();
-        for (const double compute_w : question.dynamics.compute_w)
-            slot.cost.push_back(question.dynamics.slots[i].mechanical_energy_j + compute_w * slot.duration_s);
+        for (const double compute_w : question.exact.compute_w)
+            slot.cost.push_back(question.exact.slots[i].mechanical_energy_j + compute_w * slot.duration_s);
     }
     return make_knapsack_graph(choices);
 }
@@ -218,15 +266,7 @@ KnapsackGraph graph_of(const ScheduleQuestion& question) {
 /// The schedule of least energy demand, and where it ends.
 FoundSchedule least_schedule(const ScheduleQuestion& question, const KnapsackGraph& graph) {
     const auto path = best_path(graph, cost_to_go(graph, 0.0, 1.0), 0.0, 1.0);
-    FoundSchedule least{path.choices, path.sum.utility, -infinite};
-    auto state = question.start;
-    for (std::size_t i = 0; i < path.choices.size(); ++i) {
-        const auto after = after_slot(question.dynamics, i, path.choices[i], state);
-        if (!after || after->soc_percent < 0.0) return least;
-        state = *after;
-    }
-    least.end_percent = state.soc_percent;
-    return least;
+    return {path.choices, path.sum.utility, end_percent(question.exact, path.choices, question.start)};
 }
 
 /// As much of the effort as time and memory allow for many slots, choices or long runs.
@@ -244,51 +284,78 @@ KnapsackEffort affordable(KnapsackEffort effort, const KnapsackGraph& graph) {
     return effort;
 }
 
+constexpr std::size_t beam_labels = 100;
+
+/// What a search has come to.
+struct SearchState {
+    FoundSchedule best;
+    double bound = infinite;
+    bool bound_is_flown = false;  ///< as StatePass has it, of the last one
+
+    bool is_within(double relative_gap) const {
+        return bound - best.utility <= relative_gap * std::max(std::abs(bound), 1e-9);
+    }
+};
+
+/// Passes with ever more labels: the first drop what is less promising, to have a good schedule soon, the others prove.
+void improve(const ScheduleQuestion& question, const KnapsackGraph& graph, const KnapsackEffort& effort,
+             SearchState& search) {
+    constexpr std::size_t times_more = 5;
+    const auto value = make_schedule_value(question, graph, effort.value_cells);
+    // Behind the slots that are committed already.
+    StateLabel first{{0, graph.begin_choice, 0}, question.start, graph.before_begin.utility};
+    first.to = graph.begin;
+    if (!value.possible || !follow(question.quick, 0, first)) {
+        search.bound = search.best.utility;
+        return;
+    }
+    set_bound(value, first);
+    search.bound = std::min(search.bound, first.bound);
+    const auto pass = [&](std::size_t labels, Crowd crowd) {
+        if (search.is_within(effort.relative_gap) || !std::isfinite(search.bound)) return;
+        const double gap = effort.relative_gap * std::max(std::abs(search.bound), 1e-9);
+        StatePass labelled(question, graph, value, first, {std::min(labels, effort.most_labels), gap, crowd});
+        search.bound = std::min(search.bound, labelled.run(search.best));
+        search.bound_is_flown = labelled.bound_is_flown();
+    };
+    std::size_t labels = beam_labels;
+    if (search.bound_is_flown) {
+        labels *= times_more;  // of a search before: a good schedule is known
+    } else {
+        pass(labels, Crowd::drop_by_bound);
+        if (question.quick.cutoff_voltage_v > 0.0) pass(labels, Crowd::drop_by_charge);
+        if (effort.most_labels <= beam_labels) return;
+    }
+    do {
+        labels *= times_more;
+        pass(labels, Crowd::join);
+    } while (labels < effort.most_labels && !search.bound_is_flown);
+}
+
 }  // namespace
 
 KnapsackSolution search_schedule(const ScheduleQuestion& question, const KnapsackEffort& wanted_effort) {
-    constexpr std::size_t labels_at_first = 50;
-    constexpr std::size_t times_more = 10;
     const auto graph = graph_of(question);
     const auto effort = affordable(wanted_effort, graph);
+    const auto least = least_schedule(question, graph);
+    SearchState search;
+    if (least.end_percent >= question.reserve_soc_percent) search.best = least;
+    improve(question, graph, effort, search);
+    if (!search.is_within(effort.relative_gap) && search.bound_is_flown) {
+        // What keeps the bound up lands in the quick dynamics, but not in the exact ones.
+        const ScheduleQuestion closer{question.exact,   question.closer, question.closer,
+                                      question.choices, question.start,  question.reserve_soc_percent};
+        improve(closer, graph, effort, search);
+    }
     KnapsackSolution result;
     result.possible = true;
-    const auto finish = [&](const FoundSchedule& found, bool feasible, double bound) {
-        result.feasible = feasible;
-        result.choices = found.choices;
-        result.utility = found.utility;
-        result.cost = question.start.soc_percent - found.end_percent;
-        result.bound = bound;
-        return result;
-    };
-    const auto least = least_schedule(question, graph);
-    const auto value = make_schedule_value(question, graph, effort.value_cells);
-    // Behind the slots that are committed already.
-    StateLabel first{{0, graph.begin_choice, graph.begin}, question.start, graph.before_begin.utility};
-    if (!value.possible || !follow(question.dynamics, 0, first)) return finish(least, false, 0.0);
-    FoundSchedule best;
-    if (least.end_percent >= question.reserve_soc_percent) best = least;
-    set_bound(value, first);
-    double bound = first.bound;
-    // Where a cut-off may end flights, few labels dominate others: what is best but for that comes first.
-    bool is_proof = value.rc_high == value.rc_usual;
-    for (std::size_t labels = labels_at_first; std::isfinite(bound);) {
-        const double gap = effort.relative_gap * std::max(std::abs(bound), 1e-9);
-        if (bound - best.utility <= gap) break;
-        const auto most = std::min(labels, effort.most_labels);
-        const double found = StatePass(question, graph, value, first, {most, gap, is_proof}).run(best);
-        if (is_proof) bound = std::min(bound, found);
-        const bool is_last = labels >= effort.most_labels;
-        if (is_proof && is_last) break;
-        if (!is_proof && (is_last || found - best.utility <= gap)) {
-            is_proof = true;
-            labels = effort.most_labels;
-        } else {
-            labels *= times_more;
-        }
-    }
-    if (!std::isfinite(best.utility)) return finish(least, false, 0.0);
-    return finish(best, true, std::max(bound, best.utility));
+    result.feasible = std::isfinite(search.best.utility);
+    const auto& found = result.feasible ? search.best : least;
+    result.choices = found.choices;
+    result.utility = found.utility;
+    result.cost = question.start.soc_percent - found.end_percent;
+    result.bound = result.feasible ? std::max(search.bound, found.utility) : 0.0;
+    return result;
 }
 
 }  // namespace flightwatt::mission

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace flightwatt::mission {
@@ -19,7 +20,7 @@ struct ComputeRange {
 };
 
 ComputeRange range_of(const ScheduleQuestion& question, std::size_t slot) {
-    const auto& compute_w = question.dynamics.compute_w;
+    const auto& compute_w = question.quick.compute_w;
     if (const auto fixed = question.choices.slots[slot].fixed) return {compute_w[*fixed], compute_w[*fixed], *fixed};
     ComputeRange range{compute_w[0], compute_w[0], 0};
     for (std::size_t c = 0; c < compute_w.size(); ++c) {
@@ -53,14 +54,19 @@ SlopeRange slopes_in(const SlotDynamics& dynamics, double from_percent, double t
     return slopes;
 }
 
+/// No schedule that lands has less in the quick dynamics.
+double quick_reserve_percent(const ScheduleQuestion& question) {
+    return question.reserve_soc_percent - question.quick.error_percent;
+}
+
 bool fly_least(const ScheduleQuestion& question, ScheduleValue& value) {
     value.highest = {question.start};
-    for (std::size_t i = 0; i < question.dynamics.slots.size(); ++i) {
-        const auto after = after_slot(question.dynamics, i, range_of(question, i).least_choice, value.highest.back());
+    for (std::size_t i = 0; i < question.quick.slots.size(); ++i) {
+        const auto after = after_slot(question.quick, i, range_of(question, i).least_choice, value.highest.back());
         if (!after) return false;
         value.highest.push_back(*after);
     }
-    value.spare_percent = value.highest.back().soc_percent - question.reserve_soc_percent;
+    value.spare_percent = value.highest.back().soc_percent - quick_reserve_percent(question);
     return value.spare_percent >= 0.0;
 }
 
@@ -92,7 +98,7 @@ std::optional<CurrentBound> current_bound(double power_w, double source_v, doubl
 /// A volt of RC voltage costs current, the least at the least power, for as long as it lasts; with it goes a part of the charge, whose
 /// slope makes up for some of it.
 void set_rc_low(const ScheduleQuestion& question, ScheduleValue& value) {
-    const auto& dynamics = question.dynamics;
+    const auto& dynamics = question.quick;
     value.rc_low.assign(dynamics.slots.size() + 1, 0.0);
     if (dynamics.rc_resistance_ohm == 0.0) return;
     const double steepest =
@@ -111,12 +117,12 @@ void set_rc_low(const ScheduleQuestion& question, ScheduleValue& value) {
 
 double greatest_w(const ScheduleQuestion& question, std::size_t slot) {
     return (1.0 + between_samples) *
-           std::max(0.0, question.dynamics.slots[slot].greatest_mechanical_w + range_of(question, slot).greatest_w);
+           std::max(0.0, question.quick.slots[slot].greatest_mechanical_w + range_of(question, slot).greatest_w);
 }
 
 /// The greatest RC voltage of what lands; none if the power limit is near.
 std::optional<double> greatest_rc_v(const ScheduleQuestion& question, const ScheduleValue& value) {
-    const auto& dynamics = question.dynamics;
+    const auto& dynamics = question.quick;
     double power_w = 0.0;
     for (std::size_t i = 0; i < dynamics.slots.size(); ++i) power_w = std::max(power_w, greatest_w(question, i));
     const double rest_v = open_circuit_voltage_v(dynamics, lowest_percent(value, dynamics.slots.size()));
@@ -142,13 +148,15 @@ double outweighing_percent_per_v(const SlotDynamics& dynamics, double from_perce
 /// The same as set_rc_low from above: what a volt costs at most, as long as a cut-off or the power limit cannot end what
 /// lands otherwise; where they can, what outweighs it.
 void set_rc_high(const ScheduleQuestion& question, ScheduleValue& value) {
-    const auto& dynamics = question.dynamics;
+    const auto& dynamics = question.quick;
     value.rc_usual.assign(dynamics.slots.size() + 1, 0.0);
     value.rc_high.assign(dynamics.slots.size() + 1, 0.0);
+    value.rc_joined = value.rc_high;
     if (dynamics.rc_resistance_ohm == 0.0) return;
     const auto rc_v = greatest_rc_v(question, value);
     const double end_percent = lowest_percent(value, dynamics.slots.size());
     bool may_end = false;
+    double of_limit = 0.0;  // what a volt gives in a slot whose power the voltage limits
     for (std::size_t i = dynamics.slots.size(); i-- > 0;) {
         const double source_v = open_circuit_voltage_v(dynamics, lowest_percent(value, i + 1)) - rc_v.value_or(0.0);
         const auto bound = current_bound(greatest_w(question, i), source_v, dynamics.resistance_ohm);
@@ -160,8 +168,16 @@ void set_rc_high(const ScheduleQuestion& question, ScheduleValue& value) {
             usual = std::min(outweighs, relaxed(value.rc_usual[i + 1], bound->current_a_per_v * dynamics.percent_per_as,
                                                 decay_per_s, dynamics.slots[i].duration_s));
         }
-        may_end = may_end || !rc_v || !bound ||
-                  source_v - dynamics.resistance_ohm * bound->current_a < dynamics.cutoff_voltage_v;
+        const bool may_end_here =
+            !rc_v || !bound || source_v - dynamics.resistance_ohm * bound->current_a < dynamics.cutoff_voltage_v;
+        may_end = may_end || may_end_here;
+        const double duration_s = dynamics.slots[i].duration_s;
+        of_limit *= std::exp(-duration_s / dynamics.rc_time_constant_s);
+        if (may_end_here) {
+            const double percent_per_v = dynamics.percent_per_as * duration_s / std::max(1e-3, dynamics.resistance_ohm);
+            of_limit = std::max(of_limit, percent_per_v);
+        }
+        value.rc_joined[i] = of_limit + (std::isfinite(usual) ? (usual - value.rc_low[i]) / 2.0 : value.rc_low[i]);
         value.rc_usual[i] = usual;
         value.rc_high[i] = may_end ? outweighs : usual;
     }
@@ -192,7 +208,7 @@ double energy_j(const SlotDynamics& dynamics, std::size_t from, const ChoiceRun&
 void set_levels(const ScheduleQuestion& question, ScheduleValue& value) {
     constexpr std::size_t levels = 5;
     constexpr std::size_t cells_with_levels = 48;  // fewer cells are meant to be quick
-    const auto& dynamics = question.dynamics;
+    const auto& dynamics = question.quick;
     value.level_v.assign(dynamics.slots.size() + 1, 0.0);
     if (dynamics.rc_resistance_ohm == 0.0 || value.cells < cells_with_levels) return;
     value.levels = levels;
@@ -205,6 +221,32 @@ void set_levels(const ScheduleQuestion& question, ScheduleValue& value) {
         above_v = relaxed(above_v, steady_v / dynamics.rc_time_constant_s, 1.0 / dynamics.rc_time_constant_s,
                           dynamics.slots[i].duration_s);
         value.level_v[i + 1] = above_v / static_cast<double>(levels);
+    }
+}
+
+/// From the mission's end back, by bisection.
+void set_enough(const ScheduleQuestion& question, ScheduleValue& value) {
+    constexpr std::size_t steps = 40;
+    constexpr int halvings = 20;
+    const auto& dynamics = question.quick;
+    if (dynamics.cutoff_voltage_v == 0.0) return;
+    const std::size_t slots = dynamics.slots.size();
+    const auto levels = static_cast<double>(value.levels);
+    for (std::size_t i = 0; i <= slots; ++i)
+        value.enough_step_v.push_back(value.level_v[i] * levels / static_cast<double>(steps));
+    value.enough_percent.assign(slots + 1, std::vector<double>(steps + 1, quick_reserve_percent(question)));
+    for (std::size_t i = slots; i-- > 0;) {
+        for (std::size_t k = 0; k <= steps; ++k) {
+            const double rc_v = value.highest[i].rc_voltage_v + value.enough_step_v[i] * static_cast<double>(k);
+            double too_low = lowest_percent(value, i);
+            double high = value.highest[i].soc_percent;
+            for (int halving = 0; halving < halvings; ++halving) {
+                const double middle = std::midpoint(too_low, high);
+                const auto after = after_slot(dynamics, i, range_of(question, i).least_choice, {middle, rc_v});
+                (after && may_land(value, i + 1, *after) ? high : too_low) = middle;
+            }
+            value.enough_percent[i][k] = too_low;
+        }
     }
 }
 
@@ -228,7 +270,7 @@ RunReach reach_of(const SlotDynamics& dynamics, const ScheduleValue& value, std:
         for (std::size_t j = 0; j < charges; ++j) {
             const double start_percent = lowest_percent(value, from) + cell_percent(value) * static_cast<double>(j);
             const auto end = after_run(dynamics, from, run, {start_percent, level_rc_v(value, from, level)});
-            if (!end) continue;
+            if (!end || !may_land(value, run.to, *end)) continue;
             reach.end[level * charges + j] = effective_charge(value, run.to, *end);
             if (lower_end) {
                 const double source_v = open_circuit_voltage_v(dynamics, start_percent);
@@ -257,8 +299,8 @@ void add_run_points(const ScheduleValue& value, std::size_t from, std::size_t le
 
 /// The curves of one slot, of those behind it.
 void set_curves(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t i, ScheduleValue& value) {
-    for (const auto& run : graph.runs[i]) value.runs[i].push_back(reach_of(question.dynamics, value, i, run));
-    for (const auto& run : graph.one_more[i]) value.one_more[i].push_back(reach_of(question.dynamics, value, i, run));
+    for (const auto& run : graph.runs[i]) value.runs[i].push_back(reach_of(question.quick, value, i, run));
+    for (const auto& run : graph.one_more[i]) value.one_more[i].push_back(reach_of(question.quick, value, i, run));
     if (!graph.one_more[i].empty()) value.with[i].resize(graph.choices);
     for (std::size_t level = 0; level < value.levels; ++level) {
         std::vector<CurvePoint> points;
@@ -283,13 +325,24 @@ ScheduleValue make_schedule_value(const ScheduleQuestion& question, const Knapsa
     set_rc_low(question, value);
     set_rc_high(question, value);
     set_levels(question, value);
+    set_enough(question, value);
     value.any.resize(graph.slots + 1);
     value.with.resize(graph.slots + 1);
     value.runs.resize(graph.slots);
     value.one_more.resize(graph.slots);
-    value.any.back().assign(value.levels, {{{question.reserve_soc_percent, 0.0}}});
+    value.any.back().assign(value.levels, {{{quick_reserve_percent(question), 0.0}}});
     for (std::size_t i = graph.slots; i-- > graph.begin;) set_curves(question, graph, i, value);
     return value;
+}
+
+bool may_land(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state) {
+    if (value.enough_percent.empty()) return true;
+    const auto& enough = value.enough_percent[slot];
+    const double step_v = value.enough_step_v[slot];
+    const double above_v = state.rc_voltage_v - value.highest[slot].rc_voltage_v;
+    const double most = static_cast<double>(enough.size() - 1);
+    const double steps = step_v > 0.0 ? std::clamp(std::floor(above_v / step_v), 0.0, most) : 0.0;
+    return state.soc_percent >= enough[static_cast<std::size_t>(steps)];
 }
 
 EffectiveCharge effective_charge(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state) {

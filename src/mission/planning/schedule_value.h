@@ -11,7 +11,9 @@ namespace flightwatt::mission {
 
 /// A question to search schedules for: which choice to run in each slot, so that the battery lands with the reserve.
 struct ScheduleQuestion {
-    const SlotDynamics& dynamics;
+    const SlotDynamics& exact;
+    const SlotDynamics& quick;              ///< in longer steps, for the many states that are compared
+    const SlotDynamics& closer;             ///< in between, where `quick` cannot tell
     const MultipleChoiceKnapsack& choices;  ///< its costs and its budget count for nothing
     battery::BatteryState start;
     double reserve_soc_percent = 0.0;
@@ -43,8 +45,14 @@ struct ScheduleValue {
     std::vector<double> rc_low;  ///< [points/V] at each slot's start
     std::vector<double> rc_high;
     std::vector<double> rc_usual;  ///< rc_high, if neither a cut-off nor the power limit ends what lands otherwise
-    std::size_t levels = 1;        ///< of RC voltage, from the course's on
-    std::vector<double> level_v;   ///< from one to the next, at each slot's start
+    /// By which leaving out a volt makes a state better, about: beyond rc_low, and where the voltage limits the power.
+    std::vector<double> rc_joined;
+    std::size_t levels = 1;       ///< of RC voltage, from the course's on
+    std::vector<double> level_v;  ///< from one to the next, at each slot's start
+    /// Where there is a cut-off: with less than this charge not even the least power keeps the battery from it. At each
+    /// slot's start, for RC voltages from the course's on, in equal steps.
+    std::vector<std::vector<double>> enough_percent;
+    std::vector<double> enough_step_v;
     std::vector<std::vector<ConcaveCurve>> any;  ///< of each level, over effective charge; free to begin a run
     std::vector<std::vector<std::vector<ConcaveCurve>>> with;  ///< while a choice runs that may go on; none: as any
     std::vector<std::vector<RunReach>> runs;                   ///< as the graph's
@@ -55,6 +63,9 @@ struct ScheduleValue {
 ScheduleValue make_schedule_value(const ScheduleQuestion& question, const KnapsackGraph& graph, std::size_t cells);
 
 EffectiveCharge effective_charge(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state);
+
+/// Whether the course of least power may land from a state; nothing else lands otherwise.
+bool may_land(const ScheduleValue& value, std::size_t slot, const battery::BatteryState& state);
 
 /// The bound of what can follow while a choice runs.
 double utility_to_go(const ScheduleValue& value, std::size_t slot, std::size_t choice, const EffectiveCharge& charge);

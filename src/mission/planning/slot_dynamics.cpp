@@ -13,6 +13,8 @@ namespace {
 constexpr double longest_step_s = 1.0;
 constexpr double shortest_step_s = 0.05;
 constexpr double wanted_agreement_percent = 1e-7;
+constexpr double longest_quick_step_s = 2.0;
+constexpr double quick_agreement_percent = quick_error_percent / 10.0;
 
 /// One slot as it is integrated: the line of the open-circuit voltage in which the charge was last seen is remembered.
 class SlotRates {
@@ -35,7 +37,7 @@ class SlotRates {
         rate.source_v = std::max(0.0, open_circuit_v(soc_percent) - rc_v);
         const double discriminant =
             rate.source_v * rate.source_v - 4.0 * dynamics_.resistance_ohm * power_w;  // of Eq. 27
-        rate.is_deliverable = discriminant >= 0.0;
+        rate.is_deliverable = discriminant >= -2.0 * dynamics_.error_v * rate.source_v;
         const double twice_v = rate.source_v + std::sqrt(std::max(0.0, discriminant));
         rate.current_a = power_w == 0.0 ? 0.0 : 2.0 * power_w / twice_v;
         rate.percent_per_s = -dynamics_.percent_per_as * rate.current_a;
@@ -134,7 +136,7 @@ std::optional<battery::BatteryState> after_part(const SlotDynamics& dynamics, co
                                                 SlotRates& rates, const battery::BatteryState& state) {
     const double step_s = part.step_s;
     const auto& mechanical_w = part.mechanical_w;
-    CutOffWatch watch(dynamics.cutoff_voltage_v);
+    CutOffWatch watch(dynamics.cutoff_voltage_v - dynamics.error_v);
     double soc = state.soc_percent;
     double rc = state.rc_voltage_v;
     for (std::size_t k = 0;; k += 2) {
@@ -166,6 +168,21 @@ std::optional<double> end_percent(const SlotDynamics& dynamics, std::size_t choi
     return state.soc_percent;
 }
 
+MissionSetup without_cut_off(MissionSetup mission) {
+    mission.cutoff_voltage_v = 0.0;
+    return mission;
+}
+
+/// Whether missions that run one choice throughout end alike, where they do.
+bool agree(const SlotDynamics& a, const SlotDynamics& b, double soc_percent, double within_percent) {
+    for (std::size_t choice = 0; choice < a.compute_w.size(); ++choice) {
+        const auto end = end_percent(a, choice, soc_percent);
+        const auto other = end_percent(b, choice, soc_percent);
+        if (end && other && std::abs(*end - *other) > within_percent) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
@@ -183,8 +200,7 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
 
 double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
                 const std::vector<double>& compute_w) {
-    auto uncut = mission;
-    uncut.cutoff_voltage_v = 0.0;
+    const auto uncut = without_cut_off(mission);
     double step_s = longest_step_s;
     if (mission.battery.thevenin && mission.battery.thevenin->rc_resistance_ohm > 0.0)
         step_s = std::min(step_s, mission.battery.thevenin->rc_time_constant_s / 2.0);
@@ -193,17 +209,25 @@ double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& sl
     auto dynamics = make_slot_dynamics(uncut, slots, extremes, step_s);
     while (step_s > shortest_step_s) {
         auto halved = make_slot_dynamics(uncut, slots, extremes, step_s / 2.0);
-        bool agrees = true;
-        for (std::size_t choice = 0; choice < extremes.size(); ++choice) {
-            const auto end = end_percent(dynamics, choice, mission.initial_soc_percent);
-            const auto halved_end = end_percent(halved, choice, mission.initial_soc_percent);
-            if (end && halved_end) agrees = agrees && std::abs(*end - *halved_end) <= wanted_agreement_percent;
-        }
-        if (agrees) break;
+        if (agree(dynamics, halved, mission.initial_soc_percent, wanted_agreement_percent)) break;
         step_s /= 2.0;
         dynamics = std::move(halved);
     }
     return step_s;
+}
+
+double quick_step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
+                      const std::vector<double>& compute_w, double step_s) {
+    const auto uncut = without_cut_off(mission);
+    const auto [least, most] = std::ranges::minmax_element(compute_w);
+    const std::vector<double> extremes{*least, *most};
+    const auto exact = make_slot_dynamics(uncut, slots, extremes, step_s);
+    double quick_s = step_s;
+    while (quick_s * 2.0 <= longest_quick_step_s &&
+           agree(exact, make_slot_dynamics(uncut, slots, extremes, quick_s * 2.0), mission.initial_soc_percent,
+                 quick_agreement_percent))
+        quick_s *= 2.0;
+    return quick_s;
 }
 
 std::optional<battery::BatteryState> after_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,

@@ -37,7 +37,14 @@ struct SlotDynamics {
     double rc_time_constant_s = 1.0;
     double percent_per_as = 0.0;    ///< points that one ampere takes in one second
     double cutoff_voltage_v = 0.0;  ///< 0: never
+    // By what long steps are off at most. A battery that fails by less is let live.
+    double error_percent = 0.0;
+    double error_v = 0.0;
 };
+
+/// What steps of quick_step_for are taken to be off by at most.
+constexpr double quick_error_percent = 2e-4;
+constexpr double quick_error_v = 1e-4;
 
 /// The dynamics of parts of a mission's phases, with the mechanical power times a factor. Steps are at most `step_s`.
 SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
@@ -47,6 +54,11 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
 /// points, of the steps tried: 1 s (or half the RC time constant), and halves of that down to 0.05 s.
 double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
                 const std::vector<double>& compute_w);
+
+/// A longer step, of at most 2 s, for the many states that a search only compares: doubled while the ends of both schedules move by less
+/// than a tenth of quick_error_percent.
+double quick_step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
+                      const std::vector<double>& compute_w, double step_s);
 
 /// The battery at the end of a slot; none if it was cut off (by a parabola through the voltages at the start,
 /// middle and end of each step), or could not deliver at the start or the end of a step. State of charge goes on below

@@ -81,7 +81,12 @@ double LandingChance::spare_percent(double probability) const {
            (student_below(1.0 - probability, degrees_of_freedom) - student_below(below, degrees_of_freedom));
 }
 
-LandingChance landing_chance(const Mission& mission, const FlightSpreads& spreads, double probability) {
+namespace {
+
+/// With at most so many lines; `is_known(below, wanted, lines)` says when the chance is known.
+template <typename IsKnown>
+LandingChance chance_of(const Mission& mission, const FlightSpreads& spreads, double probability,
+                        std::size_t most_lines_flown, const IsKnown& is_known_of) {
     require_probability(probability);
     FlightLines lines(mission, spreads);
     LandingChance result;
@@ -91,18 +96,33 @@ LandingChance landing_chance(const Mission& mission, const FlightSpreads& spread
     result.below = result.stated_spare_percent < 0.0 ? 1.0 : 0.0;
     if (result.sd_percent == 0.0) return result;
     const double wanted = 1.0 - probability;
-    const auto is_known = [&](const ChanceBelow& below) {
+    const auto is_known = [&](const ChanceBelow& below) { return is_known_of(below, wanted, lines); };
+    auto below = turned(lines, mission.reserve_soc_percent, is_known);
+    while (!is_known(below) && below.lines() < most_lines_flown && lines.flown() < most_flights) below.double_lines();
+    result.below = below.chance();
+    result.standard_error = below.standard_error();
+    return result;
+}
+
+}  // namespace
+
+LandingChance landing_chance(const Mission& mission, const FlightSpreads& spreads, double probability) {
+    const auto is_known = [](const ChanceBelow& below, double wanted, const FlightLines& lines) {
         const double error = below.standard_error();
         const double above_wanted = below.chance() - wanted;
         if (above_wanted > far_in_standard_errors * error) return true;
         if (lines.some_fail() && below.lines() < fewest_lines_if_some_fail) return false;
         return error <= exact_enough(wanted) || (lines.some_fail() && -above_wanted > far_in_standard_errors * error);
     };
-    auto below = turned(lines, mission.reserve_soc_percent, is_known);
-    while (!is_known(below) && below.lines() < most_lines && lines.flown() < most_flights) below.double_lines();
-    result.below = below.chance();
-    result.standard_error = below.standard_error();
-    return result;
+    return chance_of(mission, spreads, probability, most_lines, is_known);
+}
+
+LandingChance rough_landing_chance(const Mission& mission, const FlightSpreads& spreads, double probability) {
+    constexpr std::size_t few_lines = 128;
+    const auto is_known = [](const ChanceBelow& below, double wanted, const FlightLines&) {
+        return std::abs(below.chance() - wanted) > far_in_standard_errors * below.standard_error();
+    };
+    return chance_of(mission, spreads, probability, few_lines, is_known);
 }
 
 LandingQuantile landing_quantile(const Mission& mission, const FlightSpreads& spreads, double probability) {

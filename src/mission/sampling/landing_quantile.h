@@ -32,6 +32,10 @@ struct LandingChance {
 /// independently of any --samples. Throws std::invalid_argument for a probability not from 0.5 to below 1.
 LandingChance landing_chance(const Mission& mission, const FlightSpreads& spreads, double probability);
 
+/// The same from few lines, 64 or 128: on which side of 1 - `probability` it is, but for missions near that or whose
+/// flights seldom fail. For a search whose answer landing_chance then checks.
+LandingChance rough_landing_chance(const Mission& mission, const FlightSpreads& spreads, double probability);
+
 /// The state of charge that the same flights land with or above with `probability`, by the same lines. Throws as
 /// landing_chance does.
 LandingQuantile landing_quantile(const Mission& mission, const FlightSpreads& spreads, double probability);

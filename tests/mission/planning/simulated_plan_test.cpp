@@ -121,6 +121,29 @@ TEST_P(SmallMissions, HaveNoBetterScheduleThanThePlan) {
 // All schedules of 6 and 8 take seconds.
 INSTANTIATE_TEST_SUITE_P(Generated, SmallMissions, testing::Values(1U, 2U, 3U, 4U, 5U, 7U, 9U, 10U, 11U, 12U));
 
+TEST(SimulatedPlan, IsProvenForManySlotsAndChoices) {
+    for (const unsigned seed : {1U, 2U, 3U}) {
+        for (const bool dwells : {false, true}) {
+            const auto made = test::SmallMissionGenerator(seed).make_long(dwells, false);
+            EXPECT_GT(slots_of(made.problem).size(), 60U);
+            const auto plan = plan_mission(made.problem);
+            ASSERT_TRUE(plan.plan.feasible) << seed;
+            EXPECT_TRUE(plan.summary.keeps_reserve) << seed;
+            EXPECT_LE(plan.plan.bound, *plan.summary.utility * (1.0 + 1e-4)) << seed << ' ' << made.kind;
+        }
+    }
+}
+
+TEST(SimulatedPlan, UsesWhatATightCutOffLeaves) {
+    // What nothing but the least power at the end can land with: most of the power of a beam is cut off there.
+    const auto made = test::SmallMissionGenerator(4).make_long(false, true);
+    const auto plan = plan_mission(made.problem);
+    ASSERT_TRUE(plan.plan.feasible);
+    EXPECT_TRUE(plan.summary.keeps_reserve);
+    EXPECT_GT(*plan.summary.utility, 1.2 * *simulate(with_minimum_energy_schedule(made.problem)).summary.utility);
+    EXPECT_LE(plan.plan.bound, *plan.summary.utility * 1.05);
+}
+
 TEST(SimulatedPlan, IsNotCutOff) {
     const auto mission = thevenin_plan(20.0, 11.0)(1800.0);
     const auto plan = plan_mission(mission);

@@ -3,6 +3,9 @@
 #include "battery/discharge.h"
 #include "helpers/small_missions.h"
 
+#include <optional>
+#include <random>
+
 #include <gtest/gtest.h>
 
 namespace flightwatt::mission {
@@ -33,6 +36,35 @@ battery::Discharge discharged(const Prepared& made, std::size_t slot, std::size_
     const auto power = [&](double time_s) { return power_w(segment, time_s); };
     return discharge(made.problem.battery, {power, segment.start_s, segment.end_s}, state,
                      {0.1, made.problem.cutoff_voltage_v});
+}
+
+TEST(SlotDynamics, AreOffByLittleInQuickSteps) {
+    std::mt19937 random(3);
+    int longer = 0;
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        const auto made = prepared(seed);
+        const auto& compute_w = made.dynamics.compute_w;
+        const double step_s = step_for(made.problem, made.slots, compute_w);
+        const double quick_s = quick_step_for(made.problem, made.slots, compute_w, step_s);
+        longer += quick_s > step_s ? 1 : 0;
+        auto quick = make_slot_dynamics(made.problem, made.slots, compute_w, quick_s);
+        quick.error_v = quick_error_v;
+        std::uniform_int_distribution<std::size_t> any(0, made.runs.size() - 1);
+        for (int schedule = 0; schedule < 20; ++schedule) {
+            std::optional<battery::BatteryState> exact(battery::BatteryState{made.problem.initial_soc_percent});
+            auto quickly = exact;
+            for (std::size_t i = 0; i < made.slots.size() && exact && exact->soc_percent > 0.0; ++i) {
+                const auto choice = any(random);
+                exact = after_slot(made.dynamics, i, choice, *exact);
+                quickly = after_slot(quick, i, choice, *quickly);
+                ASSERT_TRUE(!exact || quickly) << seed << ": what lives lives with the error let pass";
+                if (!exact) break;
+                EXPECT_NEAR(exact->soc_percent, quickly->soc_percent, quick_error_percent) << seed;
+                EXPECT_NEAR(exact->rc_voltage_v, quickly->rc_voltage_v, quick_error_v) << seed;
+            }
+        }
+    }
+    EXPECT_GT(longer, 10);
 }
 
 TEST(SlotDynamics, AgreeWithTheDischarge) {

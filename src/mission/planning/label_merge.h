@@ -1,0 +1,42 @@
+#pragma once
+
+#include "mission/planning/schedule_value.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace flightwatt::mission {
+
+/// A part of a schedule that ends with a run; `before` is where the run before stands in the trail.
+struct RunStep {
+    std::size_t before = 0;
+    std::size_t choice = 0;
+    std::size_t to = 0;
+};
+
+/// Schedules of the first slots that leave nearly the same: one of them by its last run, and a state and a utility that
+/// none of them is better than.
+struct StateLabel : RunStep {
+    battery::BatteryState state;
+    double utility = 0.0;
+    EffectiveCharge charge = {};
+    double weighed_percent = 0.0;  ///< the charge less what its RC voltage costs at least
+    double bound = 0.0;            ///< nothing that begins so has more utility
+};
+
+/// What counts when labels of a slot are compared.
+struct MergeWeights {
+    double rc_low = 0.0;  ///< [points/V] as in ScheduleValue
+    double rc_high = 0.0;
+    double rc_joined = 0.0;
+    double utility_per_percent = 0.0;  ///< about
+    double as_good = 0.0;              ///< a utility that counts for nothing
+};
+
+/// Labels, given in the order of their weighed charge, without those that another one is as good as: that has as much
+/// charge and, with RC voltage weighed by what it may cost at most, as much again; or no more RC voltage, where that may
+/// end a flight. Of the others, those that differ by less than `tolerance`, a utility, become one that none of them is
+/// better than.
+std::vector<StateLabel> merged(const std::vector<StateLabel>& labels, const MergeWeights& weights, double tolerance);
+
+}  // namespace flightwatt::mission
