@@ -30,9 +30,8 @@ double positive(const TomlTable& table, std::string_view key) { return number_in
 double not_negative(const TomlTable& table, std::string_view key) { return number_in(at_least(0.0), table, key); }
 
 /// Two lists, low and high, as intervals.
-std::vector<Interval> read_interval_list(const TomlTable& table, const std::string& name, std::size_t count) {
-    const auto low_key = name + "_low_w";
-    const auto high_key = name + "_high_w";
+std::vector<Interval> read_interval_list(const TomlTable& table, std::string_view low_key, std::string_view high_key,
+                                         std::size_t count) {
     const auto low = table.numbers(low_key);
     const auto high = table.numbers(high_key);
     std::vector<Interval> intervals;
@@ -61,7 +60,8 @@ Interval read_interval(const TomlTable& table, std::string_view key) {
 
 CoefficientIntervals read_intervals(const TomlTable& table, std::size_t order) {
     CoefficientIntervals intervals{read_interval(table, "omega_rad_per_s"), read_interval(table, "a0_w"),
-                                   read_interval_list(table, "cos", order), read_interval_list(table, "sin", order)};
+                                   read_interval_list(table, "cos_low_w", "cos_high_w", order),
+                                   read_interval_list(table, "sin_low_w", "sin_high_w", order)};
     table.refuse_unknown_keys();
     return intervals;
 }

@@ -36,23 +36,6 @@ std::vector<std::string> model_warnings(const MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         warn_of_negative_power(to_string(phase), fitted, warnings);
-        if (fitted.edge_samples > 0) {
-            warnings.push_back(
-                fmt::format("{}: {} sample{} left out at its ends: the power is that of the neighbouring phase",
-                            to_string(phase), fitted.edge_samples, fitted.edge_samples == 1 ? " was" : "s were"));
-        }
-        if (fitted.mean_curve) {
-            warnings.push_back(
-                fmt::format("{}: the samples leave the frequency open: the curve is the mean over all that may be, and "
-                            "its constants stand for that curve alone",
-                            to_string(phase)));
-        }
-        if (fitted.not_negative) {
-            warnings.push_back(fmt::format(
-                "{}: the curve would fall below 0 W, or below the negative power that was measured, and was "
-                "held above",
-                to_string(phase)));
-        }
         if (!fitted.errors || !fitted.errors->noise_lasts) continue;
         warnings.push_back(
             fmt::format("{}: the noise of neighbouring samples is as alike as can be told from the curve "
@@ -60,6 +43,31 @@ std::vector<std::string> model_warnings(const MechanicalModel& model) {
                         to_string(phase), fitted.errors->autocorrelation));
     }
     return warnings;
+}
+
+std::vector<std::string> fit_notes(const MechanicalModel& model) {
+    std::vector<std::string> notes;
+    for (const auto phase : flight::all_phases) {
+        const auto& fitted = model.phases[phase];
+        if (fitted.edge_samples > 0) {
+            notes.push_back(
+                fmt::format("{}: {} sample{} left out at its ends: the power is that of the neighbouring phase",
+                            to_string(phase), fitted.edge_samples, fitted.edge_samples == 1 ? " was" : "s were"));
+        }
+        if (fitted.mean_curve) {
+            notes.push_back(
+                fmt::format("{}: the samples leave the frequency open: the curve is the mean over all that may be, and "
+                            "its constants stand for that curve alone",
+                            to_string(phase)));
+        }
+        if (fitted.not_negative) {
+            notes.push_back(fmt::format(
+                "{}: the curve would fall below 0 W, or below the negative power that was measured, and was "
+                "held above",
+                to_string(phase)));
+        }
+    }
+    return notes;
 }
 
 }  // namespace flightwatt::mechanical

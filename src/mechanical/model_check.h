@@ -12,4 +12,8 @@ namespace flightwatt::mechanical {
 /// for as long as the phase lasts (autocorrelation at highest_autocorrelation).
 std::vector<std::string> model_warnings(const MechanicalModel& model);
 
+/// How the fit came to its curves where that is not least squares of all samples, a line each: samples that were left
+/// out, a mean over frequencies, a curve that was held above 0 W.
+std::vector<std::string> fit_notes(const MechanicalModel& model);
+
 }  // namespace flightwatt::mechanical

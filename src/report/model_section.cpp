@@ -22,6 +22,7 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
     section.html += paragraph(model.origin, "soft");
     if (!model.model.description.empty()) section.html += paragraph(model.model.description);
     for (const auto& warning : model_warnings(model.model)) section.html += paragraph(warning, "warning");
+    for (const auto& note : fit_notes(model.model)) section.html += paragraph(note);
     add_figure(section, model_figure(model.model, model.bands, published, id + "-curves"));
     if (model.table_one) {
         section.html += "<h3>Table I</h3>\n";

@@ -221,7 +221,8 @@ TEST(RealFlights, ConvergeToAModel) {
             }
         }
         const double fitted_w = energy_j(fitted.fourier, fitted.duration_s) / fitted.duration_s;
-        EXPECT_NEAR(fitted_w, measured_w, 0.05 * measured_w + 0.2) << to_string(phase);
+        // A landing that is held above 0 W is not least squares.
+        EXPECT_NEAR(fitted_w, measured_w, 0.05 * measured_w + (fitted.not_negative ? 0.5 : 0.2)) << to_string(phase);
     }
     // It is written as a model that can be read again.
     const auto file = test::scratch_dir() / "model.toml";

@@ -121,6 +121,7 @@ nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
         json["flights"].push_back({{"flight", flight.flight}, {"weights", weights}});
     }
     json["warnings"] = model_warnings(model);
+    json["notes"] = fit_notes(model);
     return json;
 }
 
@@ -135,6 +136,7 @@ void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& mod
                                                                                          : fitted.range->high_rad));
     }
     for (const auto& warning : model_warnings(model)) warn(call, warning);
+    for (const auto& text : fit_notes(model)) note(call, text);
 }
 
 void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,
