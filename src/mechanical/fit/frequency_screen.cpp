@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace flightwatt::mechanical {
@@ -93,7 +94,55 @@ double screened_log_likelihood(const ScreenedFlight& flight, const ScreenGrid& g
     return -0.5 * (whitened.log_determinant + freedom * std::log(std::max(square_sum, 1e-300))) + log_spectrum;
 }
 
+/// Least sums of squares of all flights at a frequency.
+struct SquareSum {
+    double sum = 0.0;
+    double most_correlation = 0.0;  ///< of neighbouring residuals, of the flight that has most
+};
+
+/// None where a flight determines no series.
+std::optional<SquareSum> square_sum_at(std::span<const ScaledSamples> flights, int order, double theta_rad) {
+    SquareSum square;
+    for (const auto& samples : flights) {
+        const auto at = flight_at(samples, order, theta_rad);
+        if (!at) return std::nullopt;
+        const Eigen::VectorXd residuals = at->columns.rightCols(1);
+        const auto pairs = residuals.size() - 1;
+        const double own = residuals.squaredNorm();
+        if (!(own > 0.0)) return std::nullopt;
+        square.most_correlation =
+            std::max(square.most_correlation, residuals.head(pairs).dot(residuals.tail(pairs)) / own);
+        square.sum += own;
+    }
+    return square;
+}
+
 }  // namespace
+
+bool is_one_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                      double found_rad) {
+    constexpr std::size_t least_samples = 100;
+    constexpr double most_correlation = 0.5;
+    constexpr double least_log_ratio = 25.0;
+    const double beside_rad = 0.5 / order;
+    if (found_rad - beside_rad <= range.low_rad || found_rad + beside_rad >= range.high_rad) return false;
+    if (std::ranges::any_of(flights, [](const auto& flight) { return flight.tau.size() < least_samples; }))
+        return false;
+    const auto best = square_sum_at(flights, order, found_rad);
+    if (!best || best->most_correlation > most_correlation) return false;
+    double samples = 0.0;
+    for (const auto& flight : flights) samples += static_cast<double>(flight.tau.size());
+    samples *= (1.0 - best->most_correlation) / (1.0 + best->most_correlation);
+    const double least_worse = best->sum * std::exp(2.0 * least_log_ratio / samples);
+    for (const double theta_rad : {found_rad - beside_rad, found_rad + beside_rad}) {
+        const auto beside = square_sum_at(flights, order, theta_rad);
+        if (!beside || beside->sum < least_worse) return false;
+    }
+    const auto scan = scan_frequencies(flights, order, range);
+    for (std::size_t i = 0; i < scan.theta_rad.size(); ++i)
+        if (std::abs(scan.theta_rad[i] - found_rad) > beside_rad && scan.square_sum[i] < least_worse) return false;
+    return true;
+}
 
 std::vector<double> coarse_autocorrelations(double highest) {
     constexpr int intervals = 6;

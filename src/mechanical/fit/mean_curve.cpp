@@ -3,6 +3,7 @@
 #include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/frequency_posterior.h"
+#include "mechanical/fit/frequency_screen.h"
 
 #include <algorithm>
 #include <array>
@@ -295,13 +296,30 @@ bool is_another(const CurveGrid& grid) {
     return difference_w > std::max(least_difference * grid.sd_w, rounding_of_curve * size_w);
 }
 
+/// Whether no curve falls below its floor.
+bool stays_above(std::span<const PhaseSamples> flights, const PhaseFit& fit) {
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const auto& fourier = fit.flights[i].fourier;
+        const double duration_s = fit.flights[i].duration_s;
+        const auto points = points_of_curve(fourier, duration_s);
+        const double floor_w = least_power_w(flights[i]);
+        for (std::size_t k = 0; k < points; ++k) {
+            const double part = (static_cast<double>(k) + 0.5) / static_cast<double>(points);
+            if (power_w(fourier, part * duration_s) < floor_w) return false;
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
 void settle_curves(std::span<const PhaseSamples> flights, PhaseFit& fit) {
     const auto order = static_cast<int>(fit.flights.front().fourier.cos_w.size());
     if (order == 0 || is_constant(flights)) return;
     std::vector<ScaledSamples> values;
-    for (std::size_t i = 0; i < flights.size(); ++i) values.push_back(fitted_values(flights[i], fit.flights[i], fit));
+    for (std::size_t i = 0; i < flights.size(); ++i)
+        values.push_back(in_order_of_time(fitted_values(flights[i], fit.flights[i], fit)));
+    if (stays_above(flights, fit) && is_one_frequency(values, order, fit.range, fit.theta_rad)) return;
     auto posterior = frequency_posterior(values, {order, fit.range, fit.theta_rad});
     const auto grid = curve_grid(flights, fit, posterior);
     NearSeries near{fit.theta_rad, Eigen::MatrixXd(coefficient_count(order), grid.mean.cols())};
