@@ -69,7 +69,8 @@ TEST(MotionBins, CountSpeedAsHeight) {
     // Slowing down at a constant height is a descent in energy.
     auto slowing = some_series();
     slowing.tracks[3] = track("airspeed_m_per_s", 1.0, [](double t) { return 16.0 - 0.01 * t; });
-    const auto& bin = motion(slowing).bins[1];
+    const auto slowed = motion(slowing);
+    const auto& bin = slowed.bins[1];
     EXPECT_LT(bin.values[PowerTerm::descent], -0.01);
     EXPECT_EQ(bin.values[PowerTerm::descent], bin.values[PowerTerm::climb]);
 }
