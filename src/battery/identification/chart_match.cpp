@@ -118,6 +118,7 @@ double log_likelihood(const Compared& shown, double capacity_ah, double missing_
 std::vector<double> capacities(const ShownCurve& shown, std::optional<double> given_ah) {
     if (given_ah) return {*given_ah};
     std::vector<double> tried;
+    tried.reserve(capacities_tried);
     for (int i = 0; i < capacities_tried; ++i)
         tried.push_back(shown.charge_ah.back() *
                         std::pow(most_times_shown, static_cast<double>(i) / (capacities_tried - 1)));

@@ -84,8 +84,11 @@ ExtendedCurve extended_curve(const CircuitFit& fit, const std::vector<double>& s
     extended.known_up_to_percent = known_from;
     const int cells = fit.weights.cells;
     const AddedKnots below{known_to, fit.open_circuit_v.back(), standard_error_v.back(), cells};
-    for (double percent = 0.0; percent < extended.known_down_to_percent - 0.5; percent += added_step_percent)
+    double percent = 0.0;
+    while (percent < extended.known_down_to_percent - 0.5) {
         add_knot(extended, below, percent);
+        percent += added_step_percent;
+    }
     for (std::size_t i = fit.knots_ah.size(); i-- > 0;) {
         // Knots beyond a capacity that was given are of no use, but for the last that is.
         if (i > 0 && soc_at(fit.knots_ah[i - 1]) <= 0.0) continue;

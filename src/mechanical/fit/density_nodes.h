@@ -25,6 +25,7 @@ std::vector<DensityNode> resolve_density(const LogDensity& log_density, const st
     constexpr int most_rounds = 40;
     constexpr std::size_t most_nodes = 600;
     std::vector<DensityNode> nodes;
+    nodes.reserve(starts.size());
     for (const double place : starts) nodes.push_back({place, log_density(place)});
     for (int round = 0; round < most_rounds && nodes.size() < most_nodes; ++round) {
         const double top = std::ranges::max_element(nodes, {}, &DensityNode::log_density)->log_density;

@@ -108,6 +108,7 @@ std::vector<double> starts_of(std::span<const ScaledSamples> flights, const Post
     std::ranges::sort(tried);
     tried.erase(std::unique(tried.begin(), tried.end()), tried.end());
     std::vector<CoarseNode> nodes;
+    nodes.reserve(tried.size());
     for (const double theta_rad : tried) nodes.push_back(coarse_node(flights, options, highest, theta_rad));
     std::vector<CoarseNode> maxima;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -150,6 +151,7 @@ PosteriorNode posterior_node(const FlightsAt& flights, double theta_rad, double 
 Eigen::MatrixXd curve_gram(int order, double theta_rad) {
     constexpr int points = 64;
     std::vector<double> tau;
+    tau.reserve(points);
     for (int i = 0; i < points; ++i) tau.push_back((i + 0.5) / points);
     const auto basis = fourier_basis(tau, order, theta_rad);
     return basis.transpose() * basis / points;
@@ -245,6 +247,7 @@ FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> unsorted, 
     const auto density = resolve_density(log_density, starts);
     std::ranges::sort(known, {}, &std::pair<double, FrequencyNode>::first);
     std::vector<FrequencyNode> nodes;
+    nodes.reserve(known.size());
     for (auto& [theta_rad, node] : known) nodes.push_back(std::move(node));
     const double top = std::ranges::max_element(density, {}, &DensityNode::log_density)->log_density;
     if (top <= no_likelihood) throw NoAnswerError("the times of the samples determine no series at any frequency");

@@ -189,6 +189,7 @@ std::vector<double> promising_frequencies(std::span<const ScaledSamples> flights
     std::ranges::stable_sort(found, std::greater(), &std::pair<double, double>::first);
     if (found.size() > most_frequencies) found.resize(most_frequencies);
     std::vector<double> frequencies;
+    frequencies.reserve(found.size());
     for (const auto& [likelihood, theta_rad] : found) frequencies.push_back(theta_rad);
     std::ranges::sort(frequencies);
     return frequencies;

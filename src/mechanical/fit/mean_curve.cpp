@@ -172,9 +172,10 @@ std::vector<double> candidates(const FrequencyPosterior& posterior, const PhaseF
     weights.resize(std::min(weights.size(), most_candidates));
     std::vector<double> frequencies{fit.theta_rad};
     for (const auto& [weight, theta_rad] : weights) frequencies.push_back(theta_rad);
-    for (double theta_rad = fit.range.low_rad; theta_rad < std::min(low_end_rad, fit.range.high_rad);
-         theta_rad += low_step_rad) {
+    double theta_rad = fit.range.low_rad;
+    while (theta_rad < std::min(low_end_rad, fit.range.high_rad)) {
         frequencies.push_back(theta_rad);
+        theta_rad += low_step_rad;
     }
     return frequencies;
 }
@@ -202,7 +203,7 @@ NearSeries near_series(const CurveGrid& grid, int order, const std::vector<doubl
             auto& kept = is_plausible(near, grid) ? best : implausible;
             if (near.penalised_w2 < kept.penalised_w2) kept = std::move(near);
         }
-        if (best.distance_w2 < nearest.distance_w2) nearest = std::move(best);
+        if (best.distance_w2 < nearest.distance_w2) nearest = best;
         if (nearest.distance_w2 <= std::pow(nearness * grid.sd_w, 2)) break;
     }
     return std::isfinite(nearest.distance_w2) ? nearest : implausible;
