@@ -1,7 +1,6 @@
 // flightwatt predict: the energy to the end of a flight that is in the air.
 
 #include "base/error.h"
-#include "base/number.h"
 #include "base/units.h"
 #include "battery/landing_forecast.h"
 #include "cli/numeric_options.h"
@@ -19,7 +18,6 @@
 #include "mission/remaining_path.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>

@@ -58,6 +58,23 @@ inline MadeUpMotion made_up_motion(const std::string& name, std::size_t bins, co
     return made;
 }
 
+/// A model of drag and climb with nothing absent.
+inline mechanical::PhysicalModel drag_and_climb_model() {
+    mechanical::PhysicalModel model;
+    model.terms = {mechanical::PowerTerm::drag, mechanical::PowerTerm::climb};
+    model.coefficients[mechanical::PowerTerm::drag] = 0.01;
+    model.coefficients[mechanical::PowerTerm::climb] = 12.0;
+    model.covariance = {{1e-7, 2e-5}, {2e-5, 0.25}};
+    model.level_sd = 0.1;
+    model.degrees_of_freedom = 4.0;
+    model.drift_sd_w = 3.0;
+    model.correlation_s = 60.0;
+    model.drift_degrees_of_freedom = 50.0;
+    model.airspeed_m_per_s = {10.0, 18.0};
+    model.climb_m_per_s = {-3.0, 3.0};
+    return model;
+}
+
 inline std::vector<mechanical::FlightMotion> made_up_motions(std::size_t flights, std::size_t bins,
                                                              const MotionTruth& truth, unsigned seed) {
     std::mt19937 random(seed);

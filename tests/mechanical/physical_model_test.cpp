@@ -1,5 +1,7 @@
 #include "mechanical/physical_model.h"
 
+#include "helpers/generated_motion.h"
+
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -11,18 +13,9 @@ namespace flightwatt::mechanical {
 namespace {
 
 PhysicalModel some_model() {
-    PhysicalModel model;
-    model.terms = {PowerTerm::drag, PowerTerm::climb};
-    model.coefficients[PowerTerm::drag] = 0.01;
-    model.coefficients[PowerTerm::climb] = 12.0;
+    auto model = test::drag_and_climb_model();
     model.covariance = {{1e-8, 2e-5}, {2e-5, 0.25}};
     model.level_sd = 0.05;
-    model.degrees_of_freedom = 4.0;
-    model.drift_sd_w = 3.0;
-    model.correlation_s = 60.0;
-    model.drift_degrees_of_freedom = 50.0;
-    model.airspeed_m_per_s = {10.0, 18.0};
-    model.climb_m_per_s = {-3.0, 3.0};
     return model;
 }
 

@@ -12,24 +12,10 @@
 namespace flightwatt::mechanical {
 namespace {
 
-PhysicalModel some_model() {
-    PhysicalModel model;
-    model.terms = {PowerTerm::drag, PowerTerm::climb};
-    model.coefficients[PowerTerm::drag] = 0.01;
-    model.coefficients[PowerTerm::climb] = 12.0;
-    model.covariance = {{1e-7, 2e-5}, {2e-5, 0.25}};
-    model.level_sd = 0.1;
-    model.degrees_of_freedom = 4.0;
-    model.drift_sd_w = 3.0;
-    model.correlation_s = 60.0;
-    model.drift_degrees_of_freedom = 50.0;
-    return model;
-}
-
 /// What the joint normal distribution of all powers says, with their whole covariance. The drift's covariance with the
 /// mean ahead is its integral.
 TEST(PathPrediction, IsTheConditionalMeanOfTheJointDistribution) {
-    const auto model = some_model();
+    const auto model = test::drag_and_climb_model();
     const auto flown = test::made_up_motions(1, 12, {}, 5).front().bins;
     const double now_s = 360.0;
     const double remaining_s = 400.0;
@@ -70,7 +56,7 @@ TEST(PathPrediction, IsTheConditionalMeanOfTheJointDistribution) {
 }
 
 TEST(PathPrediction, IsTheModelBeforeAnythingWasFlown) {
-    const auto model = some_model();
+    const auto model = test::drag_and_climb_model();
     const auto ahead = terms_of({.airspeed_m_per_s = 14.0});
     const auto power = predict_path(model, {}, 0.0, ahead, 600.0);
     EXPECT_DOUBLE_EQ(power.mean_w, power_of_terms_w(model, ahead));
@@ -80,7 +66,7 @@ TEST(PathPrediction, IsTheModelBeforeAnythingWasFlown) {
 }
 
 TEST(PathPrediction, LearnsTheFlightsLevel) {
-    auto model = some_model();
+    auto model = test::drag_and_climb_model();
     model.covariance = {{0.0, 0.0}, {0.0, 0.0}};
     auto flown = test::made_up_motions(1, 60, {.level_sd = 0.0, .drift_sd_w = 0.0}, 5).front().bins;
     for (auto& bin : flown) bin.power_w = 1.2 * power_of_terms_w(model, bin.values);

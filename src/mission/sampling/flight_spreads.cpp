@@ -1,0 +1,207 @@
+#include "mission/sampling/flight_spreads.h"
+
+#include "base/statistics.h"
+#include "base/units.h"
+#include "mechanical/prediction.h"
+#include "mission/sampling/level_deviation.h"
+#include "mission/sampling/student.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+/// Notes down a source, as drawn or not.
+void note_source(FlightSpreads& spreads, bool is_drawn, const std::string& source, const std::string& basis) {
+    auto& [drawn, not_drawn] = spreads.sources;
+    (is_drawn ? drawn : not_drawn).push_back(fmt::format("{} ({})", source, basis));
+}
+
+std::string student_words(double degrees_of_freedom) {
+    return fmt::format("Student t with {:.4g} degree{} of freedom", degrees_of_freedom,
+                       degrees_of_freedom == 1.0 ? "" : "s");
+}
+
+std::string basis_of(const LevelDeviation& deviation) {
+    const auto sd = fmt::format("sd {:.4g} W, ", deviation.sd_w);
+    switch (deviation.source) {
+        case DeviationSource::none:
+            return "the model has no spread: fit two flights or more";
+        case DeviationSource::stated:
+            return sd + "stated";
+        case DeviationSource::conditions:
+            return sd + "of the flights about what the conditions say, " + student_words(deviation.degrees_of_freedom);
+        case DeviationSource::path:
+            return sd + "of the flights about what their motion says, " + student_words(deviation.degrees_of_freedom);
+        case DeviationSource::flights:
+            return sd +
+                   fmt::format("of {} flights, {}", deviation.flights, student_words(deviation.degrees_of_freedom));
+        case DeviationSource::fit_error:
+            return sd + "the fit's standard error; not how flights differ";
+    }
+    throw std::logic_error("basis_of: no such source of a deviation");
+}
+
+bool has_wind_spread(const MissionSetup& mission) {
+    if (!mission.cruise_path) return false;
+    const auto& wind = mission.cruise_path->plan->wind;
+    return wind.speed_sd_m_per_s > 0.0 || wind.direction_sd_deg > 0.0;
+}
+
+void find_wind(const MissionSetup& mission, FlightSpreads& spreads) {
+    if (!mission.cruise_path) return;
+    const auto& wind = mission.cruise_path->plan->wind;
+    const auto note = [&](double sd, const std::string& what, std::string_view unit, std::string_view key) {
+        note_source(spreads, sd > 0.0, what,
+                    sd > 0.0 ? fmt::format("sd {:.4g} {}, stated", sd, unit) : fmt::format("[wind] states no {}", key));
+    };
+    note(wind.speed_sd_m_per_s, "wind speed", "m/s", "speed_sd_m_per_s");
+    note(wind.direction_sd_deg, "wind direction", "degrees", "direction_sd_deg");
+}
+
+/// What each of the model's flights that count in a phase shows of it.
+template <typename Shown>
+std::vector<std::optional<double>> of_flights(const MissionSetup& mission, Phase phase, const Shown& shown) {
+    std::vector<std::optional<double>> values;
+    for (const auto& flight : mission.mechanical->flights) {
+        const auto& part = flight.phases[phase];
+        values.push_back(part && part->weight > 0.0 ? shown(*part) : std::nullopt);
+    }
+    return values;
+}
+
+/// Notes how often a level stands at 0, because a flight takes no power back, where one in 2000 flights or more does.
+std::string at_zero_words(const MissionSetup& mission, Phase phase, const LevelDeviation& deviation) {
+    constexpr double least_share = 5e-4;
+    const auto& model = mission.mechanical->phases[phase];
+    const auto curve = flown_model(model, mission.duration_s[phase], mission.phase_clock);
+    const double mean_w = energy_j(curve, mission.duration_s[phase]) / mission.duration_s[phase];
+    if (!(mean_w > 0.0) || !(deviation.sd_w > 0.0)) return "";
+    const double share = chance_beyond(normal_of_student(mean_w / deviation.sd_w, deviation.degrees_of_freedom));
+    return share < least_share ? "" : fmt::format(", 0 W in {:.2g} % of flights", units::percent_of(share, 1.0));
+}
+
+void find_level(const MissionSetup& mission, Phase phase, FlightSpreads& spreads,
+                std::vector<EstimatedSpread>& estimated) {
+    const auto deviation = level_deviation(mission, phase);
+    spreads.level_sd_w[phase] = deviation.sd_w;
+    auto basis = basis_of(deviation) + at_zero_words(mission, phase, deviation);
+    if (deviation.degrees_of_freedom < as_if_known) {
+        EstimatedSpread spread{level_of(phase), deviation.sd_w, deviation.degrees_of_freedom, {}};
+        if (deviation.source == DeviationSource::flights) {
+            spread.of_flights = of_flights(mission, phase, [](const auto& part) { return part.mean_power_w; });
+            if (!is_known_of_flights(spread)) basis += ", correlated with nothing: the model has no mean_power_w";
+        }
+        estimated.push_back(std::move(spread));
+    }
+    note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)), basis);
+}
+
+/// Throughout, what the mission states is fixed, and [uncertainty] alone gives it a spread.
+void find_duration(const MissionSetup& mission, Phase phase, FlightSpreads& spreads,
+                   std::vector<EstimatedSpread>& estimated) {
+    const auto source = fmt::format("{} duration", to_string(phase));
+    if (phase == Phase::cruise && mission.cruise_path)
+        return note_source(spreads, has_wind_spread(mission), source, "as the path and the wind make it");
+    auto& sd_s = spreads.duration_sd_s[phase];
+    EstimatedSpread spread{duration_of(phase), 0.0, as_if_known, {}};
+    if (mission.mechanical)
+        spread.of_flights = of_flights(mission, phase, [](const auto& part) { return std::optional(part.duration_s); });
+    std::string basis = "no flights that differ: state duration_sd_s";
+    if (const auto stated_s = mission.uncertainty.duration_sd_s[phase]) {
+        sd_s = *stated_s;
+        basis = fmt::format("sd {:.4g} s, stated", sd_s);
+    } else if (mission.duration_is_stated[phase]) {
+        basis = "fixed, as the mission states it without duration_sd_s";
+    } else if (is_known_of_flights(spread)) {
+        std::vector<double> flown_s;
+        for (const auto& value : spread.of_flights)
+            if (value) flown_s.push_back(*value);
+        const double relative = sample_sd(flown_s) / mean(flown_s);
+        sd_s = mission.duration_s[phase] * relative *
+               std::sqrt(1.0 + forecast_of(*mission.mechanical, phase).weight_square_sum);
+        spread.sd = sd_s;
+        spread.degrees_of_freedom = static_cast<double>(flown_s.size() - 1);
+        basis = fmt::format("sd {:.4g} s, of {} flights, {}", sd_s, flown_s.size(),
+                            student_words(spread.degrees_of_freedom));
+        estimated.push_back(std::move(spread));
+    }
+    note_source(spreads, sd_s > 0.0, source, basis);
+}
+
+void find_compute(const MissionSetup& mission, FlightSpreads& spreads) {
+    for (std::size_t i = 0; i < mission.compute.components.size(); ++i) {
+        const auto& component = mission.compute.components[i];
+        const auto& errors_w = component.profile.standard_error_w;
+        ComponentSpread spread;
+        std::string basis = "its profile has no standard errors: profile it, or state compute_sd_percent";
+        if (const auto stated_percent = mission.uncertainty.compute_sd_percent.at(i)) {
+            spread.common_sd_percent = *stated_percent;
+            basis = fmt::format("sd {:.4g} %, stated", *stated_percent);
+        } else if (!errors_w.empty()) {
+            spread.node_sd_w = errors_w;
+            basis = "standard errors of its profile";
+        }
+        note_source(spreads, spread.common_sd_percent > 0.0 || !spread.node_sd_w.empty(),
+                    fmt::format("power of {}", component.name), basis);
+        spreads.components.push_back(std::move(spread));
+    }
+}
+
+void find_capacity(const MissionSetup& mission, FlightSpreads& spreads) {
+    auto& interval = spreads.battery.capacity_ah;
+    std::string basis = interval ? "the battery's interval" : "the battery's file has no interval";
+    if (const auto percent = mission.uncertainty.capacity_sd_percent) {
+        const double reach_ah = sd_per_half_95 * units::part_of(mission.battery.capacity_ah, *percent);
+        interval.reset();
+        if (*percent > 0.0) interval = {mission.battery.capacity_ah - reach_ah, mission.battery.capacity_ah + reach_ah};
+        basis = fmt::format("sd {:.4g} %, stated", *percent);
+    } else if (mission.capacity_is_stated) {
+        interval.reset();
+        basis = "fixed, as the mission states capacity_ah without capacity_sd_percent";
+    }
+    note_source(spreads, interval.has_value(), "battery capacity", basis);
+}
+
+void find_battery(const MissionSetup& mission, FlightSpreads& spreads) {
+    const auto& battery = mission.battery;
+    const auto& intervals = spreads.battery = battery.intervals;
+    const auto find = [&](const std::string& source, bool has_interval) {
+        note_source(spreads, has_interval, source,
+                    has_interval ? "the battery's interval" : "the battery's file has no interval");
+    };
+    find_capacity(mission, spreads);
+    if (battery.thevenin) {
+        find("open-circuit voltage", !intervals.open_circuit_standard_error_v.empty());
+        if (battery.thevenin->rc_resistance_ohm > 0.0) {
+            find("battery RC resistance", intervals.rc_resistance_ohm.has_value());
+            find("battery RC time constant", intervals.rc_time_constant_s.has_value());
+        }
+    } else {
+        find("battery voltage", intervals.voltage_v.has_value());
+    }
+    find("battery resistance", intervals.resistance_ohm.has_value());
+}
+
+}  // namespace
+
+FlightSpreads find_spreads(const MissionSetup& mission) {
+    FlightSpreads spreads;
+    std::vector<EstimatedSpread> estimated;
+    for (const auto phase : all_phases) {
+        if (mission.duration_s[phase] == 0.0) continue;
+        if (mission.mechanical) find_level(mission, phase, spreads, estimated);
+        find_duration(mission, phase, spreads, estimated);
+    }
+    spreads.of_flights = joint_spreads(estimated);
+    find_wind(mission, spreads);
+    find_compute(mission, spreads);
+    find_battery(mission, spreads);
+    return spreads;
+}
+
+}  // namespace flightwatt::mission
