@@ -105,7 +105,7 @@ void fill_coefficients(ErrorAnalysis& analysis, double duration_s) {
     const StudentCdf cdf(errors.degrees_of_freedom);
     const auto size = analysis.coefficients_w.size();
     for (Eigen::Index k = 0; k < size; ++k) {
-        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, k);
+        Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, k);
         const auto mixture = mixture_of(analysis.nodes, [&](double) { return unit; });
         const double sd = mixture_sd(mixture, errors.degrees_of_freedom);
         const auto [low, high] = coefficient_interval(analysis, mixture, cdf, analysis.coefficients_w(k));

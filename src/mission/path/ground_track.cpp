@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/special_functions/ellint_1.hpp>
+#include <boost/math/special_functions/ellint_2.hpp>
 
 namespace flightwatt::mission {
 namespace {
@@ -16,11 +17,27 @@ constexpr double most_pieces = 240.0;  // of one element: longer ones have longe
 
 double rad_of(double deg) { return deg / units::degree_per_rad; }
 
-/// Few nodes are exact to rounding over a part of a turn, unless the wind is near the airspeed.
-double smooth_integral(const std::function<double(double)>& of, double from, double to) {
-    constexpr unsigned most_halvings = 12;
-    constexpr double accuracy = 1e-12;
-    return boost::math::quadrature::gauss_kronrod<double, 15>::integrate(of, from, to, most_halvings, accuracy);
+using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
+/// Incomplete elliptic integrals of the first and second kind, of one modulus.
+struct EllipticIntegrals {
+    double first = 0.0;
+    double second = 0.0;
+};
+EllipticIntegrals elliptic_integrals(double modulus, double angle_rad) {
+    constexpr double half_turn_rad = units::rad_per_turn / 2.0;
+    constexpr double small_rad = 1e-9;  // both are the angle to rounding, and Boost's divide by its sine
+    const double half_turns = std::round(angle_rad / half_turn_rad);
+    const double rest_rad = angle_rad - half_turns * half_turn_rad;
+    EllipticIntegrals integrals{rest_rad, rest_rad};
+    if (std::abs(rest_rad) > small_rad)
+        integrals = {boost::math::ellint_1(modulus, rest_rad, Policy()),
+                     boost::math::ellint_2(modulus, rest_rad, Policy())};
+    if (half_turns != 0.0) {
+        integrals.first += 2.0 * half_turns * boost::math::ellint_1(modulus, Policy());
+        integrals.second += 2.0 * half_turns * boost::math::ellint_2(modulus, Policy());
+    }
+    return integrals;
 }
 
 /// The wind [m/s] along a course and across it.
@@ -72,38 +89,50 @@ double GroundTrack::least_horizontal_m_per_s() const {
     return along < 0.0 ? wind_m_per_s : std::abs(across);
 }
 
-Drift GroundTrack::drift_at(double along_m, double horizontal_m_per_s) const {
-    // Above the least airspeed there is one, but for rounding.
-    return drift_of(horizontal_m_per_s, course_rad_ + curvature_rad_m_ * along_m, wind_)
-        .value_or(Drift{1e-12 * horizontal_m_per_s, 1e-12});
-}
-
-double GroundTrack::integral_over(double from_m, double to_m, const std::function<double(double)>& of) const {
-    if (!(to_m > from_m)) return 0.0;
-    if (is_steady()) return (to_m - from_m) * of(from_m);
-    const double turn_m = units::rad_per_turn / std::abs(curvature_rad_m_);
-    const double turns = std::floor((to_m - from_m) / turn_m);
-    const double rest_m = from_m + turns * turn_m;
-    double sum = turns > 0.0 ? turns * smooth_integral(of, 0.0, turn_m) : 0.0;
-    if (to_m > rest_m) sum += smooth_integral(of, rest_m, to_m);
-    return sum;
-}
-
 double GroundTrack::time_s(double from_m, double to_m, double horizontal_m_per_s) const {
-    return integral_over(
-        from_m, to_m, [&](double along_m) { return 1.0 / drift_at(along_m, horizontal_m_per_s).ground_speed_m_per_s; });
+    if (!(to_m > from_m)) return 0.0;
+    if (is_steady()) return (to_m - from_m) / steady_drift(horizontal_m_per_s).ground_speed_m_per_s;
+    return turned(from_m, to_m, horizontal_m_per_s).time_s;
 }
 
 double GroundTrack::load_factor_squared(double from_m, double to_m, double horizontal_m_per_s) const {
     if (curvature_rad_m_ == 0.0 || !(to_m > from_m)) return 1.0;
     // Of a coordinated turn: tan(bank) = ground speed^2 / (g radius cos(drift)), and n^2 = 1 + tan^2.
-    const double tangent_squared_s = integral_over(from_m, to_m, [&](double along_m) {
-        const auto drift = drift_at(along_m, horizontal_m_per_s);
-        const double speed = drift.ground_speed_m_per_s;
-        const double tangent = speed * speed * std::abs(curvature_rad_m_) / (standard_gravity_m_per_s2 * drift.cosine);
-        return tangent * tangent / speed;
-    });
-    return 1.0 + tangent_squared_s / time_s(from_m, to_m, horizontal_m_per_s);
+    const double curvature_per_g = curvature_rad_m_ / standard_gravity_m_per_s2;
+    if (is_steady()) {
+        const double tangent = horizontal_m_per_s * horizontal_m_per_s * curvature_per_g;
+        return 1.0 + tangent * tangent;
+    }
+    const auto [time_s, speed_fourth_m4_per_s3] = turned(from_m, to_m, horizontal_m_per_s);
+    return 1.0 + curvature_per_g * curvature_per_g * speed_fourth_m4_per_s3 / time_s;
+}
+
+Drift GroundTrack::steady_drift(double horizontal_m_per_s) const {
+    // Above the least airspeed there is one, but for rounding.
+    return drift_of(horizontal_m_per_s, course_rad_, wind_).value_or(Drift{1e-12 * horizontal_m_per_s, 1e-12});
+}
+
+GroundTrack::Turned GroundTrack::turned(double from_m, double to_m, double horizontal_m_per_s) const {
+    const auto from = turned_until(from_m, horizontal_m_per_s);
+    const auto to = turned_until(to_m, horizontal_m_per_s);
+    return {to.time_s - from.time_s, to.speed_fourth_m4_per_s3 - from.speed_fourth_m4_per_s3};
+}
+
+GroundTrack::Turned GroundTrack::turned_until(double along_m, double horizontal_m_per_s) const {
+    // With the course a against the wind's, the headway h = sqrt(V^2 - W^2 sin^2 a) and c = W cos a, ground speed is
+    // h + c = D / (h - c), where D = V^2 - W^2 = h^2 - c^2: its powers are sums of elliptic integrals.
+    const double wind_rad = std::atan2(wind_.east_m_per_s, wind_.north_m_per_s);
+    const double wind_m_per_s = std::hypot(wind_.east_m_per_s, wind_.north_m_per_s);
+    const double angle_rad = course_rad_ + curvature_rad_m_ * along_m - wind_rad;
+    const double speed = horizontal_m_per_s;
+    const double modulus = std::min(wind_m_per_s / speed, 1.0 - 1e-15);
+    const double difference = speed * speed * (1.0 - modulus) * (1.0 + modulus);
+    const double across = modulus * std::sin(angle_rad);
+    const auto integrals = elliptic_integrals(modulus, angle_rad);
+    const double headway = speed * integrals.second;
+    const double fourth =
+        4.0 * (headway + speed * across) - difference / speed * (3.0 * integrals.first + std::atanh(across));
+    return {(headway - speed * across) / difference / curvature_rad_m_, speed * speed * fourth / curvature_rad_m_};
 }
 
 std::size_t GroundTrack::pieces_a_period() const {

@@ -2,7 +2,6 @@
 
 #include "mission/path.h"
 
-#include <functional>
 #include <optional>
 
 namespace flightwatt::mission {
@@ -50,8 +49,16 @@ class GroundTrack {
     bool is_steady() const {
         return curvature_rad_m_ == 0.0 || (wind_.east_m_per_s == 0.0 && wind_.north_m_per_s == 0.0);
     }
-    Drift drift_at(double along_m, double horizontal_m_per_s) const;
-    double integral_over(double from_m, double to_m, const std::function<double(double)>& of) const;
+    Drift steady_drift(double horizontal_m_per_s) const;
+
+    /// A part of a turn in wind: its time, and the integral over that of (ground speed^2 / cos(drift))^2.
+    struct Turned {
+        double time_s = 0.0;
+        double speed_fourth_m4_per_s3 = 0.0;
+    };
+    Turned turned(double from_m, double to_m, double horizontal_m_per_s) const;
+    /// The same from the course with the wind to the one at a place.
+    Turned turned_until(double along_m, double horizontal_m_per_s) const;
 
     double length_m_ = 0.0;
     double course_rad_ = 0.0;       ///< at its start

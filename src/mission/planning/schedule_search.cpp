@@ -175,7 +175,8 @@ class StatePass {
     /// Of as many equal ranges of charge as half of the labels that there is room for. The labels are in the order of
     /// their charge.
     void move_best_of_each_charge_first(std::vector<StateLabel>& labels) const {
-        const double ranges = static_cast<double>(limits_.most_labels / 2);
+        const auto half_of_room = limits_.most_labels / 2;
+        const auto ranges = static_cast<double>(half_of_room);
         const double most_percent = labels.front().weighed_percent;
         const double all_percent = std::max(1e-9, most_percent - labels.back().weighed_percent);
         const auto range_of = [&](const StateLabel& label) {

@@ -1,6 +1,7 @@
 #include "mission/simulation/load_segments.h"
 
 #include "base/units.h"
+#include "battery/quick_discharge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double edge_tolerance_s = 1e-9;
 constexpr double coarse_step_s = 1.0;
+constexpr double longest_quick_step_s = 20.0;
 
 /// Times at which something changes, in order, between the segment's start and its end.
 std::vector<double> cuts_of(const LoadSegment& segment, const Disturbances& disturbances) {
@@ -60,6 +62,15 @@ bool depends_on_power_alone(const battery::Battery& battery, double cutoff_volta
     const auto [low_w, high_w] = bounds_of(segment);
     return low_w >= 0.0 && high_w < power_limit_w(battery) &&
            terminal_voltage_v(battery, {}, internal_current_a(battery, high_w)) >= cutoff_voltage_v;
+}
+
+/// Steps over which a segment's power is nearly a parabola.
+double quick_step_s(const LoadSegment& segment) {
+    constexpr double steps_a_turn = 12.0;  // of the highest harmonic
+    if (!segment.mechanical || segment.mechanical->cos_w.empty()) return longest_quick_step_s;
+    const double fastest_rad_per_s =
+        static_cast<double>(segment.mechanical->cos_w.size()) * segment.mechanical->omega_rad_per_s;
+    return std::min(longest_quick_step_s, units::rad_per_turn / (steps_a_turn * fastest_rad_per_s));
 }
 
 /// What such a segment takes: without resistance the closed integral of Eq. 1, with it Gauss quadrature.
@@ -214,8 +225,10 @@ battery::Discharge after_segment(const battery::Battery& battery, double cutoff_
             return state;
         }
     }
-    const auto load = [&](double time_s) { return power_w(segment, time_s); };
-    return discharge(battery, {load, segment.start_s, segment.end_s}, state, {coarse_step_s, cutoff_voltage_v});
+    const battery::Load load{[&](double time_s) { return power_w(segment, time_s); }, segment.start_s, segment.end_s};
+    if (battery.thevenin && bounds_of(segment).low_w >= 0.0)
+        return quick_discharge(battery, load, state, {quick_step_s(segment), cutoff_voltage_v});
+    return discharge(battery, load, state, {coarse_step_s, cutoff_voltage_v});
 }
 
 }  // namespace flightwatt::mission

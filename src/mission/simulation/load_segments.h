@@ -59,8 +59,8 @@ double compute_energy_j(const LoadSegment& segment, double time_s);
 battery::Discharge after_drop(battery::Discharge state, const LoadSegment& segment);
 
 /// The battery after a segment, for flights that are flown by the thousand: an integral of the power where the source
-/// is constant and nothing but its charge can end it; elsewhere Runge-Kutta with steps of a second. A battery that has
-/// ended, or cannot deliver, stays as it is.
+/// is constant and nothing but its charge can end it, quick_discharge of a Thevenin circuit that is not charged, and else
+/// Runge-Kutta with steps of a second. A battery that has ended, or cannot deliver, stays as it is.
 battery::Discharge after_segment(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment,
                                  battery::Discharge state);
 
