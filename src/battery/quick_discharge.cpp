@@ -1,11 +1,13 @@
 #include "battery/quick_discharge.h"
 
 #include "base/units.h"
+#include "battery/parabola.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace flightwatt::battery {
@@ -14,32 +16,6 @@ namespace {
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double end_step_s = 0.5;  // in steps of which an end is looked for
 constexpr double parts_of_a_last_step = 16.0;
-
-/// Values at the start, the middle and the end of a step.
-struct Parabola {
-    double start = 0.0;
-    double middle = 0.0;
-    double end = 0.0;
-
-    double curvature() const { return 2.0 * (start - 2.0 * middle + end); }
-    double slope() const { return 4.0 * middle - 3.0 * start - end; }
-    /// At a part of the step, from 0 to 1.
-    double at(double part) const { return start + part * (slope() + part * curvature()); }
-
-    /// The first part at which it is below 0; infinite if there is none.
-    double falls_below_zero() const {
-        if (start < 0.0) return 0.0;
-        const double a = curvature();
-        const double b = slope();
-        double part = never;
-        if (middle < 0.0 || end < 0.0 || (a > 0.0 && b < 0.0 && b > -2.0 * a && at(-b / (2.0 * a)) < 0.0)) {
-            const double root = std::sqrt(std::max(0.0, b * b - 4.0 * a * start));
-            // The smaller positive root, without a difference of near numbers.
-            part = b < 0.0 ? 2.0 * start / (root - b) : (-b - root) / (2.0 * a);
-        }
-        return part <= 1.0 ? std::max(0.0, part) : (part < never ? 1.0 : never);
-    }
-};
 
 /// The open-circuit voltage of a charge that only falls.
 class FallingVoltage {
@@ -99,16 +75,16 @@ class QuickRun {
     };
     Step step(double time_s, const Moment& start, double length_s) {
         const double half_s = 0.5 * length_s;
-        const double half_decay = std::exp(-half_s / tau_s_);
+        const RcStep half(rc_ohm_, tau_s_, half_s);
+        const RcStep whole(rc_ohm_, tau_s_, length_s);
         const auto evenly = [&](double middle_a) {
-            return after(start.state, {start.current_a, 0.5 * (start.current_a + middle_a), middle_a}, half_s,
-                         half_decay);
+            return after(start.state, {start.current_a, std::midpoint(start.current_a, middle_a), middle_a}, half,
+                         half_s);
         };
         auto middle = moment(time_s + half_s, evenly(start.current_a));
         middle = moment(time_s + half_s, evenly(middle.current_a));
-        const double decay = half_decay * half_decay;
         const auto curved = [&](double end_a) {
-            return after(start.state, {start.current_a, middle.current_a, end_a}, length_s, decay);
+            return after(start.state, {start.current_a, middle.current_a, end_a}, whole, length_s);
         };
         auto end = moment(time_s + length_s, curved(2.0 * middle.current_a - start.current_a));
         end = moment(time_s + length_s, curved(end.current_a));
@@ -141,18 +117,9 @@ class QuickRun {
 
   private:
     /// The state after a current.
-    BatteryState after(const BatteryState& from, const Parabola& current_a, double length_s, double decay) const {
-        const double charge_as = (current_a.start + 4.0 * current_a.middle + current_a.end) / 6.0 * length_s;
-        BatteryState to{from.soc_percent - charge_as * percent_per_as_, 0.0};
-        // dU/dt = (R I - U) / tau: R (I - tau I' + tau^2 I'') and what decays.
-        const double ratio = tau_s_ / length_s;
-        const double slope = current_a.slope();
-        const double curvature = current_a.curvature();
-        const double bent = 2.0 * ratio * ratio * curvature;
-        const double first_v = rc_ohm_ * (current_a.start - ratio * slope + bent);
-        const double last_v = rc_ohm_ * (current_a.end - ratio * (slope + 2.0 * curvature) + bent);
-        to.rc_voltage_v = last_v + (from.rc_voltage_v - first_v) * decay;
-        return to;
+    BatteryState after(const BatteryState& from, const Parabola& current_a, const RcStep& rc, double length_s) const {
+        return {from.soc_percent - current_a.mean() * length_s * percent_per_as_,
+                rc.voltage_after(from.rc_voltage_v, current_a)};
     }
 
     const Battery& battery_;
@@ -164,12 +131,11 @@ class QuickRun {
     FallingVoltage voltage_;
 };
 
-/// Longer than the RC pair's time constants its transient is not seen; what is faster than this hardly counts.
+/// Over longer steps the RC pair's transient is no parabola; what is faster than some seconds hardly counts.
 double longest_step_s(const TheveninCircuit& circuit, double longest_s) {
-    constexpr double time_constants = 3.0;
     constexpr double short_s = 2.0;
     if (circuit.rc_resistance_ohm == 0.0) return longest_s;
-    return std::min(longest_s, std::max(short_s, time_constants * circuit.rc_time_constant_s));
+    return std::min(longest_s, std::max(short_s, circuit.rc_time_constant_s));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // How often 95 % intervals of a phase's curve and of its constant hold the truth, over many synthetic flights, and how
 // far the curves of regularly sampled flights are off.
-// usage: interval_coverage_bench [FITS]: of each kind, 1000 if not said
+// usage: interval_coverage_bench [FITS [PHASE]]: of each kind, 1000 if not said; of one phase alone
 
 #include "base/number.h"
 #include "base/units.h"
@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -37,13 +39,13 @@ void print_row(flight::Phase phase, const test::CoverageCase& made, const test::
 /// Seeds are fixed; those of the tests are others.
 constexpr unsigned seed = 7;
 
-void run_coverage(std::size_t fits) {
+void run_coverage(std::size_t fits, std::span<const flight::Phase> phases) {
     fmt::print("{} fits a row, seed {}; half widths and errors in W, medians of the fits.\n\n", fits, seed);
     fmt::print(
         "| phase | flights | noise W | r | curve, % | a0, % | half width | of a0 | error | worst | mean curves "
         "| no answer |\n"
         "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : phases) {
         for (const std::size_t together : {1U, 4U}) {
             for (const double noise_w : {0.24, 1.0}) {
                 for (const double autocorrelation : {0.0, 0.4, 0.7}) {
@@ -59,31 +61,32 @@ void run_coverage(std::size_t fits) {
 }
 
 /// Regularly sampled flights of 1 W noise: what their curves are off, at worst.
-void run_regular(std::size_t fits) {
+void run_regular(std::size_t fits, std::span<const flight::Phase> phases) {
     fmt::print("\n{} regular series a phase (1.1 s, 15 % lost, 1 W), seed 20000:\n\n", fits);
     fmt::print("| phase | worst curve, W RMS | no answer |\n|---|---:|---:|\n");
-    for (const auto phase : flight::all_phases) {
+    for (const auto phase : phases) {
         const auto found = test::coverage_of_regular(phase, fits, 20000);
         fmt::print("| {} | {:.2f} | {} |\n", to_string(phase), found.worst_curve_error_w, found.without_answer);
         std::fflush(stdout);
     }
 }
 
-void run(std::size_t fits) {
-    run_coverage(fits);
-    run_regular(fits);
+void run(std::size_t fits, std::span<const flight::Phase> phases) {
+    run_coverage(fits, phases);
+    run_regular(fits, phases);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const auto fits = argc == 2 ? parse_unsigned(argv[1]) : std::optional<std::uint64_t>(1000);
-    if (argc > 2 || !fits || *fits == 0) {
-        fmt::print(stderr, "usage: interval_coverage_bench [FITS]\n");
+    const auto fits = argc > 1 ? parse_unsigned(argv[1]) : std::optional<std::uint64_t>(1000);
+    const auto phase = argc > 2 ? flight::phase_from(argv[2]) : std::nullopt;
+    if (argc > 3 || !fits || *fits == 0 || (argc > 2 && !phase)) {
+        fmt::print(stderr, "usage: interval_coverage_bench [FITS [takeoff|cruise|landing]]\n");
         return 2;
     }
     try {
-        run(*fits);
+        run(*fits, phase ? std::span(&*phase, 1) : std::span<const flight::Phase>(flight::all_phases));
     } catch (const std::exception& error) {
         fmt::print(stderr, "interval_coverage_bench: error: {}\n", error.what());
         return 1;

@@ -217,7 +217,7 @@ class EverySchedule {
         std::size_t choice = std::numeric_limits<std::size_t>::max();
         std::size_t since = 0;
         bool is_done = true;
-        auto operator<=>(const Run&) const = default;
+        auto operator<=>(const Run&) const = default;  // NOLINT(modernize-use-nullptr): there is no 0 to see
     };
 
     /// The charge over the slots if the least is drawn in each.

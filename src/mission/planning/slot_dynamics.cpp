@@ -10,42 +10,52 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double longest_step_s = 1.0;
+constexpr double longest_step_s = 4.0;
 constexpr double shortest_step_s = 0.05;
 constexpr double wanted_agreement_percent = 1e-7;
-constexpr double longest_quick_step_s = 2.0;
+constexpr double longest_quick_step_s = 20.0;
 constexpr double quick_agreement_percent = quick_error_percent / 10.0;
 
-/// One slot as it is integrated: the line of the open-circuit voltage in which the charge was last seen is remembered.
-class SlotRates {
+/// The circuit while one choice runs: the line of the open-circuit voltage in which the charge was last seen is
+/// remembered.
+class SlotCircuit {
   public:
-    SlotRates(const SlotDynamics& dynamics, double compute_w)
-        : dynamics_(dynamics), compute_w_(compute_w), rc_per_s_(1.0 / dynamics.rc_time_constant_s) {}
+    SlotCircuit(const SlotDynamics& dynamics, double compute_w) : dynamics_(dynamics), compute_w_(compute_w) {}
 
     /// What a state and a mechanical power lead to.
-    struct Rate {
-        double percent_per_s = 0.0;
-        double rc_v_per_s = 0.0;
+    struct Load {
         double current_a = 0.0;
         double source_v = 0.0;
         bool is_deliverable = true;
     };
 
-    Rate at(double soc_percent, double rc_v, double mechanical_w) {
-        Rate rate;
+    Load at(const battery::BatteryState& state, double mechanical_w) {
+        Load load;
         const double power_w = mechanical_w + compute_w_;
-        rate.source_v = std::max(0.0, open_circuit_v(soc_percent) - rc_v);
+        load.source_v = std::max(0.0, open_circuit_v(state.soc_percent) - state.rc_voltage_v);
         const double discriminant =
-            rate.source_v * rate.source_v - 4.0 * dynamics_.resistance_ohm * power_w;  // of Eq. 27
-        rate.is_deliverable = discriminant >= -2.0 * dynamics_.error_v * rate.source_v;
-        const double twice_v = rate.source_v + std::sqrt(std::max(0.0, discriminant));
-        rate.current_a = power_w == 0.0 ? 0.0 : 2.0 * power_w / twice_v;
-        rate.percent_per_s = -dynamics_.percent_per_as * rate.current_a;
-        rate.rc_v_per_s = (dynamics_.rc_resistance_ohm * rate.current_a - rc_v) * rc_per_s_;
-        return rate;
+            load.source_v * load.source_v - 4.0 * dynamics_.resistance_ohm * power_w;  // of Eq. 27
+        load.is_deliverable = discriminant >= -2.0 * dynamics_.error_v * load.source_v;
+        const double twice_v = load.source_v + std::sqrt(std::max(0.0, discriminant));
+        load.current_a = power_w == 0.0 ? 0.0 : 2.0 * power_w / twice_v;
+        return load;
     }
 
-    double terminal_v(const Rate& rate) const { return rate.source_v - dynamics_.resistance_ohm * rate.current_a; }
+    double terminal_v(const Load& load) const { return load.source_v - dynamics_.resistance_ohm * load.current_a; }
+
+    battery::BatteryState after(const battery::BatteryState& from, const battery::Parabola& current_a,
+                                const battery::RcStep& rc, double length_s) const {
+        return {from.soc_percent - dynamics_.percent_per_as * length_s * current_a.mean(),
+                rc.voltage_after(from.rc_voltage_v, current_a)};
+    }
+
+    /// The knot of the open-circuit voltage between two charges, if there is one.
+    std::optional<double> knot_between(double from_percent, double to_percent) const {
+        const auto& knots = dynamics_.knot_percent;
+        const auto [low, high] = std::minmax(from_percent, to_percent);
+        const auto above = std::ranges::upper_bound(knots, low);
+        return above != knots.end() && *above < high ? std::optional(*above) : std::nullopt;
+    }
 
   private:
     double open_circuit_v(double soc_percent) {
@@ -58,39 +68,17 @@ class SlotRates {
 
     const SlotDynamics& dynamics_;
     double compute_w_;
-    double rc_per_s_;
     std::size_t line_ = 0;
 };
 
-/// Follows the voltage from step to step.
-class CutOffWatch {
-  public:
-    explicit CutOffWatch(double cutoff_v) : limit_v_(cutoff_v > 0.0 ? cutoff_v - rounding_v : -1.0) {}
-
-    void see_middle(double voltage_v) { middle_v_ = voltage_v; }
-
-    /// Whether it fell below the cut-off at the end of a step, or on the parabola through its start, middle and end.
-    bool is_cut_off(double end_v) {
-        double least_v = end_v;
-        const double bend_v = start_v_ - 2.0 * middle_v_ + end_v;
-        const double rise_v = end_v - start_v_;
-        if (std::abs(rise_v) < 2.0 * bend_v) least_v = middle_v_ - rise_v * rise_v / (8.0 * bend_v);
-        start_v_ = middle_v_ = end_v;
-        return least_v < limit_v_;
-    }
-
-  private:
-    static constexpr double rounding_v = 1e-6;
-    double limit_v_;
-    double start_v_ = NAN;  // before the first step
-    double middle_v_ = NAN;
-};
-
-SlotDynamics::Part part_of(const LoadSegment& segment, double step_s, double mechanical_factor) {
-    SlotDynamics::Part part;
+SlotDynamics::Part part_of(const SlotDynamics& dynamics, const LoadSegment& segment, double most_step_s,
+                           double mechanical_factor) {
     const double duration_s = segment.end_s - segment.start_s;
-    const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(duration_s / step_s * (1.0 - 1e-12))));
-    part.step_s = duration_s / static_cast<double>(steps);
+    const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(duration_s / most_step_s * (1.0 - 1e-12))));
+    const double step_s = duration_s / static_cast<double>(steps);
+    const double ohm = dynamics.rc_resistance_ohm;
+    const double constant_s = dynamics.rc_time_constant_s;
+    SlotDynamics::Part part{step_s, {ohm, constant_s, step_s / 2.0}, {ohm, constant_s, step_s}, {}};
     part.mechanical_w.resize(2 * steps + 1);
     for (std::size_t k = 0; k < part.mechanical_w.size(); ++k) {
         const double time_s = segment.start_s + part.step_s / 2.0 * static_cast<double>(k);
@@ -99,13 +87,14 @@ SlotDynamics::Part part_of(const LoadSegment& segment, double step_s, double mec
     return part;
 }
 
-SlotDynamics::Slot slot_of(const LoadSegment& segment, double step_s, double mechanical_factor) {
+SlotDynamics::Slot slot_of(const SlotDynamics& dynamics, const LoadSegment& segment, double step_s,
+                           double mechanical_factor) {
     SlotDynamics::Slot slot;
     slot.duration_s = segment.end_s - segment.start_s;
     slot.least_mechanical_w = std::numeric_limits<double>::infinity();
     slot.greatest_mechanical_w = -slot.least_mechanical_w;
     for (const auto& smooth : smooth_parts(segment)) {
-        slot.parts.push_back(part_of(smooth, step_s, mechanical_factor));
+        slot.parts.push_back(part_of(dynamics, smooth, step_s, mechanical_factor));
         const auto [least, greatest] = std::ranges::minmax_element(slot.parts.back().mechanical_w);
         slot.least_mechanical_w = std::min(slot.least_mechanical_w, *least);
         slot.greatest_mechanical_w = std::max(slot.greatest_mechanical_w, *greatest);
@@ -132,29 +121,93 @@ void set_circuit(const battery::Battery& battery, SlotDynamics& dynamics) {
     }
 }
 
+/// The battery at one moment, under its load.
+struct LoadedState {
+    battery::BatteryState state;
+    SlotCircuit::Load load;
+};
+
+/// A step over which mechanical power is a parabola.
+struct SlotStep {
+    battery::Parabola mechanical_w;
+    double length_s;
+    const battery::RcStep& half;
+    const battery::RcStep& whole;
+};
+
+/// What a step leads to.
+struct StepEnd {
+    LoadedState end;
+    double middle_percent = 0.0;
+    double least_v = 0.0;
+};
+
+StepEnd after_step(SlotCircuit& circuit, const SlotStep& step, const LoadedState& start) {
+    const double start_a = start.load.current_a;
+    const auto evenly = [&](double middle_a) {
+        return circuit.after(start.state, {start_a, 0.5 * (start_a + middle_a), middle_a}, step.half,
+                             step.length_s / 2.0);
+    };
+    auto middle = circuit.at(evenly(start_a), step.mechanical_w.middle);
+    const auto middle_state = evenly(middle.current_a);
+    middle = circuit.at(middle_state, step.mechanical_w.middle);
+    const auto curved = [&](double end_a) {
+        return circuit.after(start.state, {start_a, middle.current_a, end_a}, step.whole, step.length_s);
+    };
+    StepEnd after;
+    const auto guessed = circuit.at(curved(2.0 * middle.current_a - start_a), step.mechanical_w.end);
+    after.end.state = curved(guessed.current_a);
+    after.end.state.soc_percent = std::min(after.end.state.soc_percent, units::percent_per_whole);
+    after.end.load = circuit.at(after.end.state, step.mechanical_w.end);
+    after.middle_percent = middle_state.soc_percent;
+    after.least_v = battery::Parabola{circuit.terminal_v(start.load), circuit.terminal_v(middle),
+                                      circuit.terminal_v(after.end.load)}
+                        .least();
+    return after;
+}
+
+/// The same in two steps that meet where the charge passes the knot, as the voltage is no parabola beyond it.
+StepEnd after_knot(const SlotDynamics& dynamics, SlotCircuit& circuit, const SlotStep& step, const LoadedState& start,
+                   const battery::Parabola& beyond_knot) {
+    const auto part_of = [&](double from, double to, const LoadedState& at) {
+        const auto& power_w = step.mechanical_w;
+        const double length_s = (to - from) * step.length_s;
+        const battery::RcStep half(dynamics.rc_resistance_ohm, dynamics.rc_time_constant_s, length_s / 2.0);
+        const battery::RcStep whole(dynamics.rc_resistance_ohm, dynamics.rc_time_constant_s, length_s);
+        return after_step(
+            circuit, {{power_w.at(from), power_w.at((from + to) / 2.0), power_w.at(to)}, length_s, half, whole}, at);
+    };
+    const double knot = std::clamp(beyond_knot.falls_below_zero(), 0.0, 1.0);
+    if (knot == 0.0 || knot == 1.0) return after_step(circuit, step, start);
+    const auto before = part_of(0.0, knot, start);
+    auto after = part_of(knot, 1.0, before.end);
+    after.least_v = std::min(before.least_v, after.least_v);
+    return after;
+}
+
 std::optional<battery::BatteryState> after_part(const SlotDynamics& dynamics, const SlotDynamics::Part& part,
-                                                SlotRates& rates, const battery::BatteryState& state) {
-    const double step_s = part.step_s;
-    const auto& mechanical_w = part.mechanical_w;
-    CutOffWatch watch(dynamics.cutoff_voltage_v - dynamics.error_v);
-    double soc = state.soc_percent;
-    double rc = state.rc_voltage_v;
-    for (std::size_t k = 0;; k += 2) {
-        const auto first = rates.at(soc, rc, mechanical_w[k]);
-        if (!first.is_deliverable || watch.is_cut_off(rates.terminal_v(first))) return std::nullopt;
-        if (k + 1 == mechanical_w.size()) return battery::BatteryState{soc, rc};
-        const double half_s = step_s / 2.0;
-        const double middle_w = mechanical_w[k + 1];
-        const auto second = rates.at(soc + half_s * first.percent_per_s, rc + half_s * first.rc_v_per_s, middle_w);
-        const auto third = rates.at(soc + half_s * second.percent_per_s, rc + half_s * second.rc_v_per_s, middle_w);
-        const auto fourth =
-            rates.at(soc + step_s * third.percent_per_s, rc + step_s * third.rc_v_per_s, mechanical_w[k + 2]);
-        watch.see_middle(rates.terminal_v(third));
-        soc += step_s / 6.0 *
-               (first.percent_per_s + 2.0 * (second.percent_per_s + third.percent_per_s) + fourth.percent_per_s);
-        rc += step_s / 6.0 * (first.rc_v_per_s + 2.0 * (second.rc_v_per_s + third.rc_v_per_s) + fourth.rc_v_per_s);
-        soc = std::min(soc, units::percent_per_whole);
+                                                SlotCircuit& circuit, const battery::BatteryState& state) {
+    constexpr double rounding_v = 1e-6;
+    const double cutoff_v = dynamics.cutoff_voltage_v;
+    const double least_v = cutoff_v > 0.0 ? cutoff_v - dynamics.error_v - rounding_v : -1.0;
+    const auto& power_w = part.mechanical_w;
+    LoadedState now{state, circuit.at(state, power_w.front())};
+    if (!now.load.is_deliverable || circuit.terminal_v(now.load) < least_v) return std::nullopt;
+    for (std::size_t k = 0; k + 1 < power_w.size(); k += 2) {
+        const SlotStep step{{power_w[k], power_w[k + 1], power_w[k + 2]}, part.step_s, part.half_step, part.step};
+        auto after = after_step(circuit, step, now);
+        const double from_percent = now.state.soc_percent;
+        const double to_percent = after.end.state.soc_percent;
+        if (const auto knot = circuit.knot_between(from_percent, to_percent)) {
+            const double sign = from_percent > to_percent ? 1.0 : -1.0;
+            after = after_knot(
+                dynamics, circuit, step, now,
+                {sign * (from_percent - *knot), sign * (after.middle_percent - *knot), sign * (to_percent - *knot)});
+        }
+        if (!after.end.load.is_deliverable || after.least_v < least_v) return std::nullopt;
+        now = after.end;
     }
+    return now.state;
 }
 
 /// The end of a mission that runs one choice throughout; none if it is not reached.
@@ -171,6 +224,12 @@ std::optional<double> end_percent(const SlotDynamics& dynamics, std::size_t choi
 MissionSetup without_cut_off(MissionSetup mission) {
     mission.cutoff_voltage_v = 0.0;
     return mission;
+}
+
+/// Over longer steps the RC pair's transient is no parabola.
+double longest_transient_s(const battery::Battery& battery) {
+    const bool has_pair = battery.thevenin && battery.thevenin->rc_resistance_ohm > 0.0;
+    return has_pair ? battery.thevenin->rc_time_constant_s : std::numeric_limits<double>::infinity();
 }
 
 /// Whether missions that run one choice throughout end alike, where they do.
@@ -194,16 +253,14 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
     const auto load = load_of(mission);
     dynamics.slots.reserve(slots.size());
     for (const auto& slot : slots)
-        dynamics.slots.push_back(slot_of(load_segment(load, {slot, {}}), step_s, mechanical_factor));
+        dynamics.slots.push_back(slot_of(dynamics, load_segment(load, {slot, {}}), step_s, mechanical_factor));
     return dynamics;
 }
 
 double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
                 const std::vector<double>& compute_w) {
     const auto uncut = without_cut_off(mission);
-    double step_s = longest_step_s;
-    if (mission.battery.thevenin && mission.battery.thevenin->rc_resistance_ohm > 0.0)
-        step_s = std::min(step_s, mission.battery.thevenin->rc_time_constant_s / 2.0);
+    double step_s = std::min(longest_step_s, longest_transient_s(mission.battery) / 2.0);
     const auto [least, most] = std::ranges::minmax_element(compute_w);
     const std::vector<double> extremes{*least, *most};
     auto dynamics = make_slot_dynamics(uncut, slots, extremes, step_s);
@@ -223,24 +280,24 @@ double quick_step_for(const MissionSetup& mission, const std::vector<PhaseSegmen
     const std::vector<double> extremes{*least, *most};
     const auto exact = make_slot_dynamics(uncut, slots, extremes, step_s);
     double quick_s = step_s;
-    while (quick_s * 2.0 <= longest_quick_step_s &&
-           agree(exact, make_slot_dynamics(uncut, slots, extremes, quick_s * 2.0), mission.initial_soc_percent,
-                 quick_agreement_percent))
+    const double longest_s = std::min(longest_quick_step_s, longest_transient_s(mission.battery));
+    while (quick_s * 2.0 <= longest_s && agree(exact, make_slot_dynamics(uncut, slots, extremes, quick_s * 2.0),
+                                               mission.initial_soc_percent, quick_agreement_percent))
         quick_s *= 2.0;
     return quick_s;
 }
 
 std::optional<battery::BatteryState> after_slot(const SlotDynamics& dynamics, std::size_t slot, std::size_t choice,
                                                 const battery::BatteryState& state) {
-    SlotRates rates(dynamics, dynamics.compute_w[choice]);
+    SlotCircuit circuit(dynamics, dynamics.compute_w[choice]);
     std::optional<battery::BatteryState> after = state;
     for (const auto& part : dynamics.slots[slot].parts)
-        if (after) after = after_part(dynamics, part, rates, *after);
+        if (after) after = after_part(dynamics, part, circuit, *after);
     return after;
 }
 
 double open_circuit_voltage_v(const SlotDynamics& dynamics, double soc_percent) {
-    return SlotRates(dynamics, 0.0).at(soc_percent, 0.0, 0.0).source_v;
+    return SlotCircuit(dynamics, 0.0).at({soc_percent, 0.0}, 0.0).source_v;
 }
 
 }  // namespace flightwatt::mission

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "battery/parabola.h"
 #include "mission/mission.h"
 
 #include <cstddef>
@@ -13,9 +14,11 @@ namespace flightwatt::mission {
 /// long as the accuracy allows.
 struct SlotDynamics {
     /// A part of a slot without a jump of power: the mechanical power at the starts, middles and ends of its
-    /// Runge-Kutta steps.
+    /// steps, in each of which the current is a parabola.
     struct Part {
-        double step_s = 0.0;
+        double step_s;
+        battery::RcStep half_step;
+        battery::RcStep step;
         std::vector<double> mechanical_w;  ///< 2 steps + 1
     };
     struct Slot {
@@ -51,12 +54,12 @@ SlotDynamics make_slot_dynamics(const MissionSetup& mission, const std::vector<P
                                 std::vector<double> compute_w, double step_s, double mechanical_factor = 1.0);
 
 /// The longest step [s] whose halving moves the end of neither the schedule of least power nor that of most by 1e-7
-/// points, of the steps tried: 1 s (or half the RC time constant), and halves of that down to 0.05 s.
+/// points, of the steps tried: 4 s (or half the RC time constant), and halves of that down to 0.05 s.
 double step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
                 const std::vector<double>& compute_w);
 
-/// A longer step, of at most 2 s, for the many states that a search only compares: doubled while the ends of both schedules move by less
-/// than a tenth of quick_error_percent.
+/// A longer step, of at most 20 s and the RC time constant, for the many states that a search only compares: doubled
+/// while the ends of both schedules move by less than a tenth of quick_error_percent.
 double quick_step_for(const MissionSetup& mission, const std::vector<PhaseSegment>& slots,
                       const std::vector<double>& compute_w, double step_s);
 
