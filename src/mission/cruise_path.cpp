@@ -77,7 +77,9 @@ std::vector<FlownElement> flown_elements(const PathPlan& plan) {
         row.start_s = start_s;
         row.duration_s = flown.element_s[i];
         row.airspeed_m_per_s = element.airspeed_m_per_s;
-        if (const auto* leg = std::get_if<Leg>(&element.shape)) {
+        const auto* hold = std::get_if<Hold>(&element.shape);
+        const auto* timed = hold != nullptr && hold->over_ground ? &*hold->over_ground : nullptr;
+        if (const auto* leg = hold != nullptr ? timed : std::get_if<Leg>(&element.shape)) {
             row.kind = "leg";
             row.length_m = leg->length_m;
             row.course_deg = leg->course_deg;

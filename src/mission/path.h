@@ -36,6 +36,7 @@ struct Circles {
 /// For a time, straight and wherever it goes.
 struct Hold {
     double time_s = 0.0;
+    std::optional<Leg> over_ground = std::nullopt;  ///< of a leg whose time was measured
 };
 
 /// A part of a path, flown with one airspeed.

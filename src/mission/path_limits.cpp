@@ -45,6 +45,23 @@ class ExtentSearch {
         }
     }
 
+    /// The longest that can be flown at all, to within `apart`: a leg may forbid the way back of all that lie behind it.
+    std::optional<double> longest_flown(double most, double apart) {
+        constexpr int tried = 64;
+        if (fits(most)) return most;
+        double high = most;
+        for (int k = tried - 1; k > 0; --k, high -= most / tried) {
+            double low = most * k / tried;
+            if (!fits(low)) continue;
+            while (high - low > apart) {
+                const double middle = std::midpoint(low, high);
+                (fits(middle) ? low : high) = middle;
+            }
+            return low;
+        }
+        return std::nullopt;
+    }
+
     /// Halves what lies between an extent that is too short or good and one that is too long, until they are `apart`.
     std::optional<double> last_good(double low, double high, double apart, Chance chance = Chance::exact) {
         std::optional<double> good;
@@ -75,6 +92,16 @@ class ExtentSearch {
     }
 
   private:
+    bool fits(double extent) {
+        try {
+            mission(extent);
+            return true;
+        } catch (const InputError& error) {
+            misfit_ = error;
+            return false;
+        }
+    }
+
     const MissionOfExtent& mission_of_;
     std::optional<double> probability_;
     std::optional<InputError> misfit_;
@@ -127,13 +154,14 @@ FeasibilityLimit farthest_return(const MissionOfExtent& mission_of, double lengt
     if (!(length_m > 0.0))
         throw NoAnswerError("the path has no legs to turn back on: ways that take a duration_s or a hold are none");
     ExtentSearch search(mission_of, probability);
-    const auto spare = search.spare_percent(length_m);
-    if (!spare) search.refuse("the path cannot be flown there and back");
-    if (*spare >= 0.0) return search.limit(length_m, length_m);
     const double apart_m = length_m * (probability ? accuracy_of_chance : accuracy);
-    const auto good = search.last_good(0.0, length_m, apart_m);
+    const auto most_m = search.longest_flown(length_m, apart_m);
+    if (!most_m) search.refuse("the path cannot be flown there and back");
+    const auto spare = search.spare_percent(*most_m);
+    if (spare && *spare >= 0.0) return search.limit(*most_m, *most_m);
+    const auto good = search.last_good(0.0, *most_m, apart_m);
     if (!good) throw NoAnswerError("from nowhere along the path does the mission return with its reserve");
-    return search.limit(*good, std::min(length_m, *good + apart_m));
+    return search.limit(*good, std::min(*most_m, *good + apart_m));
 }
 
 }  // namespace flightwatt::mission

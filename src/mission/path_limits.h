@@ -27,7 +27,8 @@ FeasibilityLimit most_circles(const MissionOfExtent& mission_of,
                               const std::optional<double>& probability = std::nullopt);
 
 /// The farthest [m] along the legs, which are `length_m` long, from where a mission returns with its reserve; all of them
-/// if it returns from their end. Throws NoAnswerError if it does not return from anywhere.
+/// if it returns from their end. Legs behind one whose way back the wind forbids are none to return from. Throws
+/// NoAnswerError if it does not return from anywhere.
 FeasibilityLimit farthest_return(const MissionOfExtent& mission_of, double length_m,
                                  const std::optional<double>& probability = std::nullopt);
 

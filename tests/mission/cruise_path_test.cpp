@@ -21,6 +21,20 @@ using test::path_mission;
 const FlightPath up_and_on{{path_element(Leg{1300.0, 0.0}), path_element(Hold{50.0}, 13.0, 50.0),
                             path_element(Leg{1400.0, 90.0}, 14.0), path_element(Leg{700.0, 0.0}, 14.0)}};
 
+TEST(CruisePath, ShowsTheWayOfLegsWhoseTimeWasMeasured) {
+    const auto mission = path_mission(
+        {{path_element(Hold{50.0, Leg{700.0, 45.0}}), path_element(Hold{20.0}), path_element(Leg{260.0, 0.0})}});
+    const auto rows = flown_elements(*mission.cruise_path->plan);
+    ASSERT_EQ(rows.size(), 3U);
+    EXPECT_EQ(rows[0].kind, "leg");
+    EXPECT_EQ(rows[0].length_m, std::optional(700.0));
+    EXPECT_EQ(rows[0].course_deg, std::optional(45.0));
+    EXPECT_EQ(rows[0].duration_s, 50.0);
+    EXPECT_EQ(rows[1].kind, "hold");
+    EXPECT_FALSE(rows[1].length_m);
+    EXPECT_EQ(rows[2].duration_s, 20.0);
+}
+
 TEST(CruisePath, IsPiecesOfConstantPower) {
     const auto mission = path_mission(up_and_on);
     const auto& pieces = *mission.cruise_path->pieces;

@@ -63,6 +63,20 @@ TEST(PathLimits, FindTheFarthestPlaceToReturnFrom) {
     EXPECT_THROW(farthest_return(downwind, 600.0), InputError);
 }
 
+/// Out across the wind, and then with a wind that forbids that way back.
+TEST(PathLimits, StopWhereTheWindForbidsTheWayBack) {
+    const FlightPath path{{path_element(Leg{600.0, 90.0}), path_element(Leg{600.0, 0.0})}};
+    const Wind wind{12.9, 180.0};
+    const auto most = farthest_return(
+        [&](double after_m) {
+            return with_reserve(
+                path_mission(there_and_back(path, after_m, {}), after_m > 600.0 ? Wind{14.0, 180.0} : wind), 20.0);
+        },
+        length_of_legs_m(path));
+    EXPECT_NEAR(most.value, 600.0, 1e-5);
+    EXPECT_GT(most.final_soc_percent, 20.0);
+}
+
 TEST(PathLimits, KeepTheReserveWithAChance) {
     const auto mission_of = [](double circles) {
         auto mission = path_mission({{path_element(Circles{100.0, circles})}}, {3.0, 0.0, 1.0, 10.0});

@@ -135,8 +135,8 @@ class PathBuilder {
         const double length_m = std::hypot(east_m, north_m);
         const double course_deg = std::atan2(east_m, north_m) * units::degree_per_rad;
         if (entry.duration_s) {
-            add_element(entry, Hold{*entry.duration_s});
-            if (length_m > same_place_m) course_deg_ = course_deg;
+            if (length_m > same_place_m) course_deg_ = std::fmod(course_deg + 360.0, 360.0);
+            add_element(entry, Hold{*entry.duration_s, Leg{length_m, course_deg_}});
         } else if (length_m > same_place_m) {
             fly_leg(entry, length_m, course_deg);
         }

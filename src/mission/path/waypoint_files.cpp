@@ -6,6 +6,7 @@
 #include "base/toml_reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <functional>
 
 #include <fmt/format.h>
@@ -281,7 +282,8 @@ std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& f
 }
 
 std::vector<PathEntry> read_waypoints(const std::filesystem::path& path) {
-    const auto ending = path.extension();
+    auto ending = path.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const auto text = read_file(path);
     return ending == ".geojson" || ending == ".json" ? parse_geojson(text, path.string())
                                                      : parse_waypoint_csv(text, path.string());

@@ -1,6 +1,9 @@
 #include "mission/path/waypoint_files.h"
 
 #include "helpers/rejected.h"
+#include "helpers/test_paths.h"
+
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -52,6 +55,12 @@ TEST(WaypointFiles, AreGeoJson) {
     ASSERT_EQ(points.size(), 2U);
     EXPECT_EQ(points[1].hold_s, std::optional(30.0));
     EXPECT_FALSE(points[1].circles);
+}
+
+TEST(WaypointFiles, AreToldApartByTheirEndingInAnyCase) {
+    const auto file = test::scratch_dir() / "FIELD.GEOJSON";
+    std::ofstream(file) << R"({"type": "LineString", "coordinates": [[1.5, 43.5], [1.51, 43.5]]})";
+    EXPECT_EQ(read_waypoints(file).size(), 2U);
 }
 
 TEST(WaypointFiles, RefuseOtherJson) {
