@@ -22,6 +22,7 @@ struct StateLabel : RunStep {
     EffectiveCharge charge = {};
     double weighed_percent = 0.0;  ///< the charge less what its RC voltage costs at least
     double bound = 0.0;            ///< nothing that begins so has more utility
+    double promise = 0.0;          ///< where there is no room for all, those with the greatest are kept
 };
 
 /// What counts when labels of a slot are compared.

@@ -1,10 +1,12 @@
 #include "mission/planning/schedule_search.h"
 
+#include "mission/planning/cautious_value.h"
 #include "mission/planning/label_merge.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace flightwatt::mission {
@@ -48,9 +50,10 @@ void set_bound(const ScheduleValue& value, StateLabel& label) {
 
 /// What becomes of labels for which there is no room.
 enum class Crowd {
-    drop_by_bound,   ///< the least promising are dropped
-    drop_by_charge,  ///< the least promising of their charge: where a cut-off comes, bounds know little of it
-    join             ///< those that differ little become one
+    drop_by_bound,    ///< the least promising are dropped
+    drop_by_charge,   ///< the least promising of their charge: where a cut-off comes, bounds know little of it
+    drop_by_caution,  ///< those that promise least by a CautiousValue
+    join              ///< those that differ little become one
 };
 
 /// One pass from the first slot to the last with at most so many labels at a time.
@@ -60,6 +63,7 @@ class StatePass {
         std::size_t most_labels = 0;
         double utility_gap = 0.0;
         Crowd crowd = Crowd::join;
+        const CautiousValue* caution = nullptr;  ///< of drop_by_caution
     };
 
     StatePass(const ScheduleQuestion& question, const KnapsackGraph& graph, const ScheduleValue& value,
@@ -202,9 +206,14 @@ class StatePass {
         const auto last = labels.begin() + static_cast<std::ptrdiff_t>(limits_.most_labels);
         if (last >= labels.end()) return;
         std::ranges::nth_element(labels.begin() + static_cast<std::ptrdiff_t>(kept), last, labels.end(),
-                                 std::ranges::greater(), &StateLabel::bound);
-        dropped_bound_ = std::max(dropped_bound_, last->bound);
+                                 std::ranges::greater(), &StateLabel::promise);
+        for (auto label = last; label != labels.end(); ++label) dropped_bound_ = std::max(dropped_bound_, label->bound);
         labels.erase(last, labels.end());
+    }
+
+    double promise_of(std::size_t i, const StateLabel& label) const {
+        if (limits_.caution == nullptr) return label.bound;
+        return label.utility + utility_to_go(*limits_.caution, i, label.state.soc_percent);
     }
 
     void merge(std::size_t i, std::vector<StateLabel>& labels) {
@@ -217,6 +226,7 @@ class StatePass {
         const MergeWeights weights{value_.rc_low[i], value_.rc_high[i], value_.rc_joined[i], utility_per_percent_,
                                    as_good_};
         auto kept = merged(labels, weights, tolerance_);
+        for (auto& label : kept) label.promise = promise_of(i, label);
         if (kept.size() > limits_.most_labels && limits_.crowd != Crowd::join) {
             if (limits_.crowd == Crowd::drop_by_charge) move_best_of_each_charge_first(kept);
             drop_least_promising(kept, limits_.crowd == Crowd::drop_by_charge ? limits_.most_labels / 2 : 0);
@@ -286,6 +296,8 @@ KnapsackEffort affordable(KnapsackEffort effort, const KnapsackGraph& graph) {
 }
 
 constexpr std::size_t beam_labels = 100;
+constexpr std::size_t times_beam = 5;
+constexpr std::size_t few_slots = 20;
 
 /// What a search has come to.
 struct SearchState {
@@ -301,7 +313,6 @@ struct SearchState {
 /// Passes with ever more labels: the first drop what is less promising, to have a good schedule soon, the others prove.
 void improve(const ScheduleQuestion& question, const KnapsackGraph& graph, const KnapsackEffort& effort,
              SearchState& search) {
-    constexpr std::size_t times_more = 5;
     const auto value = make_schedule_value(question, graph, effort.value_cells);
     // Behind the slots that are committed already.
     StateLabel first{{0, graph.begin_choice, 0}, question.start, graph.before_begin.utility};
@@ -312,25 +323,47 @@ void improve(const ScheduleQuestion& question, const KnapsackGraph& graph, const
     }
     set_bound(value, first);
     search.bound = std::min(search.bound, first.bound);
-    const auto pass = [&](std::size_t labels, Crowd crowd) {
+    const auto pass = [&](std::size_t labels, Crowd crowd, const CautiousValue* caution = nullptr) {
         if (search.is_within(effort.relative_gap) || !std::isfinite(search.bound)) return;
         const double gap = effort.relative_gap * std::max(std::abs(search.bound), 1e-9);
-        StatePass labelled(question, graph, value, first, {std::min(labels, effort.most_labels), gap, crowd});
+        StatePass labelled(question, graph, value, first, {std::min(labels, effort.most_labels), gap, crowd, caution});
         search.bound = std::min(search.bound, labelled.run(search.best));
         search.bound_is_flown = labelled.bound_is_flown();
     };
     std::size_t labels = beam_labels;
     if (search.bound_is_flown) {
-        labels *= times_more;  // of a search before: a good schedule is known
+        labels *= times_beam;  // of a search before: a good schedule is known
     } else {
         pass(labels, Crowd::drop_by_bound);
-        if (question.quick.cutoff_voltage_v > 0.0) pass(labels, Crowd::drop_by_charge);
+        if (question.quick.cutoff_voltage_v > 0.0 && !search.is_within(effort.relative_gap)) {
+            pass(labels, Crowd::drop_by_charge);
+            const auto caution = make_cautious_value(question, graph, value, effort.value_cells);
+            pass(labels, Crowd::drop_by_caution, &caution);
+        }
         if (effort.most_labels <= beam_labels) return;
     }
     do {
-        labels *= times_more;
+        labels *= times_beam;
         pass(labels, Crowd::join);
     } while (labels < effort.most_labels && !search.bound_is_flown);
+}
+
+/// Looks for a first schedule among those whose choices stay for a few slots: these are far fewer, and where a cut-off
+/// comes late a search among all of them seldom meets one that lands with much.
+void begin_with_long_runs(const ScheduleQuestion& question, SearchState& search) {
+    constexpr double slots_a_run = 3.0;
+    constexpr KnapsackEffort quick_effort{1e-3, beam_labels, 32};
+    auto choices = question.choices;
+    const double mission_s = std::accumulate(choices.slots.begin(), choices.slots.end(), 0.0,
+                                             [](double sum_s, const auto& slot) { return sum_s + slot.duration_s; });
+    choices.dwell_s = std::max(choices.dwell_s, slots_a_run * mission_s / static_cast<double>(choices.slots.size()));
+    const ScheduleQuestion coarse{question.exact, question.quick, question.closer,
+                                  choices,        question.start, question.reserve_soc_percent};
+    const auto graph = graph_of(coarse);
+    if (!graph.possible) return;
+    SearchState found{search.best};
+    improve(coarse, graph, affordable(quick_effort, graph), found);
+    search.best = std::move(found.best);
 }
 
 }  // namespace
@@ -341,6 +374,9 @@ KnapsackSolution search_schedule(const ScheduleQuestion& question, const Knapsac
     const auto least = least_schedule(question, graph);
     SearchState search;
     if (least.end_percent >= question.reserve_soc_percent) search.best = least;
+    const bool may_take_time = effort.most_labels > times_beam * beam_labels;  // and is none of a flight's many plans
+    if (question.quick.cutoff_voltage_v > 0.0 && graph.slots > few_slots && may_take_time)
+        begin_with_long_runs(question, search);
     improve(question, graph, effort, search);
     if (!search.is_within(effort.relative_gap) && search.bound_is_flown) {
         // What keeps the bound up lands in the quick dynamics, but not in the exact ones.
