@@ -104,9 +104,21 @@ int take_path(const cli::StageCall& call, const std::string& file) {
     return cli::ok;
 }
 
+/// How flights are read has no meaning for a mission.
+void refuse_flight_options(const cli::StageCall& call) {
+    boost::program_options::options_description of_flights;
+    cli::add_flight_options(of_flights);
+    for (const auto& option : of_flights.options()) {
+        const auto& name = option->long_name();
+        if (call.options.count(name) > 0 && !call.options[name].defaulted())
+            throw UsageError(fmt::format("--{} goes with --path-from", name));
+    }
+}
+
 int path_stage(const cli::StageCall& call) {
     const auto log = call.maybe<std::string>("path-from");
     if (log.has_value() == !call.inputs.empty()) throw UsageError("give a mission, or a log with --path-from");
+    if (!log) refuse_flight_options(call);
     return log ? take_path(call, *log) : show_path(call);
 }
 
