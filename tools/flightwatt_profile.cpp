@@ -172,7 +172,7 @@ it stopped. Without duration_s in SPEC a run is as long as its command, ended as
 with it the command is ended when its time is over, whatever it does. Runs that succeeded are not done
 again while their part of SPEC is the same; remove DIR when a program itself has changed.
 
-Samplers: auto, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, recorded.)"};
+Samplers: auto, ina238, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, recorded.)"};
     stage.output_help = "the folder of the results";
     auto add = stage.options.add_options();
     add("sampler", cli::value("KIND"), "sample with this instead of what SPEC says");

@@ -32,7 +32,8 @@ struct Sensor {
 };
 
 std::vector<Sensor> probe(const std::filesystem::path& sysfs) {
-    return {{SamplerKind::ina3221_iio, iio_rails(sysfs), {}},
+    return {{SamplerKind::ina238, ina238_rails(sysfs), {}},
+            {SamplerKind::ina3221_iio, iio_rails(sysfs), {}},
             {SamplerKind::ina3221_hwmon, hwmon_rails(sysfs), {}},
             {SamplerKind::rapl, {}, energy_counters(sysfs)},
             {SamplerKind::power_supply, power_supply_rails(sysfs), {}}};
@@ -134,7 +135,7 @@ PowerSampler open_sampler(const SamplerSettings& settings) {
         return sampler;
     }
     throw NoAnswerError(fmt::format(
-        "there is no {} below {} that can be read; looked for INA3221 (bus/i2c/drivers/ina3221*, bus/iio, "
+        "there is no {} below {} that can be read; looked for INA238 and INA3221 (bus/i2c/drivers/ina*, bus/iio, "
         "class/hwmon), RAPL (class/powercap, often for root alone) and class/power_supply; a [sampler] of "
         "kind \"command\" reads any other meter",
         settings.kind == SamplerKind::automatic ? "power sensor"

@@ -104,6 +104,20 @@ void add_hwmon_channels(const path& folder, std::vector<PowerRail>& rails) {
     }
 }
 
+/// The folders of a chip's hwmon driver.
+std::vector<path> hwmon_devices(const path& sysfs, std::string_view chip_name) {
+    std::vector<path> devices;
+    for (const auto& driver : sysfs_entries(sysfs / "bus/i2c/drivers", chip_name)) {
+        for (const auto& chip : sysfs_entries(driver)) {
+            for (const auto& device : sysfs_entries(chip / "hwmon", "hwmon")) add_device(devices, device);
+        }
+    }
+    for (const auto& device : sysfs_entries(sysfs / "class/hwmon", "hwmon")) {
+        if (sysfs_text(device / "name").value_or("").starts_with(chip_name)) add_device(devices, device);
+    }
+    return devices;
+}
+
 }  // namespace
 
 std::vector<std::size_t> rails_of_total(const std::vector<std::string>& names, const std::vector<std::string>& wanted) {
@@ -143,17 +157,25 @@ std::vector<PowerRail> iio_rails(const path& sysfs) {
 }
 
 std::vector<PowerRail> hwmon_rails(const path& sysfs) {
-    std::vector<path> devices;
-    for (const auto& driver : sysfs_entries(sysfs / "bus/i2c/drivers", "ina3221")) {
-        for (const auto& chip : sysfs_entries(driver)) {
-            for (const auto& device : sysfs_entries(chip / "hwmon", "hwmon")) add_device(devices, device);
+    std::vector<PowerRail> rails;
+    for (const auto& folder : hwmon_devices(sysfs, "ina3221")) add_hwmon_channels(folder, rails);
+    return rails;
+}
+
+std::vector<PowerRail> ina238_rails(const path& sysfs) {
+    std::vector<PowerRail> rails;
+    for (const auto& folder : hwmon_devices(sysfs, "ina238")) {
+        const auto name = sysfs_text(folder / "in1_label").value_or("VIN " + folder.filename().string());
+        const auto power = folder / "power1_input";
+        const auto voltage = folder / "in1_input";
+        const auto current = folder / "curr1_input";
+        if (sysfs_number(power)) {
+            rails.push_back(
+                {name, power.string(), [power] { return units::watt_from_microwatt(require_sysfs_number(power)); }});
+        } else if (sysfs_number(voltage) && sysfs_number(current)) {
+            rails.push_back(product_rail(name, voltage, current));
         }
     }
-    for (const auto& device : sysfs_entries(sysfs / "class/hwmon", "hwmon")) {
-        if (sysfs_text(device / "name").value_or("").starts_with("ina3221")) add_device(devices, device);
-    }
-    std::vector<PowerRail> rails;
-    for (const auto& folder : devices) add_hwmon_channels(folder, rails);
     return rails;
 }
 

@@ -38,6 +38,11 @@ std::vector<PowerRail> iio_rails(const std::filesystem::path& sysfs);
 /// [mV] times curr1_input [mA]; channels with in1_enable 0 are passed over.
 std::vector<PowerRail> hwmon_rails(const std::filesystem::path& sysfs);
 
+/// TI INA238 through the kernel's hwmon driver (Jetson Thor, where it measures the input; Documentation/hwmon/ina238):
+/// class/hwmon/hwmon2 whose name is ina238, and bus/i2c/drivers/ina238/2-0044/hwmon/hwmon2, with power1_input [uW], else
+/// in1_input [mV] times curr1_input [mA]; in0 is the shunt's voltage.
+std::vector<PowerRail> ina238_rails(const std::filesystem::path& sysfs);
+
 /// Batteries and supplies: class/power_supply/BAT0 with power_now [uW], else voltage_now [uV] times
 /// current_now [uA]. Those whose status is Charging or Full do not show the load, and are passed over.
 std::vector<PowerRail> power_supply_rails(const std::filesystem::path& sysfs);

@@ -11,8 +11,8 @@ namespace flightwatt::compute {
 namespace {
 
 /// In the order of SamplerKind; the last one is another name for two of the others, and is not advertised.
-const std::vector<std::string_view> kind_names{"auto",         "ina3221-iio", "ina3221-hwmon", "rapl",
-                                               "power_supply", "command",     "recorded",      "ina3221"};
+const std::vector<std::string_view> kind_names{"auto",         "ina238",  "ina3221-iio", "ina3221-hwmon", "rapl",
+                                               "power_supply", "command", "recorded",    "ina3221"};
 
 SamplerKind kind_of(const TomlTable& table) {
     const auto name = table.optional_string("kind");

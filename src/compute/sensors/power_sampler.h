@@ -19,7 +19,17 @@ struct PowerReading {
 };
 
 /// `automatic` stands for the first sensor that is there, in this order; `ina3221` for either way to it.
-enum class SamplerKind { automatic, ina3221_iio, ina3221_hwmon, rapl, power_supply, command, recorded, ina3221 };
+enum class SamplerKind {
+    automatic,
+    ina238,
+    ina3221_iio,
+    ina3221_hwmon,
+    rapl,
+    power_supply,
+    command,
+    recorded,
+    ina3221
+};
 
 /// "auto", "ina3221-iio" and so on.
 std::string_view to_string(SamplerKind kind);

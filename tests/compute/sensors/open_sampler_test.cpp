@@ -112,6 +112,25 @@ TEST_F(SensorTree, JetsonAgxOrinAddsItsRails) {
     EXPECT_DOUBLE_EQ(power_w(settings()), 2.4 + 0.4 + 3.0);
 }
 
+TEST_F(SensorTree, JetsonThorMeasuresItsInputByIna238) {
+    const path device = "bus/i2c/drivers/ina238/2-0044/hwmon/hwmon1";
+    put(device / "name", "ina238");
+    put(device / "in0_input", "3");  // across the shunt
+    put(device / "in1_input", "19800");
+    put(device / "curr1_input", "1500");
+    std::filesystem::create_directories(root / "class/hwmon");
+    std::filesystem::create_directory_symlink(root / device, root / "class/hwmon/hwmon1");
+    put("class/hwmon/hwmon2/name", "ina3221");
+    put_hwmon_channel("class/hwmon/hwmon2", 1, "VDD_GPU", "20000", "120");
+    EXPECT_DOUBLE_EQ(power_w(settings()), 29.7);
+    put(device / "power1_input", "31250000");
+    const auto sampler = open_sampler(settings());
+    EXPECT_EQ(sampler.kind, SamplerKind::ina238);
+    EXPECT_THAT(sampler.found, ElementsAre("ina238: VIN hwmon1", "ina3221-hwmon: VDD_GPU"));
+    EXPECT_DOUBLE_EQ(power_w(settings()), 31.25);
+    EXPECT_DOUBLE_EQ(power_w(settings(SamplerKind::ina3221)), 2.4);
+}
+
 TEST_F(SensorTree, HwmonPassesOverChannelsThatAreOff) {
     put("class/hwmon/hwmon0/name", "ina3221");
     put_hwmon_channel("class/hwmon/hwmon0", 1, "", "5000", "1000");
