@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "telemetry/files/protocol_xml.h"
 
 #include <algorithm>
 #include <initializer_list>
@@ -14,42 +15,12 @@
 namespace flightwatt::telemetry {
 namespace {
 
-/// Attributes are upper case, lower case, or both in one file.
-std::string attribute(const pugi::xml_node& node, std::string_view lower) {
-    std::string upper(lower);
-    std::transform(upper.begin(), upper.end(), upper.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    const auto found = node.attribute(std::string(lower).c_str());
-    return found ? found.value() : node.attribute(upper.c_str()).value();
-}
-
-std::size_t line_of(std::string_view text, std::size_t offset) {
-    const auto* begin = text.data();
-    return 1 + static_cast<std::size_t>(std::count(begin, begin + std::min(offset, text.size()), '\n'));
-}
-
-MessageDefinition read_message(const pugi::xml_node& node) {
-    MessageDefinition message{attribute(node, "name"), {}, ".log"};
-    for (const auto& field : node.children("field")) {
-        message.fields.push_back({attribute(field, "name"), attribute(field, "type"), attribute(field, "unit"),
-                                  attribute(field, "alt_unit"), parse_number(attribute(field, "alt_unit_coef"))});
-    }
-    return message;
-}
-
 /// The messages that an aircraft sends stand in class "telemetry"; other classes may reuse their names.
-void read_protocol(const pugi::xml_node& protocol, LogConfiguration& configuration) {
-    for (const bool telemetry : {true, false}) {
-        for (const auto& node : protocol.children()) {
-            const std::string_view tag = node.name();
-            if (tag != "class" && tag != "msg_class") continue;
-            if ((attribute(node, "name") == "telemetry") != telemetry) continue;
-            for (const auto& message : node.children("message")) {
-                auto definition = read_message(message);
-                auto name = definition.name;
-                configuration.messages.emplace(std::move(name), std::move(definition));
-            }
-        }
+void read_messages(std::vector<ProtocolMessage> protocol, LogConfiguration& configuration) {
+    std::ranges::stable_partition(protocol, [](const auto& message) { return message.class_name == "telemetry"; });
+    for (auto& message : protocol) {
+        auto name = message.definition.name;
+        configuration.messages.emplace(std::move(name), std::move(message.definition));
     }
 }
 
@@ -95,23 +66,23 @@ void for_each_tag(std::string_view text, std::string_view name, Use&& use) {
 
 AircraftConfiguration read_aircraft(std::string_view text, const pugi::xml_node& node) {
     AircraftConfiguration aircraft;
-    aircraft.id = attribute(node, "ac_id");
-    aircraft.name = attribute(node, "name");
+    aircraft.id = xml_attribute(node, "ac_id");
+    aircraft.name = xml_attribute(node, "name");
     for_each_tag(text, "flight_plan", [&](const pugi::xml_node& plan) {
-        if (!aircraft.ground_altitude_m) aircraft.ground_altitude_m = parse_number(attribute(plan, "ground_alt"));
+        if (!aircraft.ground_altitude_m) aircraft.ground_altitude_m = parse_number(xml_attribute(plan, "ground_alt"));
     });
     for_each_tag(text, "firmware", [&](const pugi::xml_node& firmware) {
         if (aircraft.firmware.empty() || aircraft.firmware == "test_progs")
-            aircraft.firmware = attribute(firmware, "name");
+            aircraft.firmware = xml_attribute(firmware, "name");
     });
     int position = 0;
     for_each_tag(text, "block", [&](const pugi::xml_node& block) {
-        const auto number = parse_unsigned(attribute(block, "no"));
-        aircraft.block_names.emplace(number ? static_cast<int>(*number) : position, attribute(block, "name"));
+        const auto number = parse_unsigned(xml_attribute(block, "no"));
+        aircraft.block_names.emplace(number ? static_cast<int>(*number) : position, xml_attribute(block, "name"));
         ++position;
     });
     for_each_tag(text, "define", [&](const pugi::xml_node& define) {
-        const auto name = attribute(define, "name");
+        const auto name = xml_attribute(define, "name");
         if (name.starts_with("MilliAmpereOfAdc")) {
             aircraft.current_origin = CurrentOrigin::sensor;
         } else if (name.starts_with("MILLIAMP_AT_FULL_THROTTLE") && aircraft.current_origin == CurrentOrigin::unknown) {
@@ -141,26 +112,9 @@ void read_all_aircraft(std::string_view text, LogConfiguration& configuration) {
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file) {
     LogConfiguration configuration;
     configuration.file = file;
-    const auto begin = text.find("<protocol");
-    constexpr std::string_view closing = "</protocol>";
-    const auto end = begin == std::string::npos ? begin : text.find(closing, begin);
-    if (end == std::string::npos) {
-        throw InputError({file.string()}, "holds no <protocol> element with message definitions",
-                         "expected the .log that Paparazzi's server wrote beside the .data");
-    }
-    pugi::xml_document document;
-    const auto parsed = document.load_buffer(text.data() + begin, end + closing.size() - begin);
-    if (!parsed) {
-        const auto offset = begin + static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0));
-        throw InputError({file.string(), line_of(text, offset)},
-                         fmt::format("its <protocol> is not XML: {}", parsed.description()));
-    }
-    read_protocol(document.child("protocol"), configuration);
-    if (configuration.messages.empty()) {
-        throw InputError({file.string(), line_of(text, begin)}, "its <protocol> defines no message");
-    }
+    read_messages(parse_protocol(text, file), configuration);
     for_each_tag(text, "configuration", [&](const pugi::xml_node& node) {
-        const auto time_s = parse_number(attribute(node, "time_of_day"));
+        const auto time_s = parse_number(xml_attribute(node, "time_of_day"));
         if (!configuration.time_of_day_s && time_s && *time_s > 0.0) configuration.time_of_day_s = time_s;
     });
     read_all_aircraft(text, configuration);

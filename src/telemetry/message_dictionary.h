@@ -40,8 +40,16 @@ struct WireMessage {
     std::uint8_t id = 0;
     std::vector<WireField> fields;  ///< of definition.fields, one each
 
+    std::size_t fixed_bytes = 0;  ///< of the fields that are not counted
+    bool has_counted = false;
+
     /// Whether fields of these types fill the payload to its last byte, and need none beyond.
-    bool fits(std::string_view payload) const;
+    bool fits(std::string_view payload) const {
+        return has_counted ? fits_counted(payload) : payload.size() == fixed_bytes;
+    }
+
+  private:
+    bool fits_counted(std::string_view payload) const;
 };
 
 /// The messages of all classes of a <protocol>, found by the numbers that frames carry.
