@@ -22,7 +22,7 @@ using boost::system::error_code;
 
 /// An announcement is a single datagram, which may be lost: while nobody has answered it is said again. Never to those
 /// who have: Ivy's C library would connect once more.
-constexpr std::chrono::seconds announce_again{3};
+constexpr std::chrono::seconds announce_again{1};
 constexpr std::size_t most_peers = 64;
 
 using ReusePort = asio::detail::socket_option::boolean<SOL_SOCKET, SO_REUSEPORT>;
@@ -59,12 +59,18 @@ std::string new_id(std::uint16_t port) {
 }  // namespace
 
 IvyAgent::IvyAgent(asio::io_context& context, IvyAgentSetup setup)
-    : context_(context), setup_(std::move(setup)), bus_socket_(context), acceptor_(context), timer_(context), accept_timer_(context) {
+    : context_(context),
+      setup_(std::move(setup)),
+      bus_socket_(context),
+      acceptor_(context),
+      timer_(context),
+      accept_timer_(context) {
     open_bus(bus_socket_, setup_.bus);
     error_code error;
     acceptor_.open(tcp::v4(), error);
     // On a bus of this machine alone nobody else is given a door.
-    if (!error) acceptor_.bind({setup_.bus.is_local() ? asio::ip::address_v4::loopback() : asio::ip::address_v4(), 0}, error);
+    if (!error)
+        acceptor_.bind({setup_.bus.is_local() ? asio::ip::address_v4::loopback() : asio::ip::address_v4(), 0}, error);
     if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
     check(error, setup_.bus, "take connections");
     port_ = acceptor_.local_endpoint().port();

@@ -71,7 +71,8 @@ void IvyMessages::release() {
 }
 
 bool IvyMessages::waits() const {
-    return std::any_of(replays_.begin(), replays_.end(), [](const auto& replay) { return !replay.second.waiting.empty(); });
+    return std::any_of(replays_.begin(), replays_.end(),
+                       [](const auto& replay) { return !replay.second.waiting.empty(); });
 }
 
 }  // namespace flightwatt::live

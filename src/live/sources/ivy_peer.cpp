@@ -15,7 +15,7 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-constexpr std::size_t most_subscriptions = 4096;   // of one agent; Paparazzi's have some dozens
+constexpr std::size_t most_subscriptions = 4096;  // of one agent; Paparazzi's have some dozens
 constexpr std::size_t most_waiting_bytes = 4'000'000;
 
 /// An agent whose machine is gone says nothing any more: the system finds out within a minute.
@@ -60,20 +60,21 @@ void IvyPeer::begin() {
 }
 
 void IvyPeer::listen() {
-    socket_.async_read_some(asio::buffer(received_), [self = shared_from_this()](const error_code& error, std::size_t n) {
-        if (self->closed_) return;
-        self->lines_.clear();
-        self->buffer_.push({self->received_.data(), n}, self->lines_);
-        for (; self->overlong_ < self->buffer_.overlong(); ++self->overlong_) {
-            self->agent_.setup().on_unusable("lines longer than any message");
-        }
-        for (const auto& line : self->lines_) {
-            if (!self->closed_) self->heed_line(line);
-        }
-        if (self->closed_) return;
-        if (error) return self->lose();
-        self->listen();
-    });
+    socket_.async_read_some(asio::buffer(received_),
+                            [self = shared_from_this()](const error_code& error, std::size_t n) {
+                                if (self->closed_) return;
+                                self->lines_.clear();
+                                self->buffer_.push({self->received_.data(), n}, self->lines_);
+                                for (; self->overlong_ < self->buffer_.overlong(); ++self->overlong_) {
+                                    self->agent_.setup().on_unusable("lines longer than any message");
+                                }
+                                for (const auto& line : self->lines_) {
+                                    if (!self->closed_) self->heed_line(line);
+                                }
+                                if (self->closed_) return;
+                                if (error) return self->lose();
+                                self->listen();
+                            });
 }
 
 void IvyPeer::heed_line(const std::string& line) {
@@ -137,7 +138,8 @@ void IvyPeer::send(std::string_view message) {
 
 void IvyPeer::write(std::string_view text) {
     if (closed_ || !begun_) return;
-    if (outgoing_.size() + text.size() > most_waiting_bytes) return agent_.setup().on_unusable("messages too many to send");
+    if (outgoing_.size() + text.size() > most_waiting_bytes)
+        return agent_.setup().on_unusable("messages too many to send");
     outgoing_ += text;
     if (writing_.empty()) write_next();
 }
@@ -145,12 +147,13 @@ void IvyPeer::write(std::string_view text) {
 void IvyPeer::write_next() {
     std::swap(writing_, outgoing_);
     if (writing_.empty()) return;
-    asio::async_write(socket_, asio::buffer(writing_), [self = shared_from_this()](const error_code& error, std::size_t) {
-        self->writing_.clear();
-        if (self->closed_) return;
-        if (error) return self->lose();
-        self->write_next();
-    });
+    asio::async_write(socket_, asio::buffer(writing_),
+                      [self = shared_from_this()](const error_code& error, std::size_t) {
+                          self->writing_.clear();
+                          if (self->closed_) return;
+                          if (error) return self->lose();
+                          self->write_next();
+                      });
 }
 
 void IvyPeer::close() {

@@ -56,7 +56,8 @@ std::string parse_network(std::string_view text, std::string_view bus) {
 }  // namespace
 
 bool IvyBus::is_local() const {
-    return std::all_of(networks.begin(), networks.end(), [](const auto& network) { return network.starts_with("127."); });
+    return std::all_of(networks.begin(), networks.end(),
+                       [](const auto& network) { return network.starts_with("127."); });
 }
 
 IvyBus parse_ivy_bus(std::string_view text) {

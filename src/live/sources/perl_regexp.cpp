@@ -11,8 +11,8 @@ namespace flightwatt::live {
 std::optional<PerlRegexp> PerlRegexp::compile(const std::string& expression) {
     int error = 0;
     PCRE2_SIZE where = 0;
-    auto* code = ::pcre2_compile(reinterpret_cast<PCRE2_SPTR>(expression.data()), expression.size(), 0, &error, &where,
-                                 nullptr);
+    auto* code =
+        ::pcre2_compile(reinterpret_cast<PCRE2_SPTR>(expression.data()), expression.size(), 0, &error, &where, nullptr);
     if (code == nullptr) return std::nullopt;
     return PerlRegexp({code, [](void* pointer) { ::pcre2_code_free(static_cast<pcre2_code*>(pointer)); }});
 }
@@ -22,8 +22,8 @@ std::optional<std::vector<std::string_view>> PerlRegexp::groups_in(std::string_v
     const std::unique_ptr<pcre2_match_data, decltype(&::pcre2_match_data_free)> match(
         ::pcre2_match_data_create_from_pattern(code, nullptr), &::pcre2_match_data_free);
     if (!match) return std::nullopt;
-    const int found = ::pcre2_match(code, reinterpret_cast<PCRE2_SPTR>(text.data()), text.size(), 0, 0, match.get(),
-                                    nullptr);
+    const int found =
+        ::pcre2_match(code, reinterpret_cast<PCRE2_SPTR>(text.data()), text.size(), 0, 0, match.get(), nullptr);
     if (found < 1) return std::nullopt;
     std::uint32_t groups = 0;
     ::pcre2_pattern_info(code, PCRE2_INFO_CAPTURECOUNT, &groups);

@@ -12,7 +12,6 @@ namespace flightwatt::live {
 namespace {
 
 using testing::ElementsAre;
-using namespace std::string_literals;
 
 TEST(IvyBus, IsReadAsIvysLibrariesDo) {
     const auto whole = parse_ivy_bus("127.255.255.255:2010");
@@ -26,7 +25,8 @@ TEST(IvyBus, IsReadAsIvysLibrariesDo) {
     const auto two = parse_ivy_bus("192.168.1,10.31:3000");
     EXPECT_THAT(two.networks, ElementsAre("192.168.1.255", "10.31.255.255"));
     EXPECT_FALSE(two.is_local());
-    for (const auto* wrong : {"127:", "127:0", "127:65536", "127:x", "1.2.3.4.5:2010", "256:2010", "bus:2010", "127,:1x"}) {
+    for (const auto* wrong :
+         {"127:", "127:0", "127:65536", "127:x", "1.2.3.4.5:2010", "256:2010", "bus:2010", "127,:1x"}) {
         EXPECT_THROW(parse_ivy_bus(wrong), UsageError) << wrong;
     }
 }
@@ -51,7 +51,7 @@ TEST(IvyLine, IsReadAndWritten) {
     EXPECT_EQ(to_ivy_line(IvyType::start, 4123, "watch"), "6 4123\002watch\n");
     EXPECT_EQ(to_ivy_line(IvyType::end_of_subscriptions, 0), "5 0\002\n");
     EXPECT_EQ(to_ivy_line(IvyType::message, 1, "two\nlines"), "2 1\002two lines\n");
-    const auto message = parse_ivy_line("2 3\00220 ENERGY 57\003more\003"s);
+    const auto message = parse_ivy_line("2 3\00220 ENERGY 57\003more\003");
     ASSERT_TRUE(message);
     EXPECT_EQ(message->type, 2);
     EXPECT_EQ(message->id, 3);

@@ -16,7 +16,8 @@ TEST(PerlRegexp, FindsTheGroupsOfSubscriptions) {
     EXPECT_THAT(PerlRegexp::compile("(.*)")->groups_in("20 ENERGY 57"), Optional(ElementsAre("20 ENERGY 57")));
     EXPECT_THAT(PerlRegexp::compile("^([^ ]*) +(ENERGY( .*|$))")->groups_in("20 ENERGY 57"),
                 Optional(ElementsAre("20", "ENERGY 57", " 57")));
-    EXPECT_THAT(PerlRegexp::compile(R"(^(\d+) (?:BAT|(ALIVE))?)")->groups_in("20 PONG "), Optional(ElementsAre("20", "")));
+    EXPECT_THAT(PerlRegexp::compile(R"(^(\d+) (?:BAT|(ALIVE))?)")->groups_in("20 PONG "),
+                Optional(ElementsAre("20", "")));
     EXPECT_THAT(PerlRegexp::compile("ALIVE")->groups_in("20 ALIVE"), Optional(ElementsAre()));
     EXPECT_FALSE(PerlRegexp::compile("^ALIVE")->groups_in("20 ALIVE"));
     EXPECT_FALSE(PerlRegexp::compile("(20"));
