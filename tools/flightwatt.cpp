@@ -41,6 +41,7 @@ constexpr StageLine stages[] = {
     {"compare", "several missions, ranked by final state of charge"},
     {"plan", "the schedule of highest utility that lands a mission with its reserve"},
     {"path", "the path of a mission leg by leg; of a log as waypoints"},
+    {"play", "a log once more as it came in, over the links that watch listens to"},
     {"report", "flights, model and missions as one page, and figures for papers"},
     {"synthesize", "synthetic Paparazzi logs of flights after a model"},
 };

@@ -2,13 +2,13 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "live/sources/host_and_port.h"
 #include "live/sources/ivy_receiver.h"
 #include "live/sources/receiving_source.h"
 #include "live/sources/serial_receiver.h"
 #include "live/sources/udp_receiver.h"
 
-#include <cstdint>
-#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -16,21 +16,6 @@
 
 namespace flightwatt::live {
 namespace {
-
-using boost::asio::ip::udp;
-
-/// "4242", "127.0.0.1:4242".
-udp::endpoint parse_udp_address(std::string_view text) {
-    const auto colon = text.rfind(':');
-    const auto host = colon == std::string_view::npos ? std::string_view("0.0.0.0") : text.substr(0, colon);
-    const auto port = parse_unsigned(colon == std::string_view::npos ? text : text.substr(colon + 1));
-    boost::system::error_code error;
-    const auto address = boost::asio::ip::make_address_v4(host, error);
-    if (error || !port || *port == 0 || *port > std::numeric_limits<std::uint16_t>::max()) {
-        throw UsageError(fmt::format("UDP '{}': expected PORT or ADDRESS:PORT, as 4242 or 127.0.0.1:4242", text));
-    }
-    return {address, static_cast<std::uint16_t>(*port)};
-}
 
 /// "/dev/ttyUSB0:57600"; device names may have colons of their own.
 std::pair<std::string, unsigned> parse_serial_line(std::string_view text) {
