@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "live/sources/binary_log_source.h"
 #include "live/sources/host_and_port.h"
 #include "live/sources/ivy_receiver.h"
 #include "live/sources/receiving_source.h"
@@ -51,6 +52,11 @@ std::unique_ptr<MessageSource> open_serial(std::string_view line, telemetry::Mes
         auto [device, baud] = parse_serial_line(line);
         return std::make_unique<SerialReceiver>(context, queue, std::move(device), baud, std::move(definitions));
     });
+}
+
+std::unique_ptr<MessageSource> follow_binary_log(const std::filesystem::path& path,
+                                                 telemetry::MessageDictionary definitions) {
+    return std::make_unique<BinaryLogSource>(path, std::move(definitions));
 }
 
 }  // namespace flightwatt::live

@@ -3,6 +3,7 @@
 #include "live/source.h"
 #include "telemetry/message_dictionary.h"
 
+#include <filesystem>
 #include <memory>
 #include <string_view>
 
@@ -21,5 +22,10 @@ std::unique_ptr<MessageSource> open_udp(std::string_view at, telemetry::MessageD
 /// Link frames, or an XBee's packets, on a serial line: "/dev/ttyUSB0:57600"; without a speed 57600.
 std::unique_ptr<MessageSource> open_serial(std::string_view line, telemetry::MessageDictionary definitions,
                                            double clock_factor = 1.0);
+
+/// A binary log that is being written: an SD card's, with the times of its frames, or a capture of a link or an XBee. Where
+/// the file gets shorter or another takes its name, that is read from its beginning.
+std::unique_ptr<MessageSource> follow_binary_log(const std::filesystem::path& path,
+                                                 telemetry::MessageDictionary definitions);
 
 }  // namespace flightwatt::live

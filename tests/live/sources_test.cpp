@@ -1,5 +1,6 @@
 #include "live/sources.h"
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "helpers/free_port.h"
 #include "helpers/link_lines.h"
@@ -9,6 +10,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -171,6 +173,54 @@ TEST(SerialSource, IsRefusedWhereThereIsNone) {
     EXPECT_THROW(open_serial("/dev/null:57600", test::small_dictionary()), InputError);
     EXPECT_THROW(open_serial("/dev/never:0", test::small_dictionary()), UsageError);
     EXPECT_THROW(open_serial(":57600", test::small_dictionary()), UsageError);
+}
+
+/// Card frames, a tenth of a second each.
+std::string card_frames_of(const std::vector<std::string>& lines) {
+    std::string frames;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const auto link = frames_of({lines[i]});
+        const auto message = link.substr(2, link.size() - 4);
+        std::string frame{'\x99', static_cast<char>(message.size()), '\0'};
+        for (unsigned shift = 0; shift < 32; shift += 8) frame += static_cast<char>((i * 1000) >> shift);
+        frame += message;
+        unsigned sum = 0;
+        for (const char c : frame.substr(1)) sum += static_cast<unsigned char>(c);
+        frames += frame + static_cast<char>(sum);
+    }
+    return frames;
+}
+
+TEST(BinaryLogSource, FollowsACardThroughItsRoomAndAnotherThatTakesItsName) {
+    const auto log = test::scratch_dir() / "fr_0001.LOG";
+    const auto lines = energy_lines(60);
+    const auto frames = card_frames_of(lines);
+    const auto middle = frames.size() / 2 + 5;
+    const std::string room(5000, '\0');
+    write_file_atomically(log, frames.substr(0, middle) + room);
+    const auto source = follow_binary_log(log, test::small_dictionary());
+    EXPECT_EQ(source->description(), "following " + log.string());
+    auto messages = messages_of(*source, 29);
+    {
+        std::fstream file(log, std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(static_cast<std::streamoff>(middle));
+        file << frames.substr(middle);
+    }
+    for (const auto& message : messages_of(*source, lines.size() - messages.size())) messages.push_back(message);
+    ASSERT_EQ(messages.size(), lines.size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        EXPECT_EQ(messages[i].text, lines[i]);
+        EXPECT_NEAR(*messages[i].time_s, 0.1 * static_cast<double>(i), 1e-9);
+    }
+    write_file_atomically(log, frames);
+    const auto again = messages_of(*source, lines.size());
+    ASSERT_EQ(again.size(), lines.size());
+    EXPECT_TRUE(again.front().after_restart);
+    EXPECT_FALSE(again.back().after_restart);
+    EXPECT_EQ(source->report().restarts, 1U);
+    EXPECT_EQ(source->report().messages, 2 * lines.size());
+    EXPECT_THROW(follow_binary_log(log.parent_path(), {}), InputError);
+    EXPECT_THROW(follow_binary_log(log.parent_path() / "none.LOG", {}), InputError);
 }
 
 TEST(IvySource, IsRefusedForWhatIsNoBus) { EXPECT_THROW(open_ivy_bus("somewhere"), UsageError); }

@@ -1,5 +1,7 @@
 #include "live/sources/link_reader.h"
 
+#include "live/sources/link_tally.h"
+
 #include <string>
 
 namespace flightwatt::live {
@@ -19,18 +21,14 @@ void LinkReader::flush() {
 }
 
 void LinkReader::hand_on(const telemetry::LinkMessage& message) {
-    // What the ground says to an aircraft bears its own id, 0, and is none of its telemetry.
-    if (message.class_id != telemetry::MessageDictionary::telemetry_class)
-        return queue_.count("messages of other classes than telemetry");
+    if (message.class_id != telemetry::MessageDictionary::telemetry_class) return queue_.count(other_class);
     queue_.push({message.time_s, std::string(message.text)});
 }
 
 void LinkReader::count() {
-    const auto& now = decoder_.counts();
-    queue_.count("frames of messages that are not defined", now.unknown - counted_.unknown);
-    queue_.count("frames of another length than their message's", now.other_lengths - counted_.other_lengths);
-    queue_.count("bytes between frames", now.skipped_bytes - counted_.skipped_bytes);
-    counted_ = now;
+    tell_unusable(decoder_.counts(), counted_,
+                  [this](const char* reason, std::size_t times) { queue_.count(reason, times); });
+    counted_ = decoder_.counts();
 }
 
 }  // namespace flightwatt::live
