@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "mission/remaining_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,9 +76,8 @@ mission::PathPlace place_on_path(const mission::FlownPath& path, const FlightPro
 /// The cruise along what is left of the path.
 mechanical::RestPrediction predict_along(const PredictionBasis& basis, const FlightProgress& flown,
                                          Prediction& prediction, Remarks& remarks) {
-    const auto path = fly_path(basis.path->path, basis.path->wind);
-    const auto place = place_on_path(path, flown, basis.remaining_s);
-    auto rest = predict_rest_of_path(*basis.path, flown, place);
+    const auto place = place_on_path(basis.path->flown(), flown, basis.remaining_s);
+    auto rest = basis.path->predict(flown, place);
     if (rest.forbidden_part > 0.0) {
         remarks.warnings.push_back(
             fmt::format("{:.0f} % of the winds that [wind] makes likely forbid what is left of the path: they are not "
@@ -161,6 +159,12 @@ double initial_soc_percent(const PredictionBasis& basis, const battery::Discharg
 
 Prediction predict_flight(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
                           const flight::FlightSeries& series, Remarks& remarks) {
+    auto prediction = predict_energy(basis, flown, remarks);
+    prediction.battery = predict_battery(basis, series, prediction, remarks);
+    return prediction;
+}
+
+Prediction predict_energy(const PredictionBasis& basis, const mechanical::FlightProgress& flown, Remarks& remarks) {
     Prediction prediction;
     prediction.flown = flown;
     prediction.cruise = predict_cruise(basis, flown, prediction, remarks);
@@ -172,7 +176,6 @@ Prediction predict_flight(const PredictionBasis& basis, const mechanical::Flight
     }
     prediction.rest = sum_of(prediction.cruise.energy, prediction.landing);
     prediction.interval = interval_95(prediction.rest).value();
-    prediction.battery = predict_battery(basis, series, prediction, remarks);
     return prediction;
 }
 

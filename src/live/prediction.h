@@ -2,7 +2,7 @@
 
 #include "battery/landing_forecast.h"
 #include "mechanical/prediction.h"
-#include "mission/cruise_path.h"
+#include "mission/remaining_path.h"
 
 #include <memory>
 #include <optional>
@@ -19,12 +19,13 @@ struct PredictionBasis {
     double landing_s = 0.0;
     std::optional<double> remaining_s = {};  ///< of the cruise, from the moment on, whatever was flown
     std::optional<double> cruise_s = {};     ///< else: what is left of so long; none: what is left of the path
-    std::optional<mechanical::AirMotion> motion = {};    ///< how the rest is flown
-    std::shared_ptr<const mission::PathPlan> path = {};  ///< or along what
+    std::optional<mechanical::AirMotion> motion = {};        ///< how the rest is flown
+    std::shared_ptr<const mission::PathForecast> path = {};  ///< or along what
     std::optional<battery::Battery> battery = {};
     std::string battery_file = {};                   ///< for errors
     std::optional<double> initial_soc_percent = {};  ///< none: by the voltage at rest
     battery::LandingLimits limits = {};
+    std::string cannot_predict = {};  ///< why the model does not allow it; empty: it does
 };
 
 /// The battery's part of a prediction.
@@ -73,6 +74,9 @@ double initial_soc_percent(const PredictionBasis& basis, const battery::Discharg
 /// battery::discharge_records.
 Prediction predict_flight(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
                           const flight::FlightSeries& series, Remarks& remarks);
+
+/// The same without the battery.
+Prediction predict_energy(const PredictionBasis& basis, const mechanical::FlightProgress& flown, Remarks& remarks);
 
 /// The stretches of power ahead, cruise and landing, as expected times `part`.
 std::vector<battery::PowerStretch> power_ahead(const Prediction& prediction, double part = 1.0);

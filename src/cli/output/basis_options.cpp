@@ -8,6 +8,7 @@
 #include "mission/mission_file.h"
 
 #include <map>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -60,20 +61,38 @@ std::optional<double> remaining_option(const StageCall& call) {
     return number_option(call, "remaining", 0.0, longest_s);
 }
 
+/// Throws InputError where the model does not allow a prediction.
+void require_predicting(const PredictionBasis& basis, const std::string& file) {
+    if (basis.path)
+        live::require_physical(basis.model, file, "--mission");
+    else
+        live::require_spread(basis.model, flight::Phase::cruise, file);
+    if (basis.landing_s > 0.0) live::require_spread(basis.model, flight::Phase::landing, file);
+}
+
 /// Model and path, or time, of a mission.
-PredictionBasis basis_of(const mission::MissionSetup& setup, const std::string& file) {
+PredictionBasis basis_of(const mission::MissionSetup& setup) {
     PredictionBasis basis{setup.mechanical.value(), {}, setup.duration_s[flight::Phase::landing]};
     basis.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
     if (setup.cruise_path) {
-        basis.path = setup.cruise_path->plan;
-        basis.model.physical = basis.path->power;  // where the model has but a law of airspeed, that
-        live::require_physical(basis.model, file, "--mission");
+        basis.path = std::make_shared<const mission::PathForecast>(*setup.cruise_path->plan);
+        basis.model.physical = basis.path->plan().power;  // where the model has but a law of airspeed, that
     } else {
         basis.cruise_s = setup.duration_s[flight::Phase::cruise];
-        live::require_spread(basis.model, flight::Phase::cruise, file);
     }
-    if (basis.landing_s > 0.0) live::require_spread(basis.model, flight::Phase::landing, file);
     return basis;
+}
+
+/// The mission's own battery; and where a schedule is all that the mission can tell, that and why.
+void add_mission_battery(const mission::MissionSetup& setup, const std::string& file, PredictionBasis& basis) {
+    basis.battery = setup.battery;
+    basis.battery_file = file;
+    if (!setup.battery.thevenin) basis.initial_soc_percent = setup.initial_soc_percent;
+    try {
+        require_predicting(basis, file);
+    } catch (const InputError& error) {
+        basis.cannot_predict = error.what();
+    }
 }
 
 PredictionBasis read_mission_basis(const StageCall& call, PathNeed need, std::optional<mission::AnyMission>* kept) {
@@ -93,13 +112,12 @@ PredictionBasis read_mission_basis(const StageCall& call, PathNeed need, std::op
     if (!setup.mechanical)
         throw InputError({file}, "the mission has no mechanical model", "name one: mechanical = FILE");
     warn_of_setup(call, setup);
-    auto basis = basis_of(setup, file);
+    auto basis = basis_of(setup);
     basis.remaining_s = remaining_s;
-    if (need == PathNeed::optional) {
-        basis.battery = setup.battery;
-        basis.battery_file = file;
-        if (!setup.battery.thevenin) basis.initial_soc_percent = setup.initial_soc_percent;
-    }
+    if (need == PathNeed::required)
+        require_predicting(basis, file);
+    else
+        add_mission_battery(setup, file, basis);
     if (kept != nullptr) *kept = std::move(mission);
     return basis;
 }
