@@ -101,8 +101,7 @@ struct LinkDecoder::State {
             [&](auto& chosen) {
                 if constexpr (!std::is_same_v<std::decay_t<decltype(chosen)>, std::monostate>) {
                     const auto done = chosen.scan(
-                        buffer, behind,
-                        [&](const FoundFrame& found, const Frame& frame) { take(found, frame, sink); },
+                        buffer, behind, [&](const FoundFrame& found, const Frame& frame) { take(found, frame, sink); },
                         [&](const Gap& gap) { leave(gap); });
                     buffer.erase(0, done);
                     counts.version = chosen.version();

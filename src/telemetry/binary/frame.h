@@ -13,11 +13,11 @@ namespace flightwatt::telemetry {
 
 /// A frame whose checksum is right.
 struct Frame {
-    std::size_t size = 0;                 ///< bytes of all of it
-    std::string_view message;             ///< header and fields; empty where it carries none
-    std::uint8_t source = 0;              ///< of card frames: 0 telemetry, 1 datalink
-    std::uint32_t time_100us = 0;         ///< of card frames
-    std::array<char, 320> unescaped{};    ///< what `message` lies in, if the frame was escaped
+    std::size_t size = 0;               ///< bytes of all of it
+    std::string_view message;           ///< header and fields; empty where it carries none
+    std::uint8_t source = 0;            ///< of card frames: 0 telemetry, 1 datalink
+    std::uint32_t time_100us = 0;       ///< of card frames
+    std::array<char, 320> unescaped{};  ///< what `message` lies in, if the frame was escaped
 };
 
 enum class Look {
