@@ -106,22 +106,27 @@ class LogReader {
         return tables_.table_of(last_sender_, plan_index, plans_[plan_index]);
     }
 
+    std::string definitions() const {
+        const auto& file = log_.configuration->file;
+        return file.extension() == ".log" ? "the .log" : file.filename().string();
+    }
+
     std::string describe(const SkipKind& skip) const {
         const auto& plan = plans_[skip.reason == Reason::not_a_number ? skip.detail / max_fields : skip.detail];
         const auto& message = plan.request.message;
         switch (skip.reason) {
-            case Reason::not_a_message:
-                break;
             case Reason::no_time:
                 return message + ": the time is not a number";
             case Reason::unknown_message:
-                return message + (plan.from_log ? ": not defined in the .log" : ": its fields are not known");
+                return message + (plan.from_log ? ": not defined in " + definitions() : ": its fields are not known");
             case Reason::other_field_count:
                 return fmt::format("{}: another number of fields than {}", message,
-                                   plan.from_log ? "the .log defines" : "is known");
+                                   plan.from_log ? definitions() + " defines" : "is known");
             case Reason::not_a_number:
                 return fmt::format("{}.{}: not a finite number", message,
                                    plan.definition->fields[skip.detail % max_fields].name);
+            default:
+                break;
         }
         return "not a message (TIME SENDER NAME ...)";
     }
