@@ -2,6 +2,7 @@
 
 #include "telemetry/link_decoder.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -55,12 +56,17 @@ inline void append_value(std::string& bytes, telemetry::WireType type, const std
     }
 }
 
+/// The parts between `by`; one in quotes may hold it.
 inline std::vector<std::string> split(std::string_view text, char by) {
-    std::vector<std::string> parts;
-    while (!text.empty()) {
-        const auto part = text.substr(0, text.find(by));
-        parts.emplace_back(part);
-        text.remove_prefix(std::min(part.size() + 1, text.size()));
+    std::vector<std::string> parts(1);
+    bool is_quoted = false;
+    for (const char c : text) {
+        if (c == '"') is_quoted = !is_quoted;
+        if (c == by && !is_quoted) {
+            parts.emplace_back();
+        } else {
+            parts.back() += c;
+        }
     }
     return parts;
 }
@@ -74,6 +80,7 @@ inline void append_field(std::string& bytes, const telemetry::WireField& field, 
         for (const char c : word) elements.emplace_back(1, c);
     } else {
         elements = field.count == WireCount::one ? std::vector{word} : split(word, ',');
+        if (word.empty()) elements.clear();
     }
     if (field.count == WireCount::counted) bytes += static_cast<char>(elements.size());
     if (field.count == WireCount::fixed) elements.resize(field.elements);
@@ -95,7 +102,9 @@ inline std::optional<std::string> binary_message(std::string_view line, const te
     auto words = detail::split(line, ' ');
     if (words.size() < 2) return std::nullopt;
     const auto* const message = detail::message_of(dictionary, words[1]);
-    if (message == nullptr || words.size() != message->fields.size() + 2) return std::nullopt;
+    if (message == nullptr) return std::nullopt;
+    if (message->fields.empty() && words.size() == 3 && words[2].empty()) words.pop_back();  // "PONG "
+    if (words.size() != message->fields.size() + 2) return std::nullopt;
     std::string bytes(1, static_cast<char>(std::stoi(words[0])));
     if (version == LinkVersion::v2) {
         bytes += static_cast<char>(addressing.destination);
@@ -150,7 +159,9 @@ inline std::string xbee_frame(std::string_view message, std::uint8_t kind = 0x81
 inline std::string card_log(std::string_view data, const telemetry::MessageDictionary& dictionary,
                             LinkVersion version) {
     std::string log;
-    for (const auto& line : detail::split(data, '\n')) {
+    while (!data.empty()) {
+        const std::string line(data.substr(0, data.find('\n')));
+        data.remove_prefix(std::min(line.size() + 1, data.size()));
         const auto blank = line.find(' ');
         if (blank == std::string::npos) continue;
         const auto message = binary_message(std::string_view(line).substr(blank + 1), dictionary, version);
