@@ -30,6 +30,7 @@ struct StageLine {
 
 constexpr StageLine stages[] = {
     {"parse", "a Paparazzi log to a table of its power samples (CSV)"},
+    {"convert", "a binary log of an SD card or a link to text"},
     {"segment", "take-off, cruise and landing of every sortie in a log"},
     {"fit", "several flights to a mechanical power model and Table I"},
     {"validate", "leave-one-out: each flight's energy predicted by the others, beside simple baselines"},

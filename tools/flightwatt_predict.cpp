@@ -37,7 +37,8 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::Moment& moment)
     options.sortie.reset();
     options.flight_required = false;
     const auto& file = call.inputs.front();
-    auto candidates = read_candidates(flight::FlightFile(file, options.most_log_bytes), options.aircraft_id);
+    auto candidates =
+        read_candidates(flight::FlightFile(file, options.most_log_bytes, options.messages), options.aircraft_id);
     const double until_s = cli::time_of(moment, candidates, sortie, options.segmentation);
     for (auto& series : candidates) series = cut_series(series, until_s);
     auto series = choose_aircraft(std::move(candidates));

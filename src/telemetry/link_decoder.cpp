@@ -19,6 +19,8 @@ constexpr std::size_t step_bytes = 4096;
 /// So many may tell no framing before the first half of them is given up.
 constexpr std::size_t most_undecided_bytes = 8192;
 
+std::uint16_t number_of(const FoundFrame& found) { return static_cast<std::uint16_t>(found.class_id * 256 + found.id); }
+
 }  // namespace
 
 std::string_view to_string(Framing framing) {
@@ -76,8 +78,10 @@ struct LinkDecoder::State {
             ++counts.other_frames;
         } else if (found.message == nullptr) {
             ++counts.unknown;
+            ++counts.unknown_ids[number_of(found)];
         } else if (!found.fits) {
             ++counts.other_lengths;
+            ++counts.other_length_ids[number_of(found)];
         } else {
             ++counts.messages;
             text.clear();
@@ -101,8 +105,7 @@ struct LinkDecoder::State {
             [&](auto& chosen) {
                 if constexpr (!std::is_same_v<std::decay_t<decltype(chosen)>, std::monostate>) {
                     const auto done = chosen.scan(
-                        buffer, behind,
-                        [&](const FoundFrame& found, const Frame& frame) { take(found, frame, sink); },
+                        buffer, behind, [&](const FoundFrame& found, const Frame& frame) { take(found, frame, sink); },
                         [&](const Gap& gap) { leave(gap); });
                     buffer.erase(0, done);
                     counts.version = chosen.version();

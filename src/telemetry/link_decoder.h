@@ -2,10 +2,10 @@
 
 #include "telemetry/message_dictionary.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -47,6 +47,9 @@ struct LinkCounts {
     std::size_t zero_bytes = 0;          ///< zeros alone between frames or at the end: room set aside
     std::optional<LinkVersion> version;  ///< nothing: none decided yet
     std::optional<Framing> framing;
+    /// Frames that are unknown or of other lengths, by 256 * class + id.
+    std::map<std::uint16_t, std::size_t> unknown_ids = {};
+    std::map<std::uint16_t, std::size_t> other_length_ids = {};
 };
 
 /// Messages out of bytes as they arrive, in pieces of any size. Damage and garbage are skipped and counted and never end

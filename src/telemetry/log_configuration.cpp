@@ -6,6 +6,7 @@
 #include "telemetry/files/protocol_xml.h"
 
 #include <algorithm>
+#include <fstream>
 #include <initializer_list>
 #include <string_view>
 
@@ -107,7 +108,18 @@ void read_all_aircraft(std::string_view text, LogConfiguration& configuration) {
     }
 }
 
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code error;
+    return std::filesystem::equivalent(a, b, error) && !error;
+}
+
 }  // namespace
+
+bool begins_as_xml(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    char first = '\0';
+    return static_cast<bool>(file >> first) && (first == '<' || first == '\xEF');
+}
 
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file) {
     LogConfiguration configuration;
@@ -132,7 +144,7 @@ std::string flight_name(const std::filesystem::path& data_file) {
         if (found != endings.end()) name.resize(name.size() - found->size());
     };
     strip_first({".gz", ".bz2", ".xz", ".zst"});
-    strip_first({".series.csv", ".data", ".csv"});
+    strip_first({".series.csv", ".data", ".csv", ".LOG", ".log", ".tlm", ".TLM", ".bin", ".BIN"});
     return name;
 }
 
@@ -140,14 +152,22 @@ std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& 
     const auto flight = flight_name(data_file);
     std::vector<std::string> stems{flight};
     if (flight.ends_with("_SD")) stems.push_back(flight.substr(0, flight.size() - 3));
+    // A card's X.LOG has its X.log beside it, which may also be called X.LOG where the card's is X.tlm.
     for (const auto& stem : stems) {
-        const auto candidate = data_file.parent_path() / (stem + ".log");
-        std::error_code error;
-        if (std::filesystem::is_regular_file(candidate, error)) return candidate;
-        // One that is there and cannot be read is not passed over: reading it says why.
-        const bool is_absent = !error || error == std::errc::no_such_file_or_directory ||
-                               error == std::errc::not_a_directory || error == std::errc::filename_too_long;
-        if (!is_absent) return candidate;
+        for (const auto* ending : {".log", ".LOG", ".Log"}) {
+            const auto candidate = data_file.parent_path() / (stem + ending);
+            if (is_same_file(candidate, data_file)) continue;
+            std::error_code error;
+            const bool is_usual = ending == std::string_view(".log");
+            if (std::filesystem::is_regular_file(candidate, error)) {
+                if (is_usual || begins_as_xml(candidate)) return candidate;
+                continue;
+            }
+            // One that is there and cannot be read is not passed over: reading it says why.
+            const bool is_absent = !error || error == std::errc::no_such_file_or_directory ||
+                                   error == std::errc::not_a_directory || error == std::errc::filename_too_long;
+            if (is_usual && !is_absent) return candidate;
+        }
     }
     return std::nullopt;
 }

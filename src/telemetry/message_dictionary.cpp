@@ -14,8 +14,8 @@ namespace {
 
 std::optional<WireType> wire_type_of(std::string_view name) {
     static constexpr std::pair<std::string_view, WireType> types[] = {
-        {"uint8", WireType::uint8},   {"int8", WireType::int8},     {"uint16", WireType::uint16},
-        {"int16", WireType::int16},   {"uint32", WireType::uint32}, {"int32", WireType::int32},
+        {"uint8", WireType::uint8},   {"int8", WireType::int8},      {"uint16", WireType::uint16},
+        {"int16", WireType::int16},   {"uint32", WireType::uint32},  {"int32", WireType::int32},
         {"float", WireType::float32}, {"double", WireType::float64}, {"char", WireType::text},
         {"uint64", WireType::uint64}, {"int64", WireType::int64},
     };

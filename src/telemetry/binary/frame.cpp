@@ -81,4 +81,19 @@ Look look_at_xbee_frame(const char* p, const char* end, bool escaped, Frame& fra
     return Look::frame;
 }
 
+Look look_at_either_xbee_frame(const char* p, const char* end, Frame& frame) {
+    const auto is_followed = [&](const Frame& read) {
+        return p + read.size == end || p[read.size] == sync_byte(Framing::xbee);
+    };
+    const auto plain = look_at_xbee_frame(p, end, false, frame);
+    const bool is_plain = plain == Look::frame && is_followed(frame);
+    const auto plain_size = frame.size;
+    const auto escaped = look_at_xbee_frame(p, end, true, frame);
+    if (escaped == Look::frame &&
+        (plain != Look::frame || (is_followed(frame) && (!is_plain || frame.size < plain_size))))
+        return escaped;
+    if (plain == Look::frame) return look_at_xbee_frame(p, end, false, frame);
+    return escaped == Look::none ? plain : escaped;
+}
+
 }  // namespace flightwatt::telemetry

@@ -13,11 +13,11 @@ namespace flightwatt::telemetry {
 
 /// A frame whose checksum is right.
 struct Frame {
-    std::size_t size = 0;                 ///< bytes of all of it
-    std::string_view message;             ///< header and fields; empty where it carries none
-    std::uint8_t source = 0;              ///< of card frames: 0 telemetry, 1 datalink
-    std::uint32_t time_100us = 0;         ///< of card frames
-    std::array<char, 320> unescaped{};    ///< what `message` lies in, if the frame was escaped
+    std::size_t size = 0;               ///< bytes of all of it
+    std::string_view message;           ///< header and fields; empty where it carries none
+    std::uint8_t source = 0;            ///< of card frames: 0 telemetry, 1 datalink
+    std::uint32_t time_100us = 0;       ///< of card frames
+    std::array<char, 320> unescaped{};  ///< what `message` lies in, if the frame was escaped
 };
 
 enum class Look {
@@ -88,15 +88,16 @@ inline Look look_at_link_frame(const char* p, const char* end, Frame& frame) {
 /// `escaped`: XBees in API mode 2 send 0x7E, 0x7D, 0x11 and 0x13 as 0x7D and the byte with bit 5 turned.
 Look look_at_xbee_frame(const char* p, const char* end, bool escaped, Frame& frame);
 
-/// `p` stands on a sync byte. An XBee frame is read as it stands, or escaped if that is what fits.
+/// As it stands, or escaped: where both have a right checksum, the one that another frame follows, and of two the
+/// shorter.
+Look look_at_either_xbee_frame(const char* p, const char* end, Frame& frame);
+
+/// `p` stands on a sync byte.
 template <Framing framing>
 Look look_at_frame(const char* p, const char* end, Frame& frame) {
     if constexpr (framing == Framing::card) return look_at_card_frame(p, end, frame);
     if constexpr (framing == Framing::link) return look_at_link_frame(p, end, frame);
-    const auto plain = look_at_xbee_frame(p, end, false, frame);
-    if (plain == Look::frame) return plain;
-    const auto escaped = look_at_xbee_frame(p, end, true, frame);
-    return escaped == Look::none ? plain : escaped;
+    return look_at_either_xbee_frame(p, end, frame);
 }
 
 }  // namespace flightwatt::telemetry

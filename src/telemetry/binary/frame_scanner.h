@@ -136,6 +136,8 @@ class FrameScanner {
         const auto v2 = read_message_header(frame, LinkVersion::v2, *dictionary_);
         if (counts && v1.fits != v2.fits) ++(v1.fits ? fit_v1_ : fit_v2_);
         if (const auto likely = likely_version()) return *likely == LinkVersion::v1 ? v1 : v2;
+        if (v1.fits && (!v2.fits || v2.class_id != MessageDictionary::telemetry_class)) return v1;
+        if (v2.fits && !v1.fits) return v2;
         FoundFrame undecided = v1;
         undecided.message = nullptr;
         undecided.fits = false;

@@ -31,6 +31,7 @@ class LinkTime {
             last_s_ = wire_number<std::uint32_t>(found.fields.data()) / ms_per_s;
         return last_s_;
     }
+    std::optional<double> last_s() const { return last_s_; }
 
   private:
     std::optional<std::uint8_t> id_;

@@ -66,6 +66,15 @@ void append_quoted(std::string_view characters, std::string& text) {
 
 }  // namespace
 
+double as_written_slowly(float value) {
+    if (!std::isfinite(value)) return double{value};
+    std::array<char, 32> digits{};
+    const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    double number = 0.0;
+    std::from_chars(digits.data(), written.ptr, number);
+    return number;
+}
+
 void append_message_text(const FoundFrame& found, std::string& text) {
     append_number(unsigned{found.sender}, text);
     text += ' ';

@@ -23,12 +23,15 @@ T wire_number(const char* p) {
     return value;
 }
 
+/// as_written() for what is far from one.
+double as_written_slowly(float value);
+
 /// The decimal number of fewest digits that a float is read from: 11.62 of the float 11.6199999. So a log reads the same
-/// as the text that it is converted to. Floats over 1e9 or under 1e-13 stay what they are.
+/// as the text that it is converted to.
 inline double as_written(float value) {
     const double exact{value};
     const double magnitude = std::fabs(exact);
-    if (!(magnitude < 1e9) || magnitude < 1e-13) return exact;
+    if (!(magnitude < 1e9 && magnitude > 1e-9)) return exact == 0.0 ? exact : as_written_slowly(value);
     constexpr double tenths[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                  1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     const auto rounded = [exact, &tenths](int decimals) {
