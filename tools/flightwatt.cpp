@@ -30,10 +30,12 @@ struct StageLine {
 
 constexpr StageLine stages[] = {
     {"parse", "a Paparazzi log to a table of its power samples (CSV)"},
+    {"convert", "a binary log of an SD card or a link to text"},
     {"segment", "take-off, cruise and landing of every sortie in a log"},
     {"fit", "several flights to a mechanical power model and Table I"},
     {"validate", "leave-one-out: each flight's energy predicted by the others, beside simple baselines"},
     {"predict", "the energy to the end of a flight that is in the air"},
+    {"watch", "the same and more, once a second, from telemetry as it comes in"},
     {"battery", "flights to the battery that they were flown on"},
     {"batch", "parse, segment and fit every log of a folder, incrementally"},
     {"profile", "software to its power by quality of service, measured while it runs"},
@@ -41,6 +43,7 @@ constexpr StageLine stages[] = {
     {"compare", "several missions, ranked by final state of charge"},
     {"plan", "the schedule of highest utility that lands a mission with its reserve"},
     {"path", "the path of a mission leg by leg; of a log as waypoints"},
+    {"play", "a log once more as it came in, over the links that watch listens to"},
     {"report", "flights, model and missions as one page, and figures for papers"},
     {"synthesize", "synthetic Paparazzi logs of flights after a model"},
 };

@@ -110,7 +110,7 @@ void conclude(BatchFlight& done, const LogFile& log, const std::string& fingerpr
 /// A log that is there; `fingerprint` is set as soon as it is known. Throws whatever is wrong with the log.
 BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::string& fingerprint) {
     BatchFlight done;
-    const flight::FlightFile file(log.path, options.load.most_log_bytes);
+    const flight::FlightFile file(log.path, options.load.most_log_bytes, options.load.messages);
     fingerprint = fingerprint_of(file, log, options);
     file.require_unchanged();
     if (auto record = remembered(options, log, fingerprint)) {

@@ -19,10 +19,17 @@
 namespace flightwatt::batch {
 namespace {
 
+/// .data, and of SD cards .LOG and .tlm, compressed or not. An X.LOG that is XML says what X.tlm holds.
 bool is_log_name(const std::filesystem::path& path) {
-    const auto name = path.filename().string();
-    constexpr std::array<std::string_view, 5> endings{".data", ".data.gz", ".data.bz2", ".data.xz", ".data.zst"};
-    return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return name.ends_with(ending); });
+    auto name = path.filename().string();
+    for (const std::string_view packed : {".gz", ".bz2", ".xz", ".zst"}) {
+        if (!name.ends_with(packed)) continue;
+        name.resize(name.size() - packed.size());
+        break;
+    }
+    constexpr std::array<std::string_view, 4> endings{".data", ".LOG", ".tlm", ".TLM"};
+    const bool is_log = std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
+    return is_log && !(name.ends_with(".LOG") && telemetry::begins_as_xml(path));
 }
 
 /// What the nearest not-fitted.txt between the folder that was given and the log says; empty without one.
@@ -107,14 +114,15 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
             const auto cause = input.empty() || !error || error == std::errc::no_such_file_or_directory
                                    ? "does not exist"
                                    : error.message();
-            throw InputError({input.empty() ? "''" : input}, cause, "expected a .data log or a folder of them");
+            throw InputError({input.empty() ? "''" : input}, cause,
+                             "expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
         }
         logs.push_back({input, {}, {}});
     }
     logs = each_once(std::move(logs));
     if (logs.empty()) {
-        throw InputError({}, fmt::format("no .data log in {}", fmt::join(inputs, ", ")),
-                         "expected *.data, also .gz, .bz2, .xz or .zst");
+        throw InputError({}, fmt::format("no log in {}", fmt::join(inputs, ", ")),
+                         "expected *.data, *.LOG or *.tlm, also .gz, .bz2, .xz or .zst");
     }
     std::set<std::string> taken;
     for (auto& log : logs) {

@@ -17,8 +17,8 @@ struct LogFile {
     bool is_gone = false;             ///< of an earlier run, and no longer there
 };
 
-/// The logs among files and folders (searched to the bottom for .data files, compressed or not), in the order
-/// of their paths, each once however it is written. Flights of the same name get the names NAME, NAME_2, ...
+/// The logs among files and folders (searched to the bottom for .data, .LOG and .tlm files, compressed or not), in the
+/// order of their paths, each once however it is written. Flights of the same name get the names NAME, NAME_2, ...
 /// Logs in a folder below the one that was given, or deeper, are not fitted if that folder holds a file
 /// not-fitted.txt, whose first line says why. A folder that cannot be listed stands among them with its problem.
 /// Throws InputError for an input that does not exist, where there is no log at all, or for a not-fitted.txt that

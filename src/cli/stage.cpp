@@ -188,6 +188,15 @@ void print(std::string_view text) {
     reader_has_left = true;
 }
 
+bool print_at_once(std::string_view text) {
+    print(text);
+    if (!reader_has_left && std::fflush(stdout) != 0) {
+        if (errno != EPIPE) cannot_print();
+        reader_has_left = true;
+    }
+    return !reader_has_left;
+}
+
 void write_result(const StageCall& call, std::string_view content) {
     if (call.output) {
         write_file_atomically(*call.output, content);

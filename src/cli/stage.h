@@ -83,6 +83,9 @@ void write_result(const StageCall& call, std::string_view content);
 /// To the standard output. Throws OutputError (full disk, closed); of a pipe that nobody reads any more see run_guarded.
 void print(std::string_view text);
 
+/// The same, seen at once, for programs that go on; false if nobody reads any more.
+bool print_at_once(std::string_view text);
+
 /// `text` with blanks for control characters: diagnostics stay on one line, whatever a file (or its name) put
 /// into them.
 std::string one_line(std::string_view text);

@@ -23,7 +23,10 @@ namespace {
 std::string census(const FlightFile& file) {
     if (file.is_series()) return "";
     std::vector<std::string> names;
-    for (const auto& [name, count] : telemetry::census_of_messages(file.text())) {
+    const auto counts =
+        file.framing() ? use_binary(file, [](const auto& log) { return telemetry::census_of_binary_messages(log); })
+                       : telemetry::census_of_messages(file.text());
+    for (const auto& [name, count] : counts) {
         names.push_back(fmt::format("{} {}", name, count));
     }
     constexpr std::size_t shown = 12;
@@ -35,12 +38,21 @@ std::string census(const FlightFile& file) {
 telemetry::TelemetryLog read_log(const FlightFile& file) {
     std::optional<telemetry::LogConfiguration> configuration;
     if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
+    if (file.framing()) {
+        return use_binary(file, [&](const telemetry::BinaryLog& log) {
+            return telemetry::read_binary_telemetry(log, std::move(configuration).value(), flight_messages());
+        });
+    }
     return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
 }
 
-/// A synthetic log says in its first line what its .log says by the aircraft's name.
+/// A synthetic log says in its first line, or frame, what its .log says by the aircraft's name.
 void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidates) {
-    if (file.text().substr(0, file.text().find('\n')).find("INFO_MSG \"SYNTHETIC:") == std::string_view::npos) return;
+    constexpr std::size_t longest_frame = 264;
+    const auto first =
+        file.framing() ? file.text().substr(0, longest_frame) : file.text().substr(0, file.text().find('\n'));
+    const auto* const mark = file.framing() ? "SYNTHETIC:" : "INFO_MSG \"SYNTHETIC:";
+    if (first.find(mark) == std::string_view::npos) return;
     for (auto& series : candidates)
         if (series.aircraft_name.empty()) series.aircraft_name = unnamed_synthetic;
 }
@@ -156,17 +168,29 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
 
 }  // namespace
 
-FlightFile::FlightFile(const std::filesystem::path& path, std::size_t most_bytes) : path_(path) {
+FlightFile::FlightFile(const std::filesystem::path& path, std::size_t most_bytes,
+                       const std::optional<std::filesystem::path>& messages)
+    : path_(path) {
     std::error_code error;
     if (path.extension() == ".csv" && std::filesystem::is_regular_file(path, error)) {
         series_text_ = read_file(path, most_bytes, "if it is a series all the same, --max-log-mb raises the limit");
         return;
     }
     data_.emplace(path, most_bytes);
-    if (const auto log = telemetry::find_log_file(path)) {
+    framing_ = telemetry::binary_framing(data_->text());
+    const auto beside = telemetry::find_log_file(path);
+    if (const auto& log = beside ? beside : messages) {
         log_file_ = *log;
         log_text_ = read_file(*log, telemetry::most_log_configuration_bytes);
     }
+}
+
+telemetry::MessageDictionary FlightFile::definitions() const {
+    if (!log_text_) {
+        throw InputError({path_.string()}, "is a binary log, and no .log beside it defines its messages",
+                         "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
+    }
+    return telemetry::parse_message_dictionary(*log_text_, log_file_);
 }
 
 void FlightFile::require_unchanged() const {
@@ -238,7 +262,7 @@ LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options) {
 
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options) {
     try {
-        return load_flight(FlightFile(path, options.most_log_bytes), options);
+        return load_flight(FlightFile(path, options.most_log_bytes, options.messages), options);
     } catch (const std::bad_alloc&) {
         throw InputError({path.string()}, "there is not enough memory to read it");
     }

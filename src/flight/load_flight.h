@@ -3,6 +3,7 @@
 #include "flight/flight_series.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
+#include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 
 #include <cstddef>
@@ -27,6 +28,7 @@ struct LoadOptions {
     /// False: a log without measured power is segmented all the same, if it has an altitude.
     bool power_required = true;
     std::size_t most_log_bytes = telemetry::usual_most_log_bytes;  ///< see DataFile
+    std::optional<std::filesystem::path> messages = {};            ///< see FlightFile
 };
 
 struct LoadedFlight {
@@ -38,30 +40,44 @@ struct LoadedFlight {
     std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
 };
 
-/// A log with its .log, or a series CSV, in memory: mapped once for all who read it. Throws InputError for a
-/// file that cannot be read.
+/// A log, of text or binary, with its .log, or a series CSV, in memory: mapped once for all who read it. A log that has
+/// no .log has the definitions of `messages`, a messages.xml or another .log, where that is given. Throws InputError for
+/// a file that cannot be read.
 class FlightFile {
   public:
-    explicit FlightFile(const std::filesystem::path& path, std::size_t most_bytes = telemetry::usual_most_log_bytes);
+    explicit FlightFile(const std::filesystem::path& path, std::size_t most_bytes = telemetry::usual_most_log_bytes,
+                        const std::optional<std::filesystem::path>& messages = std::nullopt);
     FlightFile(const FlightFile&) = delete;
     FlightFile& operator=(const FlightFile&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
     bool is_series() const { return !data_.has_value(); }
     std::string_view text() const { return data_ ? data_->text() : series_text_; }
-    /// The .log beside a log; std::nullopt without one.
+    /// How the frames of a binary log are packed; std::nullopt for text.
+    std::optional<telemetry::Framing> framing() const { return framing_; }
+    /// The .log beside a log, or what stands in for it; std::nullopt without one.
     const std::optional<std::string>& log_text() const { return log_text_; }
     std::filesystem::path log_file() const { return log_file_; }
+    /// Of a binary log. Throws InputError where nothing defines its messages.
+    telemetry::MessageDictionary definitions() const;
     /// See DataFile: to be asked after the text was read.
     void require_unchanged() const;
 
   private:
     std::filesystem::path path_;
     std::optional<telemetry::DataFile> data_;
+    std::optional<telemetry::Framing> framing_;
     std::string series_text_;
     std::filesystem::path log_file_;
     std::optional<std::string> log_text_;
 };
+
+/// Calls use(BinaryLog) with a binary file. Throws InputError where nothing defines its messages.
+template <typename Use>
+auto use_binary(const FlightFile& file, const Use& use) {
+    const auto messages = file.definitions();
+    return use(telemetry::BinaryLog{file.text(), file.framing().value(), file.path(), file.log_file(), &messages});
+}
 
 /// The series of each aircraft that may be meant: of the one that is named, else of all that sent telemetry.
 /// Judges nothing yet. Throws InputError where the file holds no telemetry, or the named one sent nothing.
@@ -75,7 +91,7 @@ FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
 /// either), for a sortie that the log has not, and, if a flight is required, where there is no altitude or nothing flew.
 LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options);
 
-/// From file to judgement: Paparazzi .data (compressed or not, with its .log beside it) or series CSV.
+/// From file to judgement: Paparazzi .data or binary log (compressed or not, with its .log beside it) or series CSV.
 LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options);
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options = {});
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 namespace flightwatt::mission {
 
@@ -68,35 +69,80 @@ std::vector<Wind> likely_winds(const Wind& wind) {
     return winds;
 }
 
-/// What is left, flown alone: what lies behind may be forbidden.
-FlownPath fly_rest(const FlightPath& path, const PathPlace& place, const Wind& wind) {
-    FlightPath rest;
-    rest.elements.assign(path.elements.begin() + static_cast<std::ptrdiff_t>(place.element), path.elements.end());
-    return rest_from(fly_path(rest, wind, ForbiddenLeg::crawl), {0, place.part});
+void add(mechanical::TermValues& sums, const mechanical::TermValues& terms, double factor) {
+    for (const auto term : mechanical::all_power_terms) sums[term] += terms[term] * factor;
 }
 
 }  // namespace
 
-RemainingPath predict_rest_of_path(const PathPlan& plan, const mechanical::FlightProgress& flown,
-                                   const PathPlace& place) {
+PathForecast::PathForecast(PathPlan plan) : plan_(std::move(plan)) {
+    for (const auto& wind : likely_winds(plan_.wind)) {
+        PathInWind path;
+        for (const auto& element : plan_.path.elements) path.push_back(fly_element(element, wind));
+        in_likely_winds_.push_back(std::move(path));
+    }
+    flown_ = fly_path(plan_.path, plan_.wind, ForbiddenLeg::crawl);
+}
+
+const FlownPath& PathForecast::flown() const {
+    if (flown_.blown) fly_path(plan_.path, plan_.wind);  // says what is wrong
+    return flown_;
+}
+
+PathForecast::FlownElementInWind PathForecast::fly_element(const PathElement& element, const Wind& wind) const {
+    const auto flown = fly_path({{element}}, wind, ForbiddenLeg::crawl);
+    FlownElementInWind result;
+    result.is_forbidden = flown.blown.has_value();
+    for (const auto& piece : flown.pieces) {
+        SummedPiece summed{result.duration_s, piece.time_s, {}, result.sums};
+        if (const auto terms = mechanical::terms_of(piece.motion); !(power_of_terms_w(plan_.power, terms) < 0.0))
+            summed.terms = terms;
+        result.duration_s += piece.time_s;
+        add(result.sums, summed.terms, piece.time_s);
+        result.pieces.push_back(summed);
+    }
+    return result;
+}
+
+PathForecast::Rest PathForecast::rest_of(const PathInWind& path, const PathPlace& place) {
+    Rest rest;
+    mechanical::TermValues sums;
+    for (std::size_t i = place.element; i < path.size(); ++i) {
+        const auto& element = path[i];
+        rest.duration_s += element.duration_s;
+        add(sums, element.sums, 1.0);
+        rest.is_forbidden = rest.is_forbidden || element.is_forbidden;
+        if (i > place.element || !(place.part > 0.0)) continue;
+        const double behind_s = place.part * element.duration_s;
+        rest.duration_s -= behind_s;
+        auto piece = std::ranges::upper_bound(element.pieces, behind_s, {}, &SummedPiece::start_s);
+        if (piece == element.pieces.begin()) continue;
+        --piece;
+        add(sums, piece->before, -1.0);
+        add(sums, piece->terms, piece->start_s - behind_s);
+    }
+    if (rest.duration_s > 0.0) add(rest.mean_terms, sums, 1.0 / rest.duration_s);
+    return rest;
+}
+
+RemainingPath PathForecast::predict(const mechanical::FlightProgress& flown, const PathPlace& place) const {
     std::vector<double> energies_wh;
     RemainingPath rest;
-    const auto winds = likely_winds(plan.wind);
-    for (const auto& wind : winds) {
-        const auto ahead = fly_rest(plan.path, place, wind);
-        if (ahead.blown) continue;
-        const auto cruise = predict_rest_by_motion(plan.power, flown, mean_terms(plan.power, ahead), ahead.duration_s);
+    for (const auto& path : in_likely_winds_) {
+        const auto ahead = rest_of(path, place);
+        if (ahead.is_forbidden) continue;
+        const auto cruise = predict_rest_by_motion(plan_.power, flown, ahead.mean_terms, ahead.duration_s);
         energies_wh.push_back(cruise.energy.energy_wh);
         rest.duration_s += ahead.duration_s;
     }
     const auto count = static_cast<double>(energies_wh.size());
-    rest.forbidden_part = 1.0 - count / static_cast<double>(winds.size());
+    rest.forbidden_part = 1.0 - count / static_cast<double>(in_likely_winds_.size());
     if (rest.forbidden_part > 0.5)
         throw NoAnswerError("most of the winds that [wind] makes likely forbid the rest of the path");
     rest.duration_s /= count;
-    const auto ahead = fly_rest(plan.path, place, plan.wind);
-    for (const auto& piece : ahead.pieces) rest.power.push_back({power_w(plan.power, piece.motion), piece.time_s});
-    rest.cruise = predict_rest_by_motion(plan.power, flown, mean_terms(plan.power, ahead), ahead.duration_s);
+    const auto ahead = rest_from(flown_, place);
+    for (const auto& piece : ahead.pieces) rest.power.push_back({power_w(plan_.power, piece.motion), piece.time_s});
+    rest.cruise = predict_rest_by_motion(plan_.power, flown, mean_terms(plan_.power, ahead), ahead.duration_s);
     rest.cruise.energy.energy_wh = mean(energies_wh);
     if (rest.duration_s > 0.0)
         rest.cruise.remaining_mean_w = units::joule_from_wh(rest.cruise.energy.energy_wh) / rest.duration_s;
@@ -104,6 +150,11 @@ RemainingPath predict_rest_of_path(const PathPlan& plan, const mechanical::Fligh
         add_share(rest.cruise.energy,
                   {sample_variance(energies_wh) * (count - 1.0) / count, std::numeric_limits<double>::infinity()});
     return rest;
+}
+
+RemainingPath predict_rest_of_path(const PathPlan& plan, const mechanical::FlightProgress& flown,
+                                   const PathPlace& place) {
+    return PathForecast(plan).predict(flown, place);
 }
 
 }  // namespace flightwatt::mission

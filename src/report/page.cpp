@@ -4,6 +4,8 @@
 #include "base/error.h"
 #include "base/program_files.h"
 
+#include <optional>
+
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
@@ -25,6 +27,32 @@ std::string head_html(const PageHead& head, const WebFiles& web) {
         "<meta name=\"generator\" content=\"flightwatt " FLIGHTWATT_VERSION
         "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n",
         escaped(head.title), web.style);
+}
+
+std::vector<std::filesystem::path> library_paths(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> paths;
+    for (const auto* library : {"vega", "vega-lite", "vega-embed"})
+        paths.push_back(folder / "node_modules" / library / "build" / (std::string(library) + ".min.js"));
+    return paths;
+}
+
+/// The first that is not there.
+std::optional<std::filesystem::path> missing_library(const std::filesystem::path& folder) {
+    for (const auto& path : library_paths(folder)) {
+        if (reading_error(path)) return path;
+    }
+    return std::nullopt;
+}
+
+/// Style, theme and, where they are all there, libraries.
+WebFiles read_drawing_files(const std::filesystem::path& folder) {
+    WebFiles files;
+    files.folder = folder;
+    files.style = read_file(folder / "page.css");
+    files.theme = read_file(folder / "theme.json");
+    if (missing_library(folder)) return files;
+    for (const auto& path : library_paths(folder)) files.libraries += read_file(path) + "\n";
+    return files;
 }
 
 std::string contents_html(const std::vector<Section>& sections) {
@@ -55,19 +83,18 @@ std::string opening_html(const PageHead& head, const std::vector<Section>& secti
 std::filesystem::path web_folder() { return program_files("web", "FLIGHTWATT_WEB", "the report's web files"); }
 
 WebFiles read_web_files(const std::filesystem::path& folder) {
-    WebFiles files;
-    files.folder = folder;
-    files.style = read_file(folder / "page.css");
-    files.theme = read_file(folder / "theme.json");
-    for (const auto* library : {"vega", "vega-lite", "vega-embed"}) {
-        const auto path = folder / "node_modules" / library / "build" / (std::string(library) + ".min.js");
-        if (reading_error(path)) {
-            throw InputError({path.string()}, "the report's figures need this library, and it is not there",
-                             "run scripts/install_dependencies with the npm registry at hand");
-        }
-        files.libraries += read_file(path) + "\n";
+    if (const auto missing = missing_library(folder)) {
+        throw InputError({missing->string()}, "the report's figures need this library, and it is not there",
+                         "run scripts/install_dependencies with the npm registry at hand");
     }
+    auto files = read_drawing_files(folder);
     files.script = read_file(folder / "fit_width.js") + read_file(folder / "page.js");
+    return files;
+}
+
+WebFiles read_live_web_files(const std::filesystem::path& folder) {
+    auto files = read_drawing_files(folder);
+    files.script = read_file(folder / "watch.js");
     return files;
 }
 
@@ -81,6 +108,41 @@ std::string page_html(const PageHead& head, const std::vector<Section>& sections
     html += "</main>\n<script type=\"application/json\" id=\"theme\">" + script_json(VegaJson::parse(web.theme)) +
             "</script>\n";
     return html + inline_script(web.libraries) + inline_script(web.script) + "</body>\n</html>\n";
+}
+
+std::string live_page_html(const WebFiles& web) {
+    const auto part = [](const char* title, const char* id) {
+        return fmt::format("<section><h2>{}</h2><dl id=\"{}\"></dl></section>\n", title, id);
+    };
+    const auto list = [](const char* title, const char* id) {
+        return fmt::format("<section><h2>{0}</h2><ul id=\"{1}\" aria-label=\"{0}\"{2}></ul></section>\n", title, id,
+                           std::string_view(id) == "alarms" ? " role=\"alert\"" : "");
+    };
+    auto html = head_html({.title = "flightwatt watch", .facts = {}, .notes = {}}, web);
+    boost::replace_first(html, "img-src data: blob:", "img-src data: blob:; connect-src 'self'");
+    html +=
+        "<body>\n<main id=\"page\">\n<h1 id=\"title\">No aircraft yet</h1>\n"
+        "<p id=\"connection\" class=\"warning\" role=\"status\"></p>\n"
+        "<noscript><p class=\"warning\">This page needs JavaScript; /state is the same as JSON.</p></noscript>\n";
+    html += list("Alarms", "alarms");
+    if (web.libraries.empty()) {
+        html += paragraph(
+            "There are no charts: the libraries that draw them are not installed (scripts/install_dependencies).",
+            "warning");
+    } else {
+        html += "<h2>Charts</h2>\n";
+        for (const auto* id : {"charge", "power", "altitude"}) {
+            html += fmt::format(
+                "<figure><div class=\"figure\" id=\"{0}\" role=\"img\" aria-label=\"{0} over time\">"
+                "</div></figure>\n",
+                id);
+        }
+    }
+    html += part("Now", "now") + part("Landing", "landing") + part("Schedule", "schedule") + part("Link", "link");
+    html += list("Warnings", "warnings") + "</main>\n<script type=\"application/json\" id=\"theme\">" +
+            script_json(VegaJson::parse(web.theme)) + "</script>\n";
+    if (!web.libraries.empty()) html += inline_script(web.libraries);
+    return html + inline_script(web.script) + "</body>\n</html>\n";
 }
 
 }  // namespace flightwatt::report

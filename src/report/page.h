@@ -36,4 +36,11 @@ struct PageHead {
 /// forbids it every request.
 std::string page_html(const PageHead& head, const std::vector<Section>& sections, const WebFiles& web);
 
+/// The same for the page of a flight in the air; without libraries where they are not installed.
+WebFiles read_live_web_files(const std::filesystem::path& folder);
+
+/// The page of a flight in the air, which listens to its server's events (docs/live.md) and asks nothing else. Without
+/// the libraries that draw it shows the same without charts, and says so.
+std::string live_page_html(const WebFiles& web);
+
 }  // namespace flightwatt::report

@@ -3,8 +3,10 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "telemetry/files/protocol_xml.h"
 
 #include <algorithm>
+#include <fstream>
 #include <initializer_list>
 #include <string_view>
 
@@ -14,42 +16,12 @@
 namespace flightwatt::telemetry {
 namespace {
 
-/// Attributes are upper case, lower case, or both in one file.
-std::string attribute(const pugi::xml_node& node, std::string_view lower) {
-    std::string upper(lower);
-    std::transform(upper.begin(), upper.end(), upper.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    const auto found = node.attribute(std::string(lower).c_str());
-    return found ? found.value() : node.attribute(upper.c_str()).value();
-}
-
-std::size_t line_of(std::string_view text, std::size_t offset) {
-    const auto* begin = text.data();
-    return 1 + static_cast<std::size_t>(std::count(begin, begin + std::min(offset, text.size()), '\n'));
-}
-
-MessageDefinition read_message(const pugi::xml_node& node) {
-    MessageDefinition message{attribute(node, "name"), {}, ".log"};
-    for (const auto& field : node.children("field")) {
-        message.fields.push_back({attribute(field, "name"), attribute(field, "type"), attribute(field, "unit"),
-                                  attribute(field, "alt_unit"), parse_number(attribute(field, "alt_unit_coef"))});
-    }
-    return message;
-}
-
 /// The messages that an aircraft sends stand in class "telemetry"; other classes may reuse their names.
-void read_protocol(const pugi::xml_node& protocol, LogConfiguration& configuration) {
-    for (const bool telemetry : {true, false}) {
-        for (const auto& node : protocol.children()) {
-            const std::string_view tag = node.name();
-            if (tag != "class" && tag != "msg_class") continue;
-            if ((attribute(node, "name") == "telemetry") != telemetry) continue;
-            for (const auto& message : node.children("message")) {
-                auto definition = read_message(message);
-                auto name = definition.name;
-                configuration.messages.emplace(std::move(name), std::move(definition));
-            }
-        }
+void read_messages(std::vector<ProtocolMessage> protocol, LogConfiguration& configuration) {
+    std::ranges::stable_partition(protocol, [](const auto& message) { return message.class_name == "telemetry"; });
+    for (auto& message : protocol) {
+        auto name = message.definition.name;
+        configuration.messages.emplace(std::move(name), std::move(message.definition));
     }
 }
 
@@ -95,23 +67,23 @@ void for_each_tag(std::string_view text, std::string_view name, Use&& use) {
 
 AircraftConfiguration read_aircraft(std::string_view text, const pugi::xml_node& node) {
     AircraftConfiguration aircraft;
-    aircraft.id = attribute(node, "ac_id");
-    aircraft.name = attribute(node, "name");
+    aircraft.id = xml_attribute(node, "ac_id");
+    aircraft.name = xml_attribute(node, "name");
     for_each_tag(text, "flight_plan", [&](const pugi::xml_node& plan) {
-        if (!aircraft.ground_altitude_m) aircraft.ground_altitude_m = parse_number(attribute(plan, "ground_alt"));
+        if (!aircraft.ground_altitude_m) aircraft.ground_altitude_m = parse_number(xml_attribute(plan, "ground_alt"));
     });
     for_each_tag(text, "firmware", [&](const pugi::xml_node& firmware) {
         if (aircraft.firmware.empty() || aircraft.firmware == "test_progs")
-            aircraft.firmware = attribute(firmware, "name");
+            aircraft.firmware = xml_attribute(firmware, "name");
     });
     int position = 0;
     for_each_tag(text, "block", [&](const pugi::xml_node& block) {
-        const auto number = parse_unsigned(attribute(block, "no"));
-        aircraft.block_names.emplace(number ? static_cast<int>(*number) : position, attribute(block, "name"));
+        const auto number = parse_unsigned(xml_attribute(block, "no"));
+        aircraft.block_names.emplace(number ? static_cast<int>(*number) : position, xml_attribute(block, "name"));
         ++position;
     });
     for_each_tag(text, "define", [&](const pugi::xml_node& define) {
-        const auto name = attribute(define, "name");
+        const auto name = xml_attribute(define, "name");
         if (name.starts_with("MilliAmpereOfAdc")) {
             aircraft.current_origin = CurrentOrigin::sensor;
         } else if (name.starts_with("MILLIAMP_AT_FULL_THROTTLE") && aircraft.current_origin == CurrentOrigin::unknown) {
@@ -136,31 +108,25 @@ void read_all_aircraft(std::string_view text, LogConfiguration& configuration) {
     }
 }
 
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code error;
+    return std::filesystem::equivalent(a, b, error) && !error;
+}
+
 }  // namespace
+
+bool begins_as_xml(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    char first = '\0';
+    return static_cast<bool>(file >> first) && (first == '<' || first == '\xEF');
+}
 
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file) {
     LogConfiguration configuration;
     configuration.file = file;
-    const auto begin = text.find("<protocol");
-    constexpr std::string_view closing = "</protocol>";
-    const auto end = begin == std::string::npos ? begin : text.find(closing, begin);
-    if (end == std::string::npos) {
-        throw InputError({file.string()}, "holds no <protocol> element with message definitions",
-                         "expected the .log that Paparazzi's server wrote beside the .data");
-    }
-    pugi::xml_document document;
-    const auto parsed = document.load_buffer(text.data() + begin, end + closing.size() - begin);
-    if (!parsed) {
-        const auto offset = begin + static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0));
-        throw InputError({file.string(), line_of(text, offset)},
-                         fmt::format("its <protocol> is not XML: {}", parsed.description()));
-    }
-    read_protocol(document.child("protocol"), configuration);
-    if (configuration.messages.empty()) {
-        throw InputError({file.string(), line_of(text, begin)}, "its <protocol> defines no message");
-    }
+    read_messages(parse_protocol(text, file), configuration);
     for_each_tag(text, "configuration", [&](const pugi::xml_node& node) {
-        const auto time_s = parse_number(attribute(node, "time_of_day"));
+        const auto time_s = parse_number(xml_attribute(node, "time_of_day"));
         if (!configuration.time_of_day_s && time_s && *time_s > 0.0) configuration.time_of_day_s = time_s;
     });
     read_all_aircraft(text, configuration);
@@ -178,7 +144,7 @@ std::string flight_name(const std::filesystem::path& data_file) {
         if (found != endings.end()) name.resize(name.size() - found->size());
     };
     strip_first({".gz", ".bz2", ".xz", ".zst"});
-    strip_first({".series.csv", ".data", ".csv"});
+    strip_first({".series.csv", ".data", ".csv", ".LOG", ".log", ".tlm", ".TLM", ".bin", ".BIN"});
     return name;
 }
 
@@ -186,14 +152,22 @@ std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& 
     const auto flight = flight_name(data_file);
     std::vector<std::string> stems{flight};
     if (flight.ends_with("_SD")) stems.push_back(flight.substr(0, flight.size() - 3));
+    // A card's X.LOG has its X.log beside it, which may also be called X.LOG where the card's is X.tlm.
     for (const auto& stem : stems) {
-        const auto candidate = data_file.parent_path() / (stem + ".log");
-        std::error_code error;
-        if (std::filesystem::is_regular_file(candidate, error)) return candidate;
-        // One that is there and cannot be read is not passed over: reading it says why.
-        const bool is_absent = !error || error == std::errc::no_such_file_or_directory ||
-                               error == std::errc::not_a_directory || error == std::errc::filename_too_long;
-        if (!is_absent) return candidate;
+        for (const auto* ending : {".log", ".LOG", ".Log"}) {
+            const auto candidate = data_file.parent_path() / (stem + ending);
+            if (is_same_file(candidate, data_file)) continue;
+            std::error_code error;
+            const bool is_usual = ending == std::string_view(".log");
+            if (std::filesystem::is_regular_file(candidate, error)) {
+                if (is_usual || begins_as_xml(candidate)) return candidate;
+                continue;
+            }
+            // One that is there and cannot be read is not passed over: reading it says why.
+            const bool is_absent = !error || error == std::errc::no_such_file_or_directory ||
+                                   error == std::errc::not_a_directory || error == std::errc::filename_too_long;
+            if (is_usual && !is_absent) return candidate;
+        }
     }
     return std::nullopt;
 }

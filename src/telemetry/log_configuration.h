@@ -38,9 +38,13 @@ inline constexpr std::size_t most_log_configuration_bytes = 16'000'000;
 LogConfiguration read_log_configuration(const std::filesystem::path& path);
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file);
 
-/// The .log that belongs to a .data file ("X.data", "X.data.gz", "X_SD.data"): "X.log" beside it. One that is there
+/// The .log that belongs to a log ("X.data", "X.data.gz", "X_SD.data", a card's "X.LOG"): "X.log" beside it, else an X.LOG
+/// that is XML; never the log itself. One that is there
 /// and cannot be read (a folder without permission, a link loop) counts: reading it says why.
 std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& data_file);
+
+/// Whether a file begins as XML does: an X.LOG may be an SD card's log or what says how to read X.tlm.
+bool begins_as_xml(const std::filesystem::path& path);
 
 /// "20_07_03__12_17_45" for "logs/20_07_03__12_17_45.data.gz": the name without folder and endings.
 std::string flight_name(const std::filesystem::path& data_file);

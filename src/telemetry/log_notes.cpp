@@ -30,9 +30,23 @@ std::size_t SkippedLines::first_line() const {
     return first == lines.end() ? 0 : first->first_line;
 }
 
+std::string_view to_string(SkippedLines::Unit unit) {
+    switch (unit) {
+        case SkippedLines::Unit::frame:
+            return "frame";
+        case SkippedLines::Unit::byte:
+            return "byte";
+        case SkippedLines::Unit::line:
+            break;
+    }
+    return "line";
+}
+
 std::string describe(const SkippedLines& skipped) {
-    return fmt::format("{}: {} line{}, first at line {}", skipped.reason, skipped.count(),
-                       skipped.count() == 1 ? "" : "s", skipped.first_line());
+    const auto unit = to_string(skipped.unit);
+    const auto place = skipped.unit == SkippedLines::Unit::line ? "line" : "byte";
+    return fmt::format("{}: {} {}{}, first at {} {}", skipped.reason, skipped.count(), unit,
+                       skipped.count() == 1 ? "" : "s", place, skipped.first_line());
 }
 
 }  // namespace flightwatt::telemetry

@@ -18,24 +18,29 @@ enum class CurrentOrigin {
 /// "measured by a sensor", "computed from throttle" or "unknown".
 std::string_view to_string(CurrentOrigin origin);
 
-/// Lines or values that could not be used, by reason and time. A line that has no time counts to the next one
-/// that has: what stands behind the last message of a log has an infinite time.
+/// Lines or values that could not be used, by reason and time; of binary logs frames, or bytes between them. What has no
+/// time counts to the next message that has: what stands behind the last message of a log has an infinite time.
 struct SkippedLines {
+    enum class Unit { line, frame, byte };
     struct AtTime {
         double time_s = 0.0;
         std::size_t count = 0;
-        std::size_t first_line = 0;
+        std::size_t first_line = 0;  ///< of a binary log the first byte, from 1 as well
         bool operator==(const AtTime&) const = default;
     };
     std::string reason;
     std::vector<AtTime> lines;  ///< by time, which rises strictly
+    Unit unit = Unit::line;     ///< what is counted
 
     std::size_t count() const;
     std::size_t first_line() const;  ///< 0 without any
     bool operator==(const SkippedLines&) const = default;
 };
 
-/// "ENERGY: another number of fields than the .log defines: 3 lines, first at line 17".
+std::string_view to_string(SkippedLines::Unit unit);
+
+/// "ENERGY: another number of fields than the .log defines: 3 lines, first at line 17"; of a binary log "damaged: 3
+/// bytes, first at byte 1201".
 std::string describe(const SkippedLines& skipped);
 
 /// A message's layout that was assumed for want of a .log, or what was assumed of its units where the .log has none or

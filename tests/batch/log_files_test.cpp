@@ -99,13 +99,15 @@ TEST(FindLogs, RefusesWhatIsNotThere) {
                       find_logs({folder.string(), folder.string()});
                   },
                   folder.parent_path()),
-              ": no .data log in FindLogs.RefusesWhatIsNotThere, FindLogs.RefusesWhatIsNotThere; expected "
-              "*.data, also .gz, .bz2, .xz or .zst");
+              ": no log in FindLogs.RefusesWhatIsNotThere, FindLogs.RefusesWhatIsNotThere; expected "
+              "*.data, *.LOG or *.tlm, also .gz, .bz2, .xz or .zst");
     EXPECT_EQ(rejected([&] { find_logs({(folder / "b.data").string()}); }, folder),
-              "b.data: does not exist; expected a .data log or a folder of them");
+              "b.data: does not exist; expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
     EXPECT_EQ(rejected([&] { find_logs({(folder / std::string(300, 'x')).string()}); }, folder),
-              std::string(300, 'x') + ": File name too long; expected a .data log or a folder of them");
-    EXPECT_EQ(rejected([&] { find_logs({""}); }), "'': does not exist; expected a .data log or a folder of them");
+              std::string(300, 'x') +
+                  ": File name too long; expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
+    EXPECT_EQ(rejected([&] { find_logs({""}); }),
+              "'': does not exist; expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
 }
 
 TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {

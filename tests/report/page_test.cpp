@@ -39,6 +39,28 @@ TEST(PageHtml, KeepsScriptsInTheirElementsAndOffTheNetwork) {
     EXPECT_THAT(html, Not(HasSubstr("https://")));
 }
 
+TEST(LivePage, ListensToItsServerAlone) {
+    const auto html = live_page_html(small_files());
+    EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+    EXPECT_THAT(html, HasSubstr("connect-src 'self'"));
+    EXPECT_THAT(html, HasSubstr("id=\"charge\""));
+    EXPECT_THAT(html, Not(HasSubstr("http://")));
+    EXPECT_THAT(html, Not(HasSubstr("https://")));
+    EXPECT_THAT(page_html({"t", {}, {}}, {}, small_files()), Not(HasSubstr("connect-src")));
+}
+
+TEST(LivePage, SaysThatItHasNoChartsWhereTheLibrariesAreMissing) {
+    const auto folder = test::scratch_dir();
+    for (const auto* file : {"page.css", "theme.json", "watch.js"}) write_file_atomically(folder / file, "{}\n");
+    const auto web = read_live_web_files(folder);
+    EXPECT_EQ(web.libraries, "");
+    EXPECT_EQ(web.script, "{}\n");
+    const auto html = live_page_html(web);
+    EXPECT_THAT(html, HasSubstr("There are no charts"));
+    EXPECT_THAT(html, Not(HasSubstr("id=\"charge\"")));
+    EXPECT_THAT(html, HasSubstr("id=\"alarms\""));
+}
+
 TEST(WebFolder, IsThatOfTheProject) {
     EXPECT_TRUE(std::filesystem::equivalent(web_folder(), test::source_dir() / "web"));
 }

@@ -123,6 +123,8 @@ void add_flight_options(po::options_description& options) {
     add("flight-height", number("M", defaults.flight_height_m, "10"), "what stays below this height [m] is no flight");
     add("max-log-mb", value("MB")->default_value("100"),
         "refuse a compressed log that unpacks to more, and a larger series file");
+    add("messages", input_file("FILE"),
+        "definitions for logs without a .log, above all binary ones: a messages.xml, or the .log of the same build");
     options.add(group);
 }
 
@@ -143,6 +145,7 @@ flight::LoadOptions read_flight_options(const StageCall& call) {
     segmentation.ground_fraction = call.get<double>("ground-fraction");
     segmentation.flight_height_m = call.get<double>("flight-height");
     validate(segmentation);
+    if (const auto messages = call.maybe<std::string>("messages")) options.messages = *messages;
     options.most_log_bytes = bytes_per_mb * count_option(call, "max-log-mb", 1, 1'000'000);
     return options;
 }

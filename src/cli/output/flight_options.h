@@ -13,7 +13,7 @@
 namespace flightwatt::cli {
 
 /// The options of every stage that reads flights: --aircraft, --sortie, the thresholds of the segmentation,
-/// --correct-idle-offset, --exclude and --keep.
+/// --correct-idle-offset, --exclude, --keep and --messages.
 void add_flight_options(boost::program_options::options_description& options);
 
 /// What the user gave of them. Throws UsageError for a value that makes no sense.

@@ -3,13 +3,12 @@
 #include "base/units.h"
 #include "cli/output/json_text.h"
 
-#include <cmath>
-#include <vector>
-
 #include <fmt/format.h>
 
 namespace flightwatt::cli {
 namespace {
+
+using live::BatteryPrediction;
 
 std::string landing_text(const battery::LandingForecast& forecast, const battery::LandingLimits& limits) {
     if (forecast.fails_after_s) {
@@ -63,34 +62,6 @@ nlohmann::ordered_json json_of(const battery::LandingForecast& forecast) {
 
 }  // namespace
 
-void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
-          BatteryPrediction& result) {
-    const double landing_j = units::joule_from_wh(prediction.landing.energy_wh);
-    const double cruise_j = units::joule_from_wh(prediction.cruise.energy.energy_wh);
-    double along_path_j = 0.0;
-    for (const auto& stretch : prediction.power_ahead) along_path_j += stretch.power_w * stretch.duration_s;
-    const auto forecast = [&](const battery::Battery& of, double part) {
-        const double cruise_w = prediction.cruise.remaining_mean_w * part;
-        std::vector<battery::PowerStretch> ahead;
-        if (along_path_j > 0.0) {
-            for (const auto& [power_w, duration_s] : prediction.power_ahead)
-                ahead.push_back({power_w * part * cruise_j / along_path_j, duration_s});
-        } else {
-            ahead.push_back({cruise_w, prediction.remaining_s});
-        }
-        if (prediction.landing_s > 0.0)
-            ahead.push_back({landing_j / prediction.landing_s * part, prediction.landing_s});
-        const auto now = battery::state_after(of, flown, result.initial_soc_percent);
-        return battery::forecast_landing(of, now, ahead, cruise_w, result.limits);
-    };
-    const double rest_wh = prediction.rest.energy_wh;
-    auto least = battery;
-    result.with_least_capacity = battery.intervals.capacity_ah.has_value();
-    if (result.with_least_capacity) least.capacity_ah = battery.intervals.capacity_ah->low;
-    result.expected = forecast(battery, 1.0);
-    result.worst = forecast(least, rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
-}
-
 std::string text_of(const Prediction& prediction) {
     const auto& [flown, remaining_s, by_motion, cruise, power_ahead, landing, landing_s, rest, interval, battery] =
         prediction;
@@ -135,25 +106,9 @@ nlohmann::ordered_json json_of(const Prediction& prediction) {
     return json;
 }
 
-void warn_of_level(const StageCall& call, const mechanical::PhysicalModel& model, double level) {
-    constexpr double most_sds = 3.0;
-    const double sd = model.level_sd.value_or(0.0);
-    if (std::abs(level) <= most_sds * sd) return;
-    warn(call,
-         fmt::format("this flight takes {:+.1f} % of what the model says, whose flights differ by {:.1f} % (1 sd): "
-                     "is it another aircraft, load or propeller?",
-                     units::percent_of(level, 1.0), units::percent_of(sd, 1.0)));
-}
-
-void warn_of_motion(const StageCall& call, const mechanical::PhysicalModel& model,
-                    const mechanical::AirMotion& motion) {
-    const auto& speeds = model.airspeed_m_per_s;
-    if (!was_flown(model, motion)) {
-        warn(call, fmt::format("{:.1f} m/s at {:+.1f} m/s of climb is beyond what the model's flights flew: {:.1f} to "
-                               "{:.1f} m/s, {:+.1f} to {:+.1f} m/s of climb",
-                               motion.airspeed_m_per_s, motion.climb_m_per_s, speeds.low, speeds.high,
-                               model.climb_m_per_s.low, model.climb_m_per_s.high));
-    }
+void warn_of(const StageCall& call, const live::Remarks& remarks) {
+    for (const auto& warning : remarks.warnings) warn(call, warning);
+    for (const auto& text : remarks.notes) note(call, text);
 }
 
 }  // namespace flightwatt::cli

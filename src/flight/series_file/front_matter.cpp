@@ -34,9 +34,19 @@ std::string skipped_text(const telemetry::SkippedLines& skipped) {
         count.push_back(at.count);
         first_line.push_back(at.first_line);
     }
-    return fmt::format("[[skipped]]\nreason = {}\ntime_s = {}\ncount = [{}]\nfirst_line = [{}]\n",
-                       toml_string(skipped.reason), toml_reals(time_s), fmt::join(count, ", "),
+    const auto unit = skipped.unit == telemetry::SkippedLines::Unit::line
+                          ? std::string()
+                          : fmt::format("unit = \"{}\"\n", to_string(skipped.unit));
+    return fmt::format("[[skipped]]\nreason = {}\n{}time_s = {}\ncount = [{}]\nfirst_line = [{}]\n",
+                       toml_string(skipped.reason), unit, toml_reals(time_s), fmt::join(count, ", "),
                        fmt::join(first_line, ", "));
+}
+
+telemetry::SkippedLines::Unit read_skip_unit(const std::string& text, const Location& where) {
+    using Unit = telemetry::SkippedLines::Unit;
+    for (const auto unit : {Unit::line, Unit::frame, Unit::byte})
+        if (to_string(unit) == text) return unit;
+    throw InputError(where, fmt::format("unit is '{}', expected line, frame or byte", clipped(text)));
 }
 
 telemetry::SkippedLines read_skipped(const TomlTable& table) {
@@ -44,6 +54,7 @@ telemetry::SkippedLines read_skipped(const TomlTable& table) {
     const auto time_s = table.numbers("time_s");
     const auto count = table.numbers("count");
     const auto first_line = table.numbers("first_line");
+    if (const auto unit = table.optional_string("unit")) skipped.unit = read_skip_unit(*unit, table.where());
     table.refuse_unknown_keys();
     if (first_line.size() != count.size() || time_s.size() > count.size() || time_s.size() + 1 < count.size()) {
         throw InputError(table.where(), "time_s, count and first_line are not equally long");

@@ -10,7 +10,17 @@
 
 namespace flightwatt::telemetry {
 
-enum class SkipReason { not_a_message, no_time, other_field_count, unknown_message, not_a_number };
+enum class SkipReason {
+    not_a_message,
+    no_time,
+    other_field_count,
+    unknown_message,
+    not_a_number,
+    // of binary logs
+    damage,           ///< detail: 1 if the log is cut off there
+    undefined_frame,  ///< detail: class and message
+    frame_of_another_length,
+};
 
 struct SkipKind {
     SkipReason reason;
@@ -24,7 +34,7 @@ class SkipCounter {
   public:
     explicit SkipCounter(std::string_view text) : text_(text) {}
 
-    void add(const SkipKind& kind, double time_s, std::size_t line_number);
+    void add(const SkipKind& kind, double time_s, std::size_t line_number, std::size_t count = 1);
     /// A line without a time counts to the next one in the text that has one. Fast in the order of the text.
     void add_without_time(const SkipKind& kind, const ScannedLine& line);
 

@@ -1,0 +1,62 @@
+#include "live/live_curves.h"
+
+#include "battery/discharge.h"
+
+#include <algorithm>
+
+namespace flightwatt::live {
+namespace {
+
+void halve(std::vector<double>& values) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < values.size(); i += 2) values[kept++] = values[i];
+    values.resize(kept);
+}
+
+}  // namespace
+
+void CurveHistory::add(double time_s, double value) {
+    if (!curve_.time_s.empty() && time_s <= curve_.time_s.back()) {
+        if (time_s == curve_.time_s.back()) return;
+        *this = {};
+    }
+    if (added_++ % stride_ != 0) return;
+    curve_.time_s.push_back(time_s);
+    curve_.value.push_back(value);
+    if (curve_.time_s.size() < most_points) return;
+    halve(curve_.time_s);
+    halve(curve_.value);
+    stride_ *= 2;
+}
+
+TimeCurve soc_ahead(const LiveState& state, const PredictionBasis& basis) {
+    constexpr double most_points = 100.0;
+    constexpr double finest_s = 10.0;
+    constexpr double integration_s = 5.0;
+    TimeCurve curve;
+    if (!state.prediction || !basis.battery || !state.battery || !state.battery->state) return curve;
+    const auto stretches = power_ahead(*state.prediction);
+    double rest_s = 0.0;
+    for (const auto& stretch : stretches) rest_s += stretch.duration_s;
+    const double step_s = std::max(finest_s, rest_s / most_points);
+    battery::BatteryState now = *state.battery->state;
+    double time_s = state.time_s;
+    curve = {{time_s}, {now.soc_percent}};
+    for (const auto& stretch : stretches) {
+        for (double left_s = stretch.duration_s; left_s > 0.0;) {
+            const double part_s = std::min(left_s, step_s);
+            const double power_w = stretch.power_w;
+            const auto end = discharge(*basis.battery, {[power_w](double) { return power_w; }, 0.0, part_s}, now,
+                                       {integration_s, basis.limits.cutoff_voltage_v});
+            if (end.ended_at_s() || end.undeliverable) return curve;
+            now = end;
+            left_s -= part_s;
+            time_s += part_s;
+            curve.time_s.push_back(time_s);
+            curve.value.push_back(now.soc_percent);
+        }
+    }
+    return curve;
+}
+
+}  // namespace flightwatt::live

@@ -1,0 +1,308 @@
+#include "live/live_flight.h"
+
+#include "base/error.h"
+#include "flight/chosen_track.h"
+#include "flight/load_flight.h"
+#include "flight/phase_statistics.h"
+#include "live/state/aircraft_choice.h"
+#include "live/state/alarms.h"
+#include "live/state/battery_check.h"
+#include "live/state/clock_filter.h"
+#include "live/state/flight_clock.h"
+#include "live/state/telemetry_store.h"
+#include "mechanical/prediction.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::live {
+namespace {
+
+constexpr double judged_every_s = 30.0;  // the record's warnings take as long as all the rest
+constexpr std::size_t most_notes = 50;
+
+std::optional<double> last_of(const flight::ChosenTracks& tracks, const char* name) {
+    const auto& track = tracks[name];
+    return track.empty() ? std::nullopt : std::optional(track.value.back());
+}
+
+void note_once(std::vector<std::string>& notes, const std::string& text) {
+    if (notes.size() < most_notes && std::ranges::find(notes, text) == notes.end()) notes.push_back(text);
+}
+
+}  // namespace
+
+class LiveFlight::Watch {
+  public:
+    Watch(LiveOptions options, std::optional<PredictionBasis> basis, std::unique_ptr<LiveSchedule> schedule)
+        : options_(std::move(options)),
+          basis_(std::move(basis)),
+          schedule_(std::move(schedule)),
+          store_(options_.flight, std::move(options_.configuration), basis_ && (basis_->path || basis_->motion)),
+          choice_(options_.aircraft_id) {}
+
+    void receive(const IncomingMessage& message, double arrival_s) {
+        ++messages_;
+        choice_.count(message.text);
+        std::vector<ClockFilter::Line> believed;
+        const bool anew =
+            clock_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed);
+        if (anew) restart();
+        take(believed, anew);
+    }
+
+    void end() {
+        std::vector<ClockFilter::Line> believed;
+        clock_.flush(believed);
+        take(believed, false);
+    }
+
+    std::optional<double> clock_s() const { return clock_.started() ? std::optional(clock_.latest_s()) : std::nullopt; }
+
+    LiveState look(double silent_s);
+    const std::optional<LiveState>& last_predicted() const { return last_predicted_; }
+
+  private:
+    void take(const std::vector<ClockFilter::Line>& believed, bool anew) {
+        const auto begin = pending_.size();
+        for (const auto& [time_s, text] : believed) pending_ += fmt::format("{} {}\n", time_s, text);
+        if (options_.on_lines && !believed.empty()) options_.on_lines(std::string_view(pending_).substr(begin), anew);
+        constexpr std::size_t most_pending_bytes = 1'000'000;
+        if (pending_.size() > most_pending_bytes) store_pending();
+    }
+
+    void store_pending() {
+        store_.add(pending_);
+        pending_.clear();
+        while (store_.rows() > 2 * options_.most_rows) store_.thin();
+    }
+
+    void restart() {
+        store_pending();
+        store_.clear();
+        ++restarts_;
+        sorties_before_ += sorties_kept_;
+        sorties_kept_ = 0;
+        carried_percent_.reset();
+        judged_s_.reset();
+        warnings_.clear();
+        if (schedule_) schedule_->begin_anew();
+    }
+
+    void look_at_flight(const flight::FlightSeries& series, LiveState& state);
+    void look_at_battery_of(const flight::FlightSeries& series, LiveState& state,
+                            std::optional<battery::DischargeRecord>& record);
+    void predict(const flight::FlightSeries& series, const std::optional<battery::DischargeRecord>& record,
+                 LiveState& state);
+    void look_ahead(LiveState& state) const;
+    void decide(LiveState& state);
+    void judge(const flight::FlightSeries& series, const LiveState& state);
+    void trim(const std::optional<battery::DischargeRecord>& record, const LiveState& state);
+
+    LiveOptions options_;
+    std::optional<PredictionBasis> basis_;
+    std::unique_ptr<LiveSchedule> schedule_;
+    TelemetryStore store_;
+    ClockFilter clock_;
+    AircraftChoice choice_;
+    std::string pending_;
+    std::size_t messages_ = 0;
+    std::size_t restarts_ = 0;
+    std::size_t sorties_before_ = 0;  ///< those that are not kept any more
+    std::size_t sorties_kept_ = 0;
+    std::size_t deciding_for_ = 0;  ///< the sortie that the schedule has seen
+    std::optional<double> carried_percent_;
+    std::optional<double> judged_s_;
+    std::vector<std::string> warnings_;
+    flight::FlightPhases phases_;
+    std::optional<LiveState> last_predicted_;
+};
+
+LiveState LiveFlight::Watch::look(double silent_s) {
+    store_pending();
+    LiveState state;
+    state.time_s = clock_.latest_s();
+    state.messages = messages_;
+    state.restarts = restarts_;
+    state.silent_s = silent_s;
+    const auto series = choice_.choose(store_);
+    state.aircraft_id = series.aircraft_id;
+    state.aircraft_name = series.aircraft_name;
+    state.others = choice_.others();
+    std::optional<battery::DischargeRecord> record;
+    look_at_flight(series, state);
+    look_at_battery_of(series, state, record);
+    predict(series, record, state);
+    look_ahead(state);
+    decide(state);
+    judge(series, state);
+    state.warnings.insert(state.warnings.begin(), warnings_.begin(), warnings_.end());
+    state.unusable.insert(store_.skipped().begin(), store_.skipped().end());
+    if (clock_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clock_.unconfirmed();
+    if (clock_.steps_back() > 0)
+        state.warnings.push_back(fmt::format("the clock of the telemetry went back {} times", clock_.steps_back()));
+    for (const auto& [message, stride] : store_.thinned())
+        state.warnings.push_back(fmt::format("of {} every {}th row is kept", message, stride));
+    state.alarms = alarms_of(state, basis_, options_.silence_s);
+    trim(record, state);
+    state.rows = store_.rows();
+    if (state.prediction) last_predicted_ = state;
+    return state;
+}
+
+void LiveFlight::Watch::look_at_flight(const flight::FlightSeries& series, LiveState& state) {
+    phases_ = {};
+    const flight::ChosenTracks tracks(series);
+    try {
+        if (!tracks["altitude_m"].empty()) phases_ = segment(series, {});
+    } catch (const InputError& error) {
+        state.waits_for = error.what();
+    }
+    sorties_kept_ = phases_.sorties.size();
+    state.sortie = sorties_before_ + sorties_kept_;
+    state.power_w = last_of(tracks, "power_w");
+    state.voltage_v = last_of(tracks, "voltage_v");
+    state.current_a = last_of(tracks, "current_a");
+    state.altitude_m = last_of(tracks, "altitude_m");
+    if (phases_.sorties.empty()) return;
+    set_flight_clock(phases_.sorties.back(), mechanical::last_time_s(series), state);
+    if (!state.power_w) return;
+    const auto& sortie = phases_.sorties.back();
+    state.energy_wh =
+        integrated_energy_wh(series, sortie.start_s(), state.landed ? sortie.end_s() : mechanical::last_time_s(series));
+}
+
+void LiveFlight::Watch::look_at_battery_of(const flight::FlightSeries& series, LiveState& state,
+                                           std::optional<battery::DischargeRecord>& record) {
+    if (!basis_ || !basis_->battery) return;
+    state.battery = look_at_battery(*basis_, carried_percent_, series, record);
+}
+
+void LiveFlight::Watch::predict(const flight::FlightSeries& series,
+                                const std::optional<battery::DischargeRecord>& record, LiveState& state) {
+    if (!basis_) {
+        state.waits_for = "a model: give --model or --mission";
+        return;
+    }
+    if (!basis_->cannot_predict.empty()) {
+        state.waits_for = basis_->cannot_predict;
+        return;
+    }
+    if (!state.power_w) {
+        const auto why = why_no_power(series);
+        state.waits_for = why.empty() ? "telemetry that tells of power" : "measured power: " + why;
+        return;
+    }
+    Remarks remarks;
+    try {
+        const double until_s = mechanical::last_time_s(series);
+        const auto sortie = phases_.sorties.empty() ? 0 : phases_.sorties.size() - 1;
+        const auto flown = mechanical::progress_at(series, until_s, sortie);
+        auto energy = predict_energy(*basis_, flown, remarks);
+        if (record && state.battery && state.battery->soc_percent) {
+            energy.battery = BatteryPrediction{};
+            energy.battery->limits = basis_->limits;
+            energy.battery->initial_soc_percent = state.battery->initial_soc_percent;
+            energy.battery->initial_is_measured = state.battery->initial_is_measured;
+            land(*basis_->battery, *record, energy, *energy.battery);
+        }
+        state.prediction = std::move(energy);
+        state.expected_power_w = power_ahead(*state.prediction).front().power_w;
+    } catch (const InputError& error) {
+        state.waits_for = error.what();
+    } catch (const NoAnswerError& error) {
+        state.waits_for = without_flight_name(error.what(), series.flight);
+    } catch (const UsageError& error) {
+        state.waits_for = error.what();
+    }
+    state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
+}
+
+void LiveFlight::Watch::look_ahead(LiveState& state) const {
+    if (!state.prediction || !state.battery || !state.battery->state) return;
+    const auto& prediction = *state.prediction;
+    const auto& now = *state.battery->state;
+    state.battery->chance_below = chance_below_reserve(*basis_, prediction, now);
+    const double cruise_w = prediction.cruise.remaining_mean_w;
+    const std::vector<battery::PowerStretch> nothing{{cruise_w, 0.0}};
+    state.battery->reserve_in_s =
+        forecast_landing(*basis_->battery, now, nothing, cruise_w, basis_->limits).seconds_left;
+    if (!basis_->path || basis_->remaining_s || state.phase != flight::Phase::cruise) return;
+    const double part = prediction.rest.energy_wh > 0.0 ? prediction.interval.high_wh / prediction.rest.energy_wh : 1.0;
+    TurnBudget budget{*basis_->battery, now, basis_->limits, power_ahead(prediction, part), {}, 1.0};
+    double planned_j = 0.0;
+    double expected_j = 0.0;
+    for (const auto& stretch : prediction.power_ahead) planned_j += stretch.power_w * stretch.duration_s;
+    if (prediction.landing_s > 0.0) {
+        budget.landing = budget.cruise_ahead.back();
+        budget.cruise_ahead.pop_back();
+    }
+    for (const auto& stretch : budget.cruise_ahead) expected_j += stretch.power_w * stretch.duration_s;
+    if (planned_j > 0.0) budget.power_factor = expected_j / planned_j;
+    state.turn_home = latest_turn_home(*basis_->path, prediction.flown.cruise_s(), budget);
+}
+
+void LiveFlight::Watch::decide(LiveState& state) {
+    if (!schedule_ || state.landed) return;
+    if (state.phase && state.sortie != deciding_for_) {
+        if (deciding_for_ > 0) schedule_->begin_anew();
+        deciding_for_ = state.sortie;
+    }
+    const auto phase = state.phase.value_or(flight::Phase::takeoff);
+    const auto now = state.battery ? state.battery->state : std::nullopt;
+    try {
+        state.decision = schedule_->at({phase, state.phase ? state.phase_s : 0.0}, state.time_s, now);
+    } catch (const InputError& error) {
+        state.warnings.push_back(fmt::format("no schedule: {}", error.what()));
+    } catch (const NoAnswerError& error) {
+        state.warnings.push_back(fmt::format("no schedule: {}", error.what()));
+    }
+}
+
+void LiveFlight::Watch::judge(const flight::FlightSeries& series, const LiveState& state) {
+    if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed) return;
+    judged_s_ = state.time_s;
+    if (series.tracks.empty()) return;
+    flight::LoadOptions options;
+    options.flight_required = false;
+    options.power_required = false;
+    try {
+        const auto loaded = examine_flight(series, options);
+        for (const auto& warning : loaded.warnings) note_once(warnings_, warning);
+        if (!loaded.exclusion.empty()) note_once(warnings_, "no prediction can be trusted: " + loaded.exclusion);
+    } catch (const InputError& error) {
+        note_once(warnings_, error.what());
+    }
+}
+
+void LiveFlight::Watch::trim(const std::optional<battery::DischargeRecord>& record, const LiveState& state) {
+    if (store_.rows() <= options_.most_rows) return;
+    const double from_s = first_needed_s(phases_, state);
+    if (record && state.battery && state.battery->soc_percent) {
+        if (const auto percent = soc_at(*basis_->battery, *record, state.battery->initial_soc_percent, from_s))
+            carried_percent_ = percent;
+    }
+    for (const auto& sortie : phases_.sorties) sorties_before_ += sortie.end_s() < from_s ? 1 : 0;
+    store_.drop_before(from_s);
+    while (store_.rows() > options_.most_rows) store_.thin();
+}
+
+LiveFlight::LiveFlight(LiveOptions options, std::optional<PredictionBasis> basis,
+                       std::unique_ptr<LiveSchedule> schedule)
+    : watch_(std::make_unique<Watch>(std::move(options), std::move(basis), std::move(schedule))) {}
+
+LiveFlight::~LiveFlight() = default;
+
+void LiveFlight::receive(const IncomingMessage& message, double arrival_s) { watch_->receive(message, arrival_s); }
+
+std::optional<double> LiveFlight::clock_s() const { return watch_->clock_s(); }
+
+void LiveFlight::end() { watch_->end(); }
+
+LiveState LiveFlight::look(double silent_s) { return watch_->look(silent_s); }
+
+const std::optional<LiveState>& LiveFlight::last_predicted() const { return watch_->last_predicted(); }
+
+}  // namespace flightwatt::live

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "telemetry/link_decoder.h"
+#include "telemetry/message_dictionary.h"
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace flightwatt::live {
+
+/// Where a log is played to.
+class PlaybackTarget {
+  public:
+    PlaybackTarget() = default;
+    virtual ~PlaybackTarget() = default;
+    PlaybackTarget(const PlaybackTarget&) = delete;
+    PlaybackTarget& operator=(const PlaybackTarget&) = delete;
+
+    /// Whether there is somebody to play to; waits for that at most so long.
+    virtual bool is_heard(std::chrono::milliseconds) { return true; }
+    /// One message. Returns why it cannot be sent, and an empty text else. Throws OutputError where nothing can be.
+    virtual std::string_view send(double time_s, std::string_view text) = 0;
+    /// Until then nothing is sent.
+    virtual void wait_until(std::chrono::steady_clock::time_point then);
+    /// Whether all that was sent is out.
+    virtual bool is_idle() const { return true; }
+};
+
+/// What a target needs beside its name.
+struct PlaybackTargetSetup {
+    /// Of udp: alone.
+    std::optional<telemetry::MessageDictionary> definitions = {};
+    telemetry::LinkVersion version = telemetry::LinkVersion::v2;
+    /// Of ivy: alone: messages as the aircraft itself would say them, without their time.
+    bool as_aircraft = false;
+};
+
+/// "udp:127.0.0.1:4242" (link frames, a datagram each), "ivy:127.255.255.255:2010" (as Paparazzi's log player says
+/// them), "file:NAME.data" (a file that grows; none that is there). Throws UsageError for another name, InputError for a bus that cannot be joined, OutputError for a file that cannot be made.
+std::unique_ptr<PlaybackTarget> open_playback_target(std::string_view to, PlaybackTargetSetup setup);
+
+/// How a log was played.
+struct PlaybackReport {
+    std::size_t messages = 0;                                  ///< sent
+    std::map<std::string, std::size_t, std::less<>> left_out;  ///< lines, by reason
+    std::size_t shortened_gaps = 0;
+    double log_s = 0.0;     ///< how much of the log, on its clock
+    double played_s = 0.0;  ///< in how long
+    double latest_s = 0.0;  ///< the most that a message was behind its time
+    bool stopped = false;
+};
+
+/// Gaps of a log that are longer are played as so long: nobody waits for the clock that was set between them.
+inline constexpr double longest_played_gap_s = 600.0;
+
+/// Plays the lines of a text log (compressed or not) in their own time, `speed` times as fast, until its end or until
+/// `stop` says so. Where the log's clock goes back it goes on at once. Throws InputError for a log that cannot be read.
+PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarget& target,
+                    const std::function<bool()>& stop);
+
+}  // namespace flightwatt::live

@@ -1,0 +1,213 @@
+#include "live/prediction.h"
+
+#include "base/error.h"
+#include "base/units.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::live {
+namespace {
+
+using mechanical::FlightProgress;
+using mechanical::LevelSource;
+
+/// The level law where the model has one and the flight tells its covariate.
+LevelSource automatic_source(const mechanical::PhaseModel& cruise, const FlightProgress& flown, Remarks& remarks) {
+    if (!cruise.level_law) return LevelSource::curve;
+    const auto covariate = cruise.level_law->covariate;
+    if (flown.covariates[covariate]) return LevelSource::covariate;
+    remarks.warnings.push_back(fmt::format(
+        "the model's level follows {}, which this flight does not tell: expected by the curve", to_string(covariate)));
+    return LevelSource::curve;
+}
+
+/// What a law says beyond its flights is told, not refused: the flight is as it is.
+void warn_of_reach(const mechanical::PhaseModel& cruise, const FlightProgress& flown, Remarks& remarks) {
+    const auto& law = cruise.level_law.value();
+    const double value = flown.covariates[law.covariate].value();
+    if (level_at(law, value).within_flights) return;
+    remarks.warnings.push_back(fmt::format(
+        "{} = {:.4g} is beyond what the model's flights showed, {:.4g} to {:.4g}{}", to_string(law.covariate), value,
+        law.least, law.most, law.covariate == mechanical::Covariate::airspeed_cubed ? "" : ": taken as the nearest"));
+}
+
+/// A motion that the model's flights did not fly.
+void warn_of_motion(const mechanical::PhysicalModel& model, const mechanical::AirMotion& motion, Remarks& remarks) {
+    if (was_flown(model, motion)) return;
+    const auto& speeds = model.airspeed_m_per_s;
+    remarks.warnings.push_back(
+        fmt::format("{:.1f} m/s at {:+.1f} m/s of climb is beyond what the model's flights flew: {:.1f} to {:.1f} m/s, "
+                    "{:+.1f} to {:+.1f} m/s of climb",
+                    motion.airspeed_m_per_s, motion.climb_m_per_s, speeds.low, speeds.high, model.climb_m_per_s.low,
+                    model.climb_m_per_s.high));
+}
+
+/// A flight's own level that no flight of the model's aircraft should have.
+void warn_of_level(const mechanical::PhysicalModel& model, double level, Remarks& remarks) {
+    constexpr double most_sds = 3.0;
+    const double sd = model.level_sd.value_or(0.0);
+    if (std::abs(level) <= most_sds * sd) return;
+    remarks.warnings.push_back(fmt::format(
+        "this flight takes {:+.1f} % of what the model says, whose flights differ by {:.1f} % (1 sd): is it "
+        "another aircraft, load or propeller?",
+        units::percent_of(level, 1.0), units::percent_of(sd, 1.0)));
+}
+
+/// Where on the path the flight is: after as long as it has cruised, or the remaining time before its end.
+mission::PathPlace place_on_path(const mission::FlownPath& path, const FlightProgress& flown,
+                                 const std::optional<double>& remaining_s) {
+    if (remaining_s && *remaining_s > path.duration_s) {
+        throw UsageError(
+            fmt::format("--remaining {:g}: the mission's path takes only {:.1f} s", *remaining_s, path.duration_s));
+    }
+    if (!remaining_s && flown.cruise_s() > path.duration_s) {
+        throw NoAnswerError(
+            fmt::format("the flight has cruised for {:.1f} s and the mission's path takes {:.1f} s: say "
+                        "with --remaining how much of it is left",
+                        flown.cruise_s(), path.duration_s));
+    }
+    return place_at(path, remaining_s ? path.duration_s - *remaining_s : flown.cruise_s());
+}
+
+/// The cruise along what is left of the path.
+mechanical::RestPrediction predict_along(const PredictionBasis& basis, const FlightProgress& flown,
+                                         Prediction& prediction, Remarks& remarks) {
+    const auto place = place_on_path(basis.path->flown(), flown, basis.remaining_s);
+    auto rest = basis.path->predict(flown, place);
+    if (rest.forbidden_part > 0.0) {
+        remarks.warnings.push_back(
+            fmt::format("{:.0f} % of the winds that [wind] makes likely forbid what is left of the path: they are not "
+                        "in what follows",
+                        units::percent_of(rest.forbidden_part, 1.0)));
+    }
+    prediction.remaining_s = rest.duration_s;
+    prediction.power_ahead = std::move(rest.power);
+    return rest.cruise;
+}
+
+/// The cruise by the model's curve or laws.
+mechanical::RestPrediction predict_level(const PredictionBasis& basis, const FlightProgress& flown, double remaining_s,
+                                         Remarks& remarks) {
+    const auto& cruise = basis.model.phases[flight::Phase::cruise];
+    const auto source = basis.level ? *basis.level : automatic_source(cruise, flown, remarks);
+    auto rest = predict_rest(forecast_of(basis.model, flight::Phase::cruise), flown, remaining_s, source);
+    if (source == LevelSource::covariate) warn_of_reach(cruise, flown, remarks);
+    return rest;
+}
+
+mechanical::RestPrediction predict_cruise(const PredictionBasis& basis, const FlightProgress& flown,
+                                          Prediction& prediction, Remarks& remarks) {
+    prediction.by_motion = basis.path || basis.motion;
+    if (prediction.by_motion && !flown.motion.lacks.empty())
+        remarks.warnings.push_back(fmt::format("this flight's own level is not known: {}", flown.motion.lacks));
+    if (basis.path) return predict_along(basis, flown, prediction, remarks);
+    prediction.remaining_s =
+        basis.remaining_s ? *basis.remaining_s : std::max(0.0, basis.cruise_s.value() - flown.cruise_s());
+    if (!basis.motion) return predict_level(basis, flown, prediction.remaining_s, remarks);
+    const auto& model = basis.model.physical.value();
+    warn_of_motion(model, *basis.motion, remarks);
+    return predict_rest_by_motion(model, flown, terms_of(*basis.motion), prediction.remaining_s);
+}
+
+/// The battery through the rest, from what was measured of it until now.
+std::optional<BatteryPrediction> predict_battery(const PredictionBasis& basis, const flight::FlightSeries& series,
+                                                 const Prediction& prediction, Remarks& remarks) {
+    if (!basis.battery) return std::nullopt;
+    const auto& battery = *basis.battery;
+    for (const auto& warning : battery_warnings(battery))
+        remarks.warnings.push_back(fmt::format("{}: {}", basis.battery_file, warning));
+    const auto records = battery::discharge_records(series);
+    remarks.notes.insert(remarks.notes.end(), records.notes.begin(), records.notes.end());
+    const auto& record = records.records.back();
+    BatteryPrediction of;
+    of.limits = basis.limits;
+    of.initial_is_measured = !basis.initial_soc_percent;
+    of.initial_soc_percent = initial_soc_percent(basis, record);
+    land(battery, record, prediction, of);
+    return of;
+}
+
+}  // namespace
+
+void require_spread(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file) {
+    if (model.phases[phase].level_spread) return;
+    throw InputError({file}, fmt::format("[{}] has no spread: how much flights differ", to_string(phase)),
+                     "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
+}
+
+void require_physical(const mechanical::MechanicalModel& model, const std::string& file, const std::string& option) {
+    if (model.physical && model.physical->level_sd) return;
+    throw InputError(
+        {file}, model.physical ? "its [physical] rests on a single flight" : "it has no [physical]",
+        fmt::format("{} needs one of two flights or more: flightwatt fit --model physical FLIGHT...", option));
+}
+
+double initial_soc_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown) {
+    if (basis.initial_soc_percent) return *basis.initial_soc_percent;
+    const auto& battery = basis.battery.value();
+    if (!battery.thevenin) {
+        throw InputError({basis.battery_file}, "a battery of constant voltage does not tell its state of charge",
+                         "give --initial-soc PERCENT");
+    }
+    const double rest_v = flown.resting_voltage_v + battery.resistance_ohm * flown.resting_current_a;
+    return battery::resting_soc_percent(battery, rest_v);
+}
+
+Prediction predict_flight(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
+                          const flight::FlightSeries& series, Remarks& remarks) {
+    auto prediction = predict_energy(basis, flown, remarks);
+    prediction.battery = predict_battery(basis, series, prediction, remarks);
+    return prediction;
+}
+
+Prediction predict_energy(const PredictionBasis& basis, const mechanical::FlightProgress& flown, Remarks& remarks) {
+    Prediction prediction;
+    prediction.flown = flown;
+    prediction.cruise = predict_cruise(basis, flown, prediction, remarks);
+    if (prediction.by_motion) warn_of_level(basis.model.physical.value(), prediction.cruise.gain, remarks);
+    prediction.landing_s = basis.landing_s;
+    if (basis.landing_s > 0.0) {
+        prediction.landing =
+            mechanical::predict_before_flight(forecast_of(basis.model, flight::Phase::landing), basis.landing_s);
+    }
+    prediction.rest = sum_of(prediction.cruise.energy, prediction.landing);
+    prediction.interval = interval_95(prediction.rest).value();
+    return prediction;
+}
+
+std::vector<battery::PowerStretch> power_ahead(const Prediction& prediction, double part) {
+    double along_path_j = 0.0;
+    for (const auto& stretch : prediction.power_ahead) along_path_j += stretch.power_w * stretch.duration_s;
+    std::vector<battery::PowerStretch> ahead;
+    if (along_path_j > 0.0) {
+        const double cruise_j = units::joule_from_wh(prediction.cruise.energy.energy_wh);
+        for (const auto& [power_w, duration_s] : prediction.power_ahead)
+            ahead.push_back({power_w * part * cruise_j / along_path_j, duration_s});
+    } else {
+        ahead.push_back({prediction.cruise.remaining_mean_w * part, prediction.remaining_s});
+    }
+    const double landing_j = units::joule_from_wh(prediction.landing.energy_wh);
+    if (prediction.landing_s > 0.0) ahead.push_back({landing_j / prediction.landing_s * part, prediction.landing_s});
+    return ahead;
+}
+
+void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
+          BatteryPrediction& result) {
+    const auto forecast = [&](const battery::Battery& of, double part) {
+        const auto now = battery::state_after(of, flown, result.initial_soc_percent);
+        return battery::forecast_landing(of, now, power_ahead(prediction, part),
+                                         prediction.cruise.remaining_mean_w * part, result.limits);
+    };
+    const double rest_wh = prediction.rest.energy_wh;
+    auto least = battery;
+    result.with_least_capacity = battery.intervals.capacity_ah.has_value();
+    if (result.with_least_capacity) least.capacity_ah = battery.intervals.capacity_ah->low;
+    result.expected = forecast(battery, 1.0);
+    result.worst = forecast(least, rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
+}
+
+}  // namespace flightwatt::live

@@ -1,0 +1,89 @@
+#pragma once
+
+#include "battery/landing_forecast.h"
+#include "mechanical/prediction.h"
+#include "mission/remaining_path.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// The energy from a moment in cruise to the end of the flight: what predict and watch say.
+namespace flightwatt::live {
+
+/// What a prediction rests on beside the flight.
+struct PredictionBasis {
+    mechanical::MechanicalModel model;
+    std::optional<mechanical::LevelSource> level = {};  ///< none: the level law where there is one, else the curve
+    double landing_s = 0.0;
+    std::optional<double> remaining_s = {};  ///< of the cruise, from the moment on, whatever was flown
+    std::optional<double> cruise_s = {};     ///< else: what is left of so long; none: what is left of the path
+    std::optional<mechanical::AirMotion> motion = {};        ///< how the rest is flown
+    std::shared_ptr<const mission::PathForecast> path = {};  ///< or along what
+    std::optional<battery::Battery> battery = {};
+    std::string battery_file = {};                   ///< for errors
+    std::optional<double> initial_soc_percent = {};  ///< none: by the voltage at rest
+    battery::LandingLimits limits = {};
+    std::string cannot_predict = {};  ///< why the model does not allow it; empty: it does
+};
+
+/// The battery's part of a prediction.
+struct BatteryPrediction {
+    battery::LandingForecast expected;
+    battery::LandingForecast worst;    ///< of energy's high end, and where its interval is known capacity's low one
+    battery::LandingLimits limits;     ///< of the mission
+    bool with_least_capacity = false;  ///< `worst`
+    double initial_soc_percent = 0.0;
+    bool initial_is_measured = false;  ///< by the resting voltage
+};
+
+struct Prediction {
+    mechanical::FlightProgress flown;
+    double remaining_s = 0.0;
+    bool by_motion = false;  ///< the cruise, by airspeed and climb; else by the curve or a law
+    mechanical::RestPrediction cruise;
+    std::vector<battery::PowerStretch> power_ahead = {};  ///< the cruise's course along a path; empty: even
+    mechanical::EnergyEstimate landing;
+    double landing_s = 0.0;
+    mechanical::EnergyEstimate rest;
+    mechanical::EnergyInterval interval;
+    std::optional<BatteryPrediction> battery = {};
+};
+
+/// What a user should know of a prediction.
+struct Remarks {
+    std::vector<std::string> warnings;
+    std::vector<std::string> notes;
+};
+
+/// Throws InputError for a model whose interval would rest on nothing.
+void require_spread(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file);
+
+/// Throws InputError for a model that does not know how power follows from airspeed and climb, or how flights differ in
+/// it. `option` is what needs that.
+void require_physical(const mechanical::MechanicalModel& model, const std::string& file, const std::string& option);
+
+/// The state of charge when a record began: as given, else by its voltage at rest. Throws InputError where a battery of
+/// constant voltage would have to tell it. The basis has a battery.
+double initial_soc_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown);
+
+/// The rest of a flight that is where `flown` says, and of which `series` holds what was measured until then. Throws
+/// NoAnswerError where the moment does not allow it (the path is behind it, more charge was drawn than there was),
+/// UsageError for a remaining time that the path does not have, and as mechanical::predict_rest and
+/// battery::discharge_records.
+Prediction predict_flight(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
+                          const flight::FlightSeries& series, Remarks& remarks);
+
+/// The same without the battery.
+Prediction predict_energy(const PredictionBasis& basis, const mechanical::FlightProgress& flown, Remarks& remarks);
+
+/// The stretches of power ahead, cruise and landing, as expected times `part`.
+std::vector<battery::PowerStretch> power_ahead(const Prediction& prediction, double part = 1.0);
+
+/// Flies the battery through the rest of `prediction`, from its initial charge and what was drawn of it. Throws as
+/// battery::state_after.
+void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
+          BatteryPrediction& result);
+
+}  // namespace flightwatt::live

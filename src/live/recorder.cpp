@@ -1,0 +1,70 @@
+#include "live/recorder.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_use.h"
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace flightwatt::live {
+namespace {
+
+/// Makes an empty file; false where there is one already.
+bool make_new(const std::filesystem::path& path) {
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0 && errno == EEXIST) return false;
+    if (file < 0) throw OutputError(fmt::format("cannot write {}: {}", path.string(), std::strerror(errno)));
+    ::close(file);
+    return true;
+}
+
+}  // namespace
+
+Recorder::Recorder(std::filesystem::path folder, std::string name, std::optional<std::string> log_text)
+    : folder_(std::move(folder)), name_(std::move(name)), log_text_(std::move(log_text)) {
+    make_directories(folder_);
+}
+
+void Recorder::open_next() {
+    constexpr std::size_t most_files = 10'000;
+    while (++number_ < most_files) {
+        const auto stem = number_ == 1 ? name_ : fmt::format("{}_{}", name_, number_);
+        const auto data = folder_ / (stem + ".data");
+        const auto log = folder_ / (stem + ".log");
+        if (std::filesystem::exists(log) || !make_new(data)) continue;
+        if (log_text_) write_file_atomically(log, *log_text_);
+        out_ = std::ofstream(data, std::ios::app | std::ios::binary);
+        file_ = data;
+        return;
+    }
+    throw OutputError(fmt::format("{} holds {} logs of this name", folder_.string(), most_files));
+}
+
+void Recorder::write(std::string_view lines, bool anew) {
+    if (!failure_.empty()) return;
+    try {
+        if (anew || file_.empty()) open_next();
+        out_.write(lines.data(), static_cast<std::streamsize>(lines.size()));
+        out_.flush();
+        if (!out_) throw OutputError(fmt::format("cannot write {}: {}", file_.string(), std::strerror(errno)));
+    } catch (const OutputError& error) {
+        failure_ = error.what();
+    }
+}
+
+std::string log_name(std::int64_t unix_s) {
+    const std::time_t time = unix_s;
+    std::tm utc{};
+    ::gmtime_r(&time, &utc);
+    return fmt::format("{:02}_{:02}_{:02}__{:02}_{:02}_{:02}", utc.tm_year % 100, utc.tm_mon + 1, utc.tm_mday,
+                       utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+}  // namespace flightwatt::live

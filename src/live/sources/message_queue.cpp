@@ -1,0 +1,52 @@
+#include "live/sources/message_queue.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace flightwatt::live {
+
+MessageQueue::MessageQueue(double clock_factor) : clock_factor_(clock_factor) {}
+
+void MessageQueue::push(IncomingMessage message) {
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - opened_;
+    if (!message.time_s) message.time_s = since.count() * clock_factor_;
+    const std::lock_guard lock(mutex_);
+    message.after_restart = std::exchange(after_restart_, false) || message.after_restart;
+    waiting_.push_back(std::move(message));
+    ++report_.messages;
+    if (waiting_.size() > most_waiting) {
+        waiting_.pop_front();
+        ++report_.unusable["messages that came in faster than they were looked at"];
+    }
+    changed_.notify_one();
+}
+
+void MessageQueue::count(std::string_view reason, std::size_t times) {
+    if (times == 0) return;
+    const std::lock_guard lock(mutex_);
+    const auto found = report_.unusable.find(reason);
+    if (found != report_.unusable.end()) {
+        found->second += times;
+    } else {
+        report_.unusable.emplace(reason, times);
+    }
+}
+
+void MessageQueue::count_restart(bool new_clock) {
+    const std::lock_guard lock(mutex_);
+    ++report_.restarts;
+    after_restart_ = after_restart_ || new_clock;
+}
+
+void MessageQueue::take(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages,
+                        SourceReport& report) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [&] { return !waiting_.empty(); });
+    const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(waiting_.size(), most_a_call));
+    std::move(waiting_.begin(), end, std::back_inserter(messages));
+    waiting_.erase(waiting_.begin(), end);
+    report = report_;
+}
+
+}  // namespace flightwatt::live

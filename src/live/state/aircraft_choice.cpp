@@ -1,0 +1,67 @@
+#include "live/state/aircraft_choice.h"
+
+#include "base/error.h"
+#include "flight/chosen_track.h"
+#include "flight/segmentation.h"
+
+#include <algorithm>
+
+namespace flightwatt::live {
+namespace {
+
+bool has_flown(const flight::FlightSeries& series) {
+    constexpr std::size_t least_samples = 2;
+    if (flight::chosen_track(series, "altitude_m").time_s.size() < least_samples) return false;
+    try {
+        return !segment(series).sorties.empty();
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+}  // namespace
+
+void AircraftChoice::count(std::string_view text) {
+    const auto sender = text.substr(0, text.find(' '));
+    if (const auto known = messages_.find(sender); known != messages_.end()) {
+        ++known->second;
+    } else if (messages_.size() < most_named) {
+        messages_.emplace(sender, 1);
+    }
+}
+
+flight::FlightSeries AircraftChoice::choose(TelemetryStore& store) {
+    if (named_ && !settled_) {
+        chosen_ = *named_;
+        settled_ = true;
+        store.keep_only(chosen_);
+    }
+    if (settled_) return store.series(chosen_);
+    const auto senders = store.senders();
+    const auto count_of = [&](const std::string& id) {
+        const auto found = messages_.find(id);
+        return found == messages_.end() ? std::size_t{0} : found->second;
+    };
+    std::optional<flight::FlightSeries> most;
+    for (const auto& id : senders) {
+        auto series = store.series(id);
+        if (has_flown(series)) {
+            chosen_ = id;
+            settled_ = true;
+            store.keep_only(id);
+            return series;
+        }
+        if (!most || count_of(id) > count_of(most->aircraft_id)) most = std::move(series);
+    }
+    if (!most) return {};
+    chosen_ = most->aircraft_id;
+    return std::move(*most);
+}
+
+std::map<std::string, std::size_t> AircraftChoice::others() const {
+    std::map<std::string, std::size_t> others(messages_.begin(), messages_.end());
+    others.erase(chosen_);
+    return others;
+}
+
+}  // namespace flightwatt::live

@@ -1,0 +1,152 @@
+#include "live/state/battery_check.h"
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "base/units.h"
+#include "flight/chosen_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
+namespace flightwatt::live {
+namespace {
+
+constexpr double watched_s = 60.0;         // for the voltage
+constexpr std::size_t enough_samples = 5;  // in there
+constexpr double failed_percent = 200.0;   // below the reserve: where the battery fails it does not land
+
+/// Measured voltage, and what it would be at rest with the RC pair settled, over the last minute.
+void compare_voltage(const battery::Battery& battery, const battery::DischargeRecord& record, LiveBattery& result) {
+    if (!battery.thevenin || record.time_s.empty()) return;
+    const auto settled_a = settled_current_a(record, battery.thevenin->rc_time_constant_s);
+    std::vector<double> off_v;
+    std::vector<double> rest_v;
+    for (std::size_t i = record.time_s.size(); i-- > 0 && record.time_s[i] >= record.time_s.back() - watched_s;) {
+        if (!record.used[i]) continue;
+        const double lost_v =
+            battery.resistance_ohm * record.current_a[i] + battery.thevenin->rc_resistance_ohm * settled_a[i];
+        rest_v.push_back(record.voltage_v[i] + lost_v);
+        const auto soc = soc_at(battery, record, result.initial_soc_percent, record.time_s[i]);
+        off_v.push_back(rest_v.back() - open_circuit_voltage_v(battery, std::clamp(*soc, 0.0, 100.0)));
+    }
+    if (off_v.size() < enough_samples) return;
+    result.voltage_off_v = median(std::move(off_v));
+    result.soc_by_voltage_percent = battery::resting_soc_percent(battery, median(std::move(rest_v)));
+}
+
+/// Of a series without a record: by voltage and current of the last minute, as if nothing had settled yet.
+void look_at_voltage(const battery::Battery& battery, const flight::FlightSeries& series, LiveBattery& result) {
+    const auto voltage = flight::chosen_track(series, "voltage_v");
+    if (!battery.thevenin || voltage.empty()) return;
+    const auto current = flight::chosen_track(series, "current_a");
+    std::vector<double> rest_v;
+    for (std::size_t i = voltage.time_s.size(); i-- > 0 && voltage.time_s[i] >= voltage.time_s.back() - watched_s;) {
+        const double current_a = current.empty() ? 0.0 : value_at(current, voltage.time_s[i]);
+        rest_v.push_back(voltage.value[i] + battery.resistance_ohm * current_a);
+    }
+    if (rest_v.size() < enough_samples) return;
+    result.soc_by_voltage_percent = battery::resting_soc_percent(battery, median(std::move(rest_v)));
+    result.state = battery::BatteryState{*result.soc_by_voltage_percent, 0.0};
+}
+
+/// The part of the expected energy with which nothing is spare: the charge left is nearly straight in it, so that two
+/// secants find it; where the battery fails in between, the root is bracketed. std::nullopt beyond eight standard
+/// deviations `sd` [parts].
+std::optional<double> part_without_spare(const std::function<double(double)>& spare_percent, double sd) {
+    constexpr double most_sds = 8.0;
+    constexpr double exact_percent = 0.02;
+    const double low = std::max(0.0, 1.0 - most_sds * sd);
+    const double high = 1.0 + most_sds * sd;
+    double before = 1.0;
+    double part = 1.0 + 2.0 * sd;
+    double spare_before = spare_percent(before);
+    for (int i = 0; i < 3; ++i) {
+        const double spare = spare_percent(part);
+        const double slope = (spare - spare_before) / (part - before);
+        const bool is_straight = slope < 0.0 && spare > -failed_percent && spare_before > -failed_percent;
+        if (!is_straight) break;
+        before = part;
+        spare_before = spare;
+        part -= spare / slope;
+        if (part <= low || part >= high) return std::nullopt;
+        if (std::abs(spare) < exact_percent) return part;
+    }
+    if (spare_percent(low) < 0.0 || spare_percent(high) >= 0.0) return std::nullopt;
+    std::uintmax_t most_looks = 12;
+    constexpr int bits = 10;  // a thousandth of the range: less than a hundredth of a standard deviation
+    const auto [below, above] = boost::math::tools::toms748_solve(
+        spare_percent, low, high, boost::math::tools::eps_tolerance<double>(bits), most_looks);
+    return 0.5 * (below + above);
+}
+
+/// A pack that rests at a voltage of so many points more than was left in the one before is another one.
+constexpr double other_pack_percent = 15.0;
+
+/// The state of charge where the record begins, and whether its voltage told it.
+void set_initial(const PredictionBasis& basis, const std::optional<double>& carried_percent,
+                 const battery::DischargeRecord& record, LiveBattery& result) {
+    result.initial_is_measured = !basis.initial_soc_percent;
+    auto of = basis;
+    if (carried_percent && !record.is_other_pack) of.initial_soc_percent = carried_percent;
+    result.initial_soc_percent = initial_soc_percent(of, record);
+    if (!carried_percent || record.is_other_pack || !basis.battery->thevenin) return;
+    of.initial_soc_percent.reset();
+    const double by_voltage = initial_soc_percent(of, record);
+    result.initial_is_measured = by_voltage > result.initial_soc_percent + other_pack_percent;
+    if (result.initial_is_measured) result.initial_soc_percent = by_voltage;
+}
+
+}  // namespace
+
+std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
+                             double initial_soc_percent, double time_s) {
+    const auto after = std::ranges::upper_bound(record.time_s, time_s);
+    if (after == record.time_s.begin()) return std::nullopt;
+    const auto index = static_cast<std::size_t>(after - record.time_s.begin()) - 1;
+    return initial_soc_percent - units::percent_of(record.charge_ah[index], battery.capacity_ah);
+}
+
+LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<double>& carried_percent,
+                            const flight::FlightSeries& series, std::optional<battery::DischargeRecord>& record) {
+    const auto& battery = basis.battery.value();
+    LiveBattery result;
+    try {
+        record = battery::discharge_records(series).records.back();
+        set_initial(basis, carried_percent, *record, result);
+        result.drawn_ah = record->charge_ah.back();
+        result.state = state_after(battery, *record, result.initial_soc_percent);
+        result.soc_percent = result.state->soc_percent;
+        compare_voltage(battery, *record, result);
+    } catch (const InputError&) {
+        look_at_voltage(battery, series, result);
+    } catch (const NoAnswerError&) {  // more was drawn than there was
+        look_at_voltage(battery, series, result);
+    }
+    return result;
+}
+
+std::optional<double> chance_below_reserve(const PredictionBasis& basis, const Prediction& prediction,
+                                           const battery::BatteryState& now) {
+    const auto& rest = prediction.rest;
+    if (!rest.uncertainty_known || !(rest.energy_wh > 0.0)) return std::nullopt;
+    const auto spare_percent = [&](double part) {
+        const auto landing =
+            battery::forecast_landing(*basis.battery, now, power_ahead(prediction, part), 0.0, basis.limits);
+        return landing.fails_after_s ? -failed_percent : landing.soc_percent - basis.limits.reserve_soc_percent;
+    };
+    const double sd = std::sqrt(rest.variance_wh2) / rest.energy_wh;
+    const auto part = part_without_spare(spare_percent, sd);
+    if (!part) return spare_percent(1.0) < 0.0 ? 1.0 : 0.0;
+    const double sds = (*part - 1.0) / sd;
+    if (!(rest.variance_square_per_degree_of_freedom > 0.0)) return cdf(complement(boost::math::normal(), sds));
+    const double degrees = rest.variance_wh2 * rest.variance_wh2 / rest.variance_square_per_degree_of_freedom;
+    return cdf(complement(boost::math::students_t(degrees), sds));
+}
+
+}  // namespace flightwatt::live

@@ -1,0 +1,65 @@
+#include "live/state/clock_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace flightwatt::live {
+
+bool ClockFilter::push(double time_s, std::string text, bool restarted, std::vector<Line>& believed) {
+    const bool anew = restarted && started_ && time_s + offset_s_ < latest_s_ - late_s;
+    if (anew) {
+        offset_s_ = 0.0;
+        late_ = 0;
+        unconfirmed_ += held_.size();
+        held_.clear();
+    }
+    Line line{time_s + offset_s_, std::move(text)};
+    if (started_ && !anew && std::abs(line.time_s - latest_s_) > most_step_s) return hold(std::move(line), believed);
+    unconfirmed_ += held_.size();
+    held_.clear();
+    latest_s_ = started_ && !anew ? std::max(latest_s_, line.time_s) : line.time_s;
+    started_ = true;
+    late_ = line.time_s < latest_s_ - late_s ? late_ + 1 : 0;
+    if (late_ == late_lines) {
+        offset_s_ += latest_s_ - line.time_s;
+        line.time_s = latest_s_;
+        late_ = 0;
+        ++steps_back_;
+    }
+    believed.push_back(std::move(line));
+    return anew;
+}
+
+bool ClockFilter::hold(Line line, std::vector<Line>& believed) {
+    if (!held_.empty() && std::abs(line.time_s - held_.back().time_s) > most_step_s) {
+        unconfirmed_ += held_.size();
+        held_.clear();
+    }
+    held_.push_back(std::move(line));
+    if (held_.size() < agreeing) return false;
+    const bool anew = held_.front().time_s < latest_s_;
+    if (anew) {
+        for (auto& held : held_) held.time_s -= offset_s_;
+        offset_s_ = 0.0;
+    }
+    latest_s_ = std::ranges::max(held_, {}, &Line::time_s).time_s;
+    late_ = 0;
+    std::ranges::move(held_, std::back_inserter(believed));
+    held_.clear();
+    return anew;
+}
+
+void ClockFilter::flush(std::vector<Line>& believed) {
+    for (auto& line : held_) {
+        if (line.time_s < latest_s_) {
+            ++unconfirmed_;
+            continue;
+        }
+        latest_s_ = line.time_s;
+        believed.push_back(std::move(line));
+    }
+    held_.clear();
+}
+
+}  // namespace flightwatt::live

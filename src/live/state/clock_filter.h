@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace flightwatt::live {
+
+/// What to believe of the times that come in. A time more than a minute from the latest one counts when four more
+/// behind it agree (a single one is a damaged line): forwards it is a gap, backwards the log or the aircraft began anew.
+/// A clock that went back by less goes on from where it was: ten lines in a row more than 2 s behind the latest show it.
+class ClockFilter {
+  public:
+    static constexpr double most_step_s = 60.0;
+    static constexpr std::size_t agreeing = 5;
+    static constexpr double late_s = 2.0;
+    static constexpr std::size_t late_lines = 10;
+
+    struct Line {
+        double time_s = 0.0;  ///< on a clock that never goes back
+        std::string text;     ///< behind the time
+    };
+
+    /// Takes a line, and appends those that are believed now. True where the first of them belongs to a clock that began
+    /// anew; `restarted`: its source did, so that it needs no others to agree.
+    bool push(double time_s, std::string text, bool restarted, std::vector<Line>& believed);
+    /// Nothing more will come: what was held ahead of the latest is believed.
+    void flush(std::vector<Line>& believed);
+
+    std::size_t unconfirmed() const { return unconfirmed_; }
+    std::size_t steps_back() const { return steps_back_; }
+    bool started() const { return started_; }
+    double latest_s() const { return latest_s_; }
+
+  private:
+    bool hold(Line line, std::vector<Line>& believed);
+
+    bool started_ = false;
+    double latest_s_ = 0.0;
+    double offset_s_ = 0.0;
+    std::size_t late_ = 0;
+    std::vector<Line> held_;
+    std::size_t unconfirmed_ = 0;
+    std::size_t steps_back_ = 0;
+};
+
+}  // namespace flightwatt::live

@@ -1,0 +1,46 @@
+#include "live/state/flight_clock.h"
+
+#include "flight/segmentation.h"
+
+#include <algorithm>
+
+namespace flightwatt::live {
+namespace {
+
+constexpr double rest_kept_s = 300.0;    // before a lift-off: longer than any rest that is looked at
+constexpr double ground_kept_s = 600.0;  // on the ground
+
+}  // namespace
+
+void set_flight_clock(const flight::Sortie& sortie, double now_s, LiveState& state) {
+    using flight::Phase;
+    const auto& first = sortie.phases.front();
+    const auto& last = sortie.phases.back();
+    state.began_in_air = first.phase != Phase::takeoff || !first.complete;
+    state.landed = last.phase == Phase::landing && last.complete;
+    if (!state.began_in_air) state.lift_off_s = first.start.time_s;
+    state.flight_s = (state.landed ? sortie.end_s() : now_s) - sortie.start_s();
+    if (state.landed) return;
+    state.phase = last.phase;
+    state.phase_s = now_s - last.start.time_s;
+    const double hold_s = flight::SegmentationOptions{}.hold_s;
+    const bool climbs = last.phase == Phase::cruise && first.phase == Phase::takeoff && state.phase_s < hold_s;
+    if (!climbs) return;
+    state.phase = Phase::takeoff;
+    state.phase_s = now_s - first.start.time_s;
+}
+
+double first_needed_s(const flight::FlightPhases& phases, const LiveState& state) {
+    if (state.phase) return phases.sorties.back().start_s() - rest_kept_s;
+    double from_s = state.time_s - ground_kept_s;
+    for (const auto& sortie : phases.sorties)
+        if (sortie.end_s() >= from_s) from_s = std::min(from_s, sortie.start_s() - rest_kept_s);
+    return from_s;
+}
+
+std::string without_flight_name(const std::string& text, const std::string& flight) {
+    const auto prefix = flight + ": ";
+    return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
+}
+
+}  // namespace flightwatt::live

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "live/live_flight.h"
+
+#include <string>
+
+namespace flightwatt::live {
+
+/// Phase and times of the last sortie as it looks at `now_s`. A climb that has not held its height yet is a take-off.
+void set_flight_clock(const flight::Sortie& sortie, double now_s, LiveState& state);
+
+/// What lies before is not needed any more: in a sortie five minutes before its lift-off, on the ground ten minutes ago
+/// (but all of a sortie that reaches into them).
+double first_needed_s(const flight::FlightPhases& phases, const LiveState& state);
+
+/// An error's text without "FLIGHT: " before it.
+std::string without_flight_name(const std::string& text, const std::string& flight);
+
+}  // namespace flightwatt::live

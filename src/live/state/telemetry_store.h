@@ -1,0 +1,62 @@
+#pragma once
+
+#include "flight/flight_series.h"
+#include "telemetry/telemetry_log.h"
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace flightwatt::live {
+
+/// What was received of the messages that tell of energy, as columns, in bounded memory: what it keeps is dropped from
+/// its beginning, or thinned evenly. Reads lines as the log reader does.
+class TelemetryStore {
+  public:
+    static constexpr std::size_t most_senders = 8;   ///< aircraft of which rows are kept
+    static constexpr std::size_t most_devices = 64;  ///< of one message
+
+    /// `with_bank`: whether the bank angle is wanted, which comes most often.
+    TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration, bool with_bank = true);
+
+    /// Whole .data lines, each with its break.
+    void add(std::string_view lines);
+    /// What was received; how lines are read stays.
+    void clear();
+    void drop_before(double time_s);
+    void keep_only(const std::string& sender);
+    /// Keeps every second row of the message that has most, and of what comes of it: of each device.
+    void thin();
+
+    /// The rows that are kept, of all senders.
+    std::size_t rows() const;
+    std::vector<std::string> senders() const;
+    flight::FlightSeries series(const std::string& sender) const;
+    /// Lines and values that could not be used, by reason.
+    const std::map<std::string, std::size_t, std::less<>>& skipped() const { return skipped_; }
+    /// Of every how many rows one is kept, of the messages that were thinned.
+    std::map<std::string, std::size_t> thinned() const;
+
+  private:
+    struct Thinning {
+        std::size_t stride = 1;
+        std::map<std::vector<double>, std::size_t> rows_of;  ///< by device
+    };
+    using TableName = std::pair<std::string, std::string>;  ///< sender, message
+
+    void append(const std::string& sender, telemetry::MessageTable&& rows);
+    void append_rows(telemetry::MessageTable& table, const telemetry::MessageTable& rows, Thinning& thinning);
+    telemetry::SenderLog* sender_of(const std::string& id);
+
+    telemetry::TelemetryLog log_;
+    std::optional<std::string> only_;
+    std::vector<telemetry::MessageRequest> wanted_;
+    std::map<TableName, Thinning> thinning_;
+    std::map<std::string, std::size_t, std::less<>> skipped_;
+};
+
+}  // namespace flightwatt::live

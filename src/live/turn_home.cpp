@@ -1,0 +1,117 @@
+#include "live/turn_home.h"
+
+#include "base/units.h"
+#include "battery/discharge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace flightwatt::live {
+namespace {
+
+void add(Displacement& at, double length_m, double course_deg) {
+    const double course_rad = course_deg / units::degree_per_rad;
+    at.east_m += length_m * std::sin(course_rad);
+    at.north_m += length_m * std::cos(course_rad);
+}
+
+void add_part(Displacement& at, const mission::PathElement& element, double part) {
+    if (const auto* leg = std::get_if<mission::Leg>(&element.shape)) {
+        add(at, leg->length_m * part, leg->course_deg);
+    } else if (const auto* circles = std::get_if<mission::Circles>(&element.shape)) {
+        constexpr double quarter_deg = 90.0;
+        constexpr double turn_deg = 360.0;
+        const double side = circles->to_right ? 1.0 : -1.0;
+        const double turned_deg = turn_deg * circles->turns * part;
+        add(at, circles->radius_m, circles->start_course_deg + side * quarter_deg);
+        add(at, circles->radius_m, circles->start_course_deg + side * (turned_deg - quarter_deg));
+    }
+}
+
+/// Straight home from a place, level; none where the wind forbids it.
+std::optional<battery::PowerStretch> way_home(const mission::PathForecast& path, double on_path_s,
+                                              double power_factor) {
+    const auto& plan = path.plan();
+    const auto place = place_at(path.flown(), on_path_s);
+    const auto at = displacement_at(plan.path, place);
+    const double distance_m = std::hypot(at.east_m, at.north_m);
+    const auto& element = plan.path.elements[std::min(place.element, plan.path.elements.size() - 1)];
+    const double power_w = mechanical::power_w(plan.power, {.airspeed_m_per_s = element.airspeed_m_per_s});
+    if (distance_m < 1.0) return battery::PowerStretch{power_w * power_factor, 0.0};
+    const double course_deg = std::atan2(-at.east_m, -at.north_m) * units::degree_per_rad;
+    const auto speed = ground_speed_m_per_s(element.airspeed_m_per_s, course_deg, plan.wind);
+    if (!speed) return std::nullopt;
+    return battery::PowerStretch{power_w * power_factor, distance_m / *speed};
+}
+
+battery::Discharge through(const TurnBudget& budget, const battery::BatteryState& state,
+                           const battery::PowerStretch& stretch) {
+    constexpr double step_s = 5.0;
+    const double power_w = stretch.power_w;
+    return discharge(budget.battery, {[power_w](double) { return power_w; }, 0.0, stretch.duration_s}, state,
+                     {step_s, budget.limits.cutoff_voltage_v});
+}
+
+bool has_failed(const battery::Discharge& end) { return end.ended_at_s() || end.undeliverable; }
+
+bool lands_with_reserve(const TurnBudget& budget, battery::BatteryState state,
+                        const std::optional<battery::PowerStretch>& home) {
+    if (!home) return false;
+    for (const auto& stretch : {home, budget.landing}) {
+        if (!stretch || !(stretch->duration_s > 0.0)) continue;
+        const auto end = through(budget, state, *stretch);
+        if (has_failed(end)) return false;
+        state = end;
+    }
+    return state.soc_percent >= budget.limits.reserve_soc_percent;
+}
+
+/// So much more of the stretches ahead; false where the battery fails on it.
+bool fly_on(const TurnBudget& budget, std::vector<battery::PowerStretch>& ahead, double time_s,
+            battery::BatteryState& state) {
+    while (time_s > 0.0 && !ahead.empty()) {
+        auto& stretch = ahead.front();
+        const double part_s = std::min(time_s, stretch.duration_s);
+        if (part_s > 0.0) {
+            const auto end = through(budget, state, {stretch.power_w, part_s});
+            if (has_failed(end)) return false;
+            state = end;
+        }
+        time_s -= part_s;
+        stretch.duration_s -= part_s;
+        if (!(stretch.duration_s > 0.0)) ahead.erase(ahead.begin());
+    }
+    return true;
+}
+
+}  // namespace
+
+Displacement displacement_at(const mission::FlightPath& path, const mission::PathPlace& place) {
+    Displacement at;
+    for (std::size_t i = 0; i < path.elements.size() && i <= place.element; ++i)
+        add_part(at, path.elements[i], i < place.element ? 1.0 : place.part);
+    return at;
+}
+
+TurnHome latest_turn_home(const mission::PathForecast& path, double on_path_s, const TurnBudget& budget) {
+    constexpr double finest_s = 10.0;
+    constexpr double most_looks = 40.0;
+    double rest_s = 0.0;
+    for (const auto& stretch : budget.cruise_ahead) rest_s += stretch.duration_s;
+    const double step_s = std::max(finest_s, rest_s / most_looks);
+    auto ahead = budget.cruise_ahead;
+    auto state = budget.now;
+    TurnHome turn;
+    double in_s = 0.0;
+    while (lands_with_reserve(budget, state, way_home(path, on_path_s + in_s, budget.power_factor))) {
+        turn.latest_in_s = in_s;
+        turn.path_can_be_flown = in_s >= rest_s;
+        const double next_s = std::min(step_s, rest_s - in_s);
+        if (!(next_s > 0.0) || !fly_on(budget, ahead, next_s, state)) break;
+        in_s = rest_s - in_s <= step_s ? rest_s : in_s + next_s;
+    }
+    return turn;
+}
+
+}  // namespace flightwatt::live

@@ -1,0 +1,99 @@
+#include "telemetry/binary/frame.h"
+
+#include <optional>
+
+namespace flightwatt::telemetry {
+namespace {
+
+/// Takes bytes off a frame, one after the other.
+class PacketReader {
+  public:
+    PacketReader(const char* p, const char* end, bool escaped) : p_(p), end_(end), escaped_(escaped) {}
+
+    /// Nothing at the end, and for what an escaped frame does not hold.
+    std::optional<std::uint8_t> next() {
+        constexpr std::uint8_t escape = 0x7D;
+        if (p_ == end_) return std::nullopt;
+        auto byte = byte_at(p_++);
+        if (!escaped_) return byte;
+        if (byte == 0x7E) return refuse();
+        if (byte != escape) return byte;
+        if (p_ == end_) return std::nullopt;
+        byte = byte_at(p_++);
+        if (byte == 0x7E) return refuse();
+        return static_cast<std::uint8_t>(byte ^ 0x20);
+    }
+    bool is_refused() const { return refused_; }
+    const char* position() const { return p_; }
+
+  private:
+    std::nullopt_t refuse() {
+        refused_ = true;
+        return std::nullopt;
+    }
+
+    const char* p_;
+    const char* end_;
+    bool escaped_;
+    bool refused_ = false;
+};
+
+/// Where the message begins behind what the kind of packet says: 0x80 from a 64-bit address, 0x81 from a 16-bit one,
+/// 0x90 of later series; 0 for any other.
+std::size_t header_of(std::uint8_t kind) {
+    switch (kind) {
+        case 0x80:
+            return 11;
+        case 0x81:
+            return 5;
+        case 0x90:
+            return 12;
+        default:
+            return 0;
+    }
+}
+
+}  // namespace
+
+Look look_at_xbee_frame(const char* p, const char* end, bool escaped, Frame& frame) {
+    PacketReader reader(p + 1, end, escaped);
+    const auto stopped = [&] { return reader.is_refused() ? Look::none : Look::incomplete; };
+    const auto high = reader.next();
+    const auto low = high ? reader.next() : std::nullopt;
+    if (!low) return stopped();
+    const auto length = *high * std::size_t{256} + *low;
+    if (length < 2 || length > frame.unescaped.size()) return Look::none;
+    if (!escaped && static_cast<std::size_t>(end - reader.position()) < length + 1) return Look::incomplete;
+    const char* const data = reader.position();
+    std::uint8_t sum = 0;
+    for (std::size_t i = 0; i <= length; ++i) {
+        const auto byte = reader.next();
+        if (!byte) return stopped();
+        sum = static_cast<std::uint8_t>(sum + *byte);
+        if (escaped && i < length) frame.unescaped[i] = static_cast<char>(*byte);
+    }
+    if (sum != 0xFF) return Look::none;
+    const std::string_view packet(escaped ? frame.unescaped.data() : data, length);
+    const auto header = header_of(byte_at(packet.data()));
+    frame.size = static_cast<std::size_t>(reader.position() - p);
+    frame.message = header == 0 || packet.size() < header ? std::string_view() : packet.substr(header);
+    frame.source = 0;
+    return Look::frame;
+}
+
+Look look_at_either_xbee_frame(const char* p, const char* end, Frame& frame) {
+    const auto is_followed = [&](const Frame& read) {
+        return p + read.size == end || p[read.size] == sync_byte(Framing::xbee);
+    };
+    const auto plain = look_at_xbee_frame(p, end, false, frame);
+    const bool is_plain = plain == Look::frame && is_followed(frame);
+    const auto plain_size = frame.size;
+    const auto escaped = look_at_xbee_frame(p, end, true, frame);
+    if (escaped == Look::frame &&
+        (plain != Look::frame || (is_followed(frame) && (!is_plain || frame.size < plain_size))))
+        return escaped;
+    if (plain == Look::frame) return look_at_xbee_frame(p, end, false, frame);
+    return escaped == Look::none ? plain : escaped;
+}
+
+}  // namespace flightwatt::telemetry

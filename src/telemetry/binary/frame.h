@@ -1,0 +1,103 @@
+#pragma once
+
+#include "telemetry/link_decoder.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+/// Single frames of each framing, by checksum alone (docs/formats.md, "Binary logs and links").
+namespace flightwatt::telemetry {
+
+/// A frame whose checksum is right.
+struct Frame {
+    std::size_t size = 0;               ///< bytes of all of it
+    std::string_view message;           ///< header and fields; empty where it carries none
+    std::uint8_t source = 0;            ///< of card frames: 0 telemetry, 1 datalink
+    std::uint32_t time_100us = 0;       ///< of card frames
+    std::array<char, 320> unescaped{};  ///< what `message` lies in, if the frame was escaped
+};
+
+enum class Look {
+    none,        ///< no frame begins here
+    incomplete,  ///< one may, but there are too few bytes
+    frame,
+};
+
+inline std::uint8_t byte_at(const char* p) { return static_cast<std::uint8_t>(*p); }
+
+/// The sum of bytes, modulo 256; eight at a time.
+inline std::uint8_t sum_of(const char* p, std::size_t size) {
+    constexpr std::uint64_t every_other = 0x00FF00FF00FF00FFu;
+    std::uint64_t sums = 0;  // four of 16 bits: of up to 128 steps of two bytes each
+    for (; size >= 8; p += 8, size -= 8) {
+        std::uint64_t bytes = 0;
+        std::memcpy(&bytes, p, sizeof bytes);
+        sums += (bytes & every_other) + ((bytes >> 8) & every_other);
+    }
+    sums += sums >> 32;
+    sums += sums >> 16;
+    auto sum = static_cast<std::uint8_t>(sums);
+    for (; size > 0; --size) sum = static_cast<std::uint8_t>(sum + byte_at(p++));
+    return sum;
+}
+
+/// What a framing's frames begin with.
+constexpr char sync_byte(Framing framing) { return framing == Framing::xbee ? '\x7E' : '\x99'; }
+
+/// The most bytes that a frame has: an escaped one is nearly twice as long.
+constexpr std::size_t most_frame_bytes = 640;
+
+inline Look look_at_card_frame(const char* p, const char* end, Frame& frame) {
+    constexpr std::size_t around = 8;
+    if (end - p < 2) return Look::incomplete;
+    const std::size_t length = byte_at(p + 1);
+    if (length < 2) return Look::none;
+    const auto size = length + around;
+    if (static_cast<std::size_t>(end - p) < size) return Look::incomplete;
+    if (sum_of(p + 1, size - 2) != byte_at(p + size - 1)) return Look::none;
+    frame.size = size;
+    frame.message = {p + 7, length};
+    frame.source = byte_at(p + 2);
+    frame.time_100us = byte_at(p + 3) | std::uint32_t{byte_at(p + 4)} << 8 | std::uint32_t{byte_at(p + 5)} << 16 |
+                       std::uint32_t{byte_at(p + 6)} << 24;
+    return Look::frame;
+}
+
+inline Look look_at_link_frame(const char* p, const char* end, Frame& frame) {
+    constexpr std::size_t around = 4;
+    if (end - p < 2) return Look::incomplete;
+    const std::size_t size = byte_at(p + 1);
+    if (size < around + 2) return Look::none;
+    if (static_cast<std::size_t>(end - p) < size) return Look::incomplete;
+    std::uint8_t a = 0;
+    std::uint8_t b = 0;
+    for (const char* at = p + 1; at < p + size - 2; ++at) {
+        a = static_cast<std::uint8_t>(a + byte_at(at));
+        b = static_cast<std::uint8_t>(b + a);
+    }
+    if (a != byte_at(p + size - 2) || b != byte_at(p + size - 1)) return Look::none;
+    frame.size = size;
+    frame.message = {p + 2, size - around};
+    frame.source = 0;
+    return Look::frame;
+}
+
+/// `escaped`: XBees in API mode 2 send 0x7E, 0x7D, 0x11 and 0x13 as 0x7D and the byte with bit 5 turned.
+Look look_at_xbee_frame(const char* p, const char* end, bool escaped, Frame& frame);
+
+/// As it stands, or escaped: where both have a right checksum, the one that another frame follows, and of two the
+/// shorter.
+Look look_at_either_xbee_frame(const char* p, const char* end, Frame& frame);
+
+/// `p` stands on a sync byte.
+template <Framing framing>
+Look look_at_frame(const char* p, const char* end, Frame& frame) {
+    if constexpr (framing == Framing::card) return look_at_card_frame(p, end, frame);
+    if constexpr (framing == Framing::link) return look_at_link_frame(p, end, frame);
+    return look_at_either_xbee_frame(p, end, frame);
+}
+
+}  // namespace flightwatt::telemetry

@@ -1,0 +1,176 @@
+#include "telemetry/link_encoder.h"
+
+#include "base/number.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace flightwatt::telemetry {
+namespace {
+
+template <typename Number>
+void append_bytes(Number number, std::string& bytes) {
+    const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
+    if constexpr (std::endian::native == std::endian::little) {
+        bytes.append(raw.begin(), raw.end());
+    } else {
+        bytes.append(raw.rbegin(), raw.rend());
+    }
+}
+
+template <std::integral Number>
+bool append_integer(std::string_view word, std::string& bytes) {
+    Number number = 0;
+    const auto read = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (read.ec != std::errc() || read.ptr != word.data() + word.size()) return false;
+    append_bytes(number, bytes);
+    return true;
+}
+
+template <std::floating_point Number>
+bool append_float(std::string_view word, std::string& bytes) {
+    const bool is_nan = word == "nan" || word == "-nan";
+    const auto number = is_nan ? std::numeric_limits<double>::quiet_NaN() : parse_number(word);
+    if (!number) return false;
+    append_bytes(static_cast<Number>(*number), bytes);
+    return true;
+}
+
+bool append_element(WireType type, std::string_view word, std::string& bytes) {
+    switch (type) {
+        case WireType::int8:
+            return append_integer<std::int8_t>(word, bytes);
+        case WireType::uint8:
+            return append_integer<std::uint8_t>(word, bytes);
+        case WireType::int16:
+            return append_integer<std::int16_t>(word, bytes);
+        case WireType::uint16:
+            return append_integer<std::uint16_t>(word, bytes);
+        case WireType::int32:
+            return append_integer<std::int32_t>(word, bytes);
+        case WireType::uint32:
+            return append_integer<std::uint32_t>(word, bytes);
+        case WireType::int64:
+            return append_integer<std::int64_t>(word, bytes);
+        case WireType::uint64:
+            return append_integer<std::uint64_t>(word, bytes);
+        case WireType::float32:
+            return append_float<float>(word, bytes);
+        case WireType::float64:
+            return append_float<double>(word, bytes);
+        case WireType::text:
+            if (word.size() != 1) return false;
+            bytes += word;
+            return true;
+    }
+    return false;
+}
+
+/// What stands before the next `mark`, which is taken off with it.
+std::string_view take_word(std::string_view& text, char mark) {
+    const auto end = std::min(text.find(mark), text.size());
+    const auto word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    return word;
+}
+
+/// A string: quoted by " or |, or as it stands, and then the last field is all that is left, blanks too.
+std::string_view take_string(std::string_view& text, bool is_last) {
+    const char quote = text.empty() ? '\0' : text.front();
+    if (quote == '"' || quote == '|') {
+        if (const auto end = text.find(quote, 1); end != std::string_view::npos) {
+            const auto word = text.substr(1, end - 1);
+            text.remove_prefix(std::min(end + 2, text.size()));
+            return word;
+        }
+    }
+    if (!is_last) return take_word(text, ' ');
+    const auto word = text;
+    text = {};
+    return word;
+}
+
+bool append_string(const WireField& field, std::string_view characters, std::string& bytes) {
+    const std::size_t room =
+        field.count == WireCount::fixed ? field.elements : std::numeric_limits<std::uint8_t>::max();
+    if (characters.size() > room) return false;
+    if (field.count == WireCount::counted) bytes += static_cast<char>(characters.size());
+    bytes += characters;
+    if (field.count == WireCount::fixed) bytes.append(room - characters.size(), '\0');
+    return true;
+}
+
+bool append_field(const WireField& field, std::string_view& rest, bool is_last, std::string& bytes) {
+    if (field.type == WireType::text && field.count != WireCount::one)
+        return append_string(field, take_string(rest, is_last), bytes);
+    auto words = take_word(rest, ' ');
+    const auto elements =
+        words.empty() ? 0U : static_cast<std::size_t>(std::count(words.begin(), words.end(), ',')) + 1;
+    if (field.count == WireCount::counted) {
+        if (elements > std::numeric_limits<std::uint8_t>::max()) return false;
+        bytes += static_cast<char>(elements);
+    } else if (elements != field.elements) {
+        return false;
+    }
+    while (!words.empty()) {
+        if (!append_element(field.type, take_word(words, ','), bytes)) return false;
+    }
+    return true;
+}
+
+bool append_fields(const WireMessage& message, std::string_view rest, std::string& bytes) {
+    for (std::size_t i = 0; i < message.fields.size(); ++i) {
+        if (!append_field(message.fields[i], rest, i + 1 == message.fields.size(), bytes)) return false;
+    }
+    return rest.find_first_not_of(" \r") == std::string_view::npos;
+}
+
+}  // namespace
+
+LinkEncoder::LinkEncoder(const MessageDictionary& dictionary, LinkVersion version)
+    : dictionary_(&dictionary), version_(version) {
+    for (const auto& message : dictionary_->messages()) {
+        if (message.class_id == MessageDictionary::telemetry_class) by_name_.emplace(message.definition.name, &message);
+    }
+}
+
+std::string_view LinkEncoder::append_frame(std::string_view text, std::string& frames) {
+    std::uint8_t sender = 0;
+    const auto sender_word = take_word(text, ' ');
+    const auto read = std::from_chars(sender_word.data(), sender_word.data() + sender_word.size(), sender);
+    if (read.ec != std::errc() || read.ptr != sender_word.data() + sender_word.size())
+        return "their sender is no aircraft";
+    const auto found = by_name_.find(take_word(text, ' '));
+    if (found == by_name_.end()) return "their message is not among the definitions of telemetry";
+    const auto& message = *found->second;
+    payload_.assign(1, static_cast<char>(sender));
+    if (version_ == LinkVersion::v2) {
+        payload_ += '\0';  // to all
+        payload_ += static_cast<char>(message.class_id);
+    }
+    payload_ += static_cast<char>(message.id);
+    if (!append_fields(message, text, payload_)) return "their fields do not fit their definition";
+    constexpr std::size_t around = 4;
+    const auto length = payload_.size() + around;
+    if (length > std::numeric_limits<std::uint8_t>::max()) return "they are too long for a frame";
+    std::uint8_t a = static_cast<std::uint8_t>(length);
+    std::uint8_t b = a;
+    for (const char byte : payload_) {
+        a = static_cast<std::uint8_t>(a + static_cast<std::uint8_t>(byte));
+        b = static_cast<std::uint8_t>(b + a);
+    }
+    frames += '\x99';
+    frames += static_cast<char>(length);
+    frames += payload_;
+    frames += static_cast<char>(a);
+    frames += static_cast<char>(b);
+    return {};
+}
+
+}  // namespace flightwatt::telemetry

@@ -1,0 +1,84 @@
+#pragma once
+
+#include "telemetry/message_definition.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flightwatt::telemetry {
+
+/// What a field, or each element of an array, is on the wire: little endian, unaligned.
+enum class WireType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64, text };
+
+/// How many elements a field has.
+enum class WireCount : std::uint8_t {
+    one,      ///< a scalar
+    fixed,    ///< T[n]: n of them
+    counted,  ///< T[] and string: a uint8 says how many follow
+};
+
+/// One field of a message on the wire.
+struct WireField {
+    WireType type = WireType::uint8;
+    WireCount count = WireCount::one;
+    std::uint16_t elements = 1;  ///< of one and fixed
+};
+
+/// Bytes of one element.
+std::size_t size_of(WireType type);
+
+/// A message as frames carry it: known by the number of its class and its own.
+struct WireMessage {
+    MessageDefinition definition;
+    std::uint8_t class_id = 0;
+    std::uint8_t id = 0;
+    std::vector<WireField> fields;  ///< of definition.fields, one each
+
+    std::size_t fixed_bytes = 0;  ///< of the fields that are not counted
+    bool has_counted = false;
+
+    /// Whether fields of these types fill the payload to its last byte, and need none beyond.
+    bool fits(std::string_view payload) const {
+        return has_counted ? fits_counted(payload) : payload.size() == fixed_bytes;
+    }
+
+  private:
+    bool fits_counted(std::string_view payload) const;
+};
+
+/// The messages of all classes of a <protocol>, found by the numbers that frames carry.
+class MessageDictionary {
+  public:
+    static constexpr std::uint8_t telemetry_class = 1;
+    static constexpr std::uint8_t datalink_class = 2;
+
+    /// A message whose numbers are taken, or over 255, or a type of whose fields is not known, is none that frames carry.
+    void add(std::string_view class_id, std::string_view class_name, std::string_view message_id,
+             const MessageDefinition& definition);
+    /// The message; nullptr for one that is not defined.
+    const WireMessage* find(std::uint8_t class_id, std::uint8_t message_id) const {
+        if (class_id >= most_classes) return nullptr;
+        const auto place = places_[std::size_t{class_id} * 256 + message_id];
+        return place == 0 ? nullptr : &messages_[place - 1];
+    }
+    const std::vector<WireMessage>& messages() const { return messages_; }
+    bool empty() const { return messages_.empty(); }
+
+  private:
+    static constexpr std::size_t most_classes = 16;
+
+    std::vector<WireMessage> messages_;
+    std::array<std::uint16_t, most_classes * 256> places_{};  ///< of messages_, from 1 on; 0 without
+};
+
+/// The definitions of a messages.xml, or of the <protocol> of a .log. Throws InputError where there is none.
+MessageDictionary read_message_dictionary(const std::filesystem::path& path);
+MessageDictionary parse_message_dictionary(const std::string& text, const std::filesystem::path& file);
+
+}  // namespace flightwatt::telemetry

@@ -1,0 +1,163 @@
+#include "live/playback.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "helpers/free_port.h"
+#include "helpers/link_lines.h"
+#include "helpers/running_program.h"
+#include "helpers/test_paths.h"
+#include "live/sources.h"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::live {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+
+const auto never = [] { return false; };
+
+std::filesystem::path write_log(const std::string& text) {
+    const auto path = test::scratch_dir() / "a.data";
+    write_file_atomically(path, text);
+    return path;
+}
+
+/// Keeps what it is sent.
+class KeepingTarget : public PlaybackTarget {
+  public:
+    std::string_view send(double time_s, std::string_view text) override {
+        if (text.ends_with("UNSENDABLE")) return "they cannot be sent";
+        lines.push_back(fmt::format("{} {}", time_s, text));
+        return {};
+    }
+    std::vector<std::string> lines;
+};
+
+/// A log of `count` messages, ten a second.
+std::string log_of(const std::vector<std::string>& lines) {
+    std::string text;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        text += fmt::format("{:.1f} {}\n", 100.0 + 0.1 * static_cast<double>(i), lines[i]);
+    return text;
+}
+
+TEST(Playback, SendsAllMessagesInOrderAndCountsTheOthers) {
+    const auto log =
+        write_log("10.5 20 PONG \r\nnonsense\n\n10.5 20 A 1\n11.5 20 UNSENDABLE\n3 20 A 2\n5000 20 A 3\n5001 20 LAST");
+    KeepingTarget target;
+    const auto report = play(log, 1e5, target, never);
+    EXPECT_THAT(target.lines, ElementsAre("10.5 20 PONG ", "10.5 20 A 1", "3 20 A 2", "5000 20 A 3", "5001 20 LAST"));
+    EXPECT_EQ(report.messages, 5U);
+    EXPECT_EQ(report.left_out.at("they are no messages with a time"), 2U);
+    EXPECT_EQ(report.left_out.at("they cannot be sent"), 1U);
+    EXPECT_EQ(report.shortened_gaps, 1U);
+    EXPECT_DOUBLE_EQ(report.log_s, 1.0 + longest_played_gap_s + 1.0);
+    EXPECT_FALSE(report.stopped);
+}
+
+TEST(Playback, TakesAsLongAsItShouldAndEndsWhenItIsStopped) {
+    const auto log = write_log("0 20 A 1\n10 20 A 2\n20 20 A 3\n");
+    KeepingTarget target;
+    const auto report = play(log, 200.0, target, never);
+    EXPECT_EQ(target.lines.size(), 3U);
+    EXPECT_GE(report.played_s, 0.1);
+    EXPECT_GE(report.latest_s, 0.0);
+    KeepingTarget stopped;
+    int asked = 0;
+    EXPECT_TRUE(play(log, 1.0, stopped, [&] { return ++asked > 2; }).stopped);
+    EXPECT_EQ(stopped.lines.size(), 1U);
+}
+
+TEST(Playback, RefusesBinaryLogsAndTargetsThatAreNone) {
+    KeepingTarget target;
+    EXPECT_THROW(play(write_log("\x99\x05 binary"), 1.0, target, never), InputError);
+    for (const auto* wrong : {"", "udp", "udp:", "tcp:127.0.0.1:1", "file:", "ivy"}) {
+        EXPECT_THROW(open_playback_target(wrong, {.definitions = test::small_dictionary()}), UsageError) << wrong;
+    }
+    EXPECT_THROW(open_playback_target("udp:host:1", {.definitions = test::small_dictionary()}), UsageError);
+}
+
+TEST(Playback, WritesAGrowingFileAndNoneThatIsThere) {
+    const auto text = std::string("1.5 20 A 1\n2.25 20 B \n");
+    const auto log = write_log(text);
+    const auto copy = log.parent_path() / "copy.data";
+    {
+        const auto target = open_playback_target("file:" + copy.string(), {});
+        play(log, 1e4, *target, never);
+        EXPECT_EQ(read_file(copy), text);  // while it is open
+    }
+    EXPECT_THROW(open_playback_target("file:" + copy.string(), {}), OutputError);
+    EXPECT_EQ(read_file(copy), text);
+}
+
+/// What a source has when a log was played to its end.
+std::vector<IncomingMessage> played(MessageSource& source, const std::filesystem::path& log, double speed,
+                                    PlaybackTarget& target, std::size_t count) {
+    std::vector<IncomingMessage> messages;
+    std::thread player([&] { play(log, speed, target, never); });
+    test::wait_until([&] {
+        source.receive(milliseconds(10), messages);
+        return messages.size() >= count;
+    });
+    player.join();
+    source.receive(milliseconds(50), messages);
+    return messages;
+}
+
+std::vector<std::string> texts_of(const std::vector<IncomingMessage>& messages) {
+    std::vector<std::string> texts;
+    for (const auto& message : messages) texts.push_back(message.text);
+    return texts;
+}
+
+TEST(Playback, BringsAllToAUdpSourceAtTheirTimes) {
+    const auto lines = test::energy_lines(200);
+    const auto log = write_log(log_of(lines));
+    for (const auto version : {telemetry::LinkVersion::v1, telemetry::LinkVersion::v2}) {
+        const auto port = test::free_udp_port();
+        const auto source = open_udp(std::to_string(port), test::small_dictionary(), 60.0);
+        const auto target = open_playback_target(fmt::format("udp:127.0.0.1:{}", port),
+                                                 {.definitions = test::small_dictionary(), .version = version});
+        const auto messages = played(*source, log, 60.0, *target, lines.size());
+        EXPECT_EQ(texts_of(messages), lines);
+        EXPECT_GE(*messages.back().time_s - *messages.front().time_s, 15.0);  // of 19.9 s, less the first that wait
+    }
+}
+
+TEST(Playback, BringsAllOverAnIvyBusWithTheirTimes) {
+    const auto lines = test::energy_lines(200);
+    const auto log = write_log(log_of(lines));
+    const auto bus = fmt::format("127:{}", test::free_udp_port());
+    const auto source = open_ivy_bus(bus);
+    const auto target = open_playback_target("ivy:" + bus, {});
+    ASSERT_TRUE(target->is_heard(std::chrono::seconds(10)));
+    const auto messages = played(*source, log, 200.0, *target, lines.size());
+    ASSERT_EQ(texts_of(messages), lines);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        EXPECT_NEAR(*messages[i].time_s, 100.0 + 0.1 * static_cast<double>(i), 1e-6);
+}
+
+TEST(Playback, SpeaksAsTheAircraftWhereItIsAsked) {
+    const auto log = write_log("1 20 A 1\n2 20 B 2\n");
+    const auto bus = fmt::format("127:{}", test::free_udp_port());
+    const auto source = open_ivy_bus(bus, 10.0);
+    const auto target = open_playback_target("ivy:" + bus, {.as_aircraft = true});
+    ASSERT_TRUE(target->is_heard(std::chrono::seconds(10)));
+    const auto messages = played(*source, log, 10.0, *target, 2);
+    ASSERT_THAT(texts_of(messages), ElementsAre("20 A 1", "20 B 2"));
+    EXPECT_GE(*messages[1].time_s - *messages[0].time_s, 0.5);
+}
+
+}  // namespace
+}  // namespace flightwatt::live

@@ -1,0 +1,34 @@
+#include "live/sources/line_buffer.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::live {
+namespace {
+
+TEST(LineBuffer, LinesAreTheSameInAnyPieces) {
+    const std::string text = "1.5 20 PONG \r\n\n2.5 20 ALIVE 1,2\nthe rest";
+    const std::vector<std::string> expected{"1.5 20 PONG ", "", "2.5 20 ALIVE 1,2"};
+    for (std::size_t size = 1; size <= text.size(); ++size) {
+        LineBuffer buffer;
+        std::vector<std::string> lines;
+        for (std::size_t i = 0; i < text.size(); i += size) buffer.push(text.substr(i, size), lines);
+        EXPECT_EQ(lines, expected) << size;
+        EXPECT_EQ(buffer.take_rest(), "the rest");
+        EXPECT_EQ(buffer.take_rest(), "");
+    }
+}
+
+TEST(LineBuffer, AnEndlessLineIsDroppedAndTheNextIsRead) {
+    LineBuffer buffer;
+    std::vector<std::string> lines;
+    for (int i = 0; i < 1000; ++i) buffer.push(std::string(1000, '#'), lines);
+    buffer.push("\n1 20 PONG\n" + std::string(LineBuffer::longest_line + 1, 'x') + "\n2 20 PONG\n", lines);
+    EXPECT_EQ(lines, (std::vector<std::string>{"1 20 PONG", "2 20 PONG"}));
+    EXPECT_EQ(buffer.overlong(), 2U);
+}
+
+}  // namespace
+}  // namespace flightwatt::live

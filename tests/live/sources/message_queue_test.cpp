@@ -1,0 +1,68 @@
+#include "live/sources/message_queue.h"
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::live {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(MessageQueue, GivesTimesOfArrivalToMessagesWithoutOne) {
+    MessageQueue queue(60.0);
+    queue.push({std::nullopt, "1 A 1"});
+    queue.push({5000.0, "1 A 2"});
+    queue.push({std::nullopt, "1 A 3"});
+    std::vector<IncomingMessage> messages;
+    SourceReport report;
+    queue.take(milliseconds(0), messages, report);
+    ASSERT_EQ(messages.size(), 3U);
+    EXPECT_GE(messages[0].time_s, 0.0);
+    EXPECT_EQ(messages[1].time_s, 5000.0);
+    EXPECT_GE(messages[2].time_s, messages[0].time_s);
+    EXPECT_EQ(report.messages, 3U);
+}
+
+TEST(MessageQueue, DropsTheOldestOfTooManyAndSaysSo) {
+    MessageQueue queue(1.0);
+    for (std::size_t i = 0; i < MessageQueue::most_waiting + 3; ++i) queue.push({static_cast<double>(i), "1 A"});
+    queue.count("bytes", 7);
+    queue.count("bytes", 0);
+    std::vector<IncomingMessage> messages;
+    SourceReport report;
+    while (messages.size() < MessageQueue::most_waiting) {
+        const auto before = messages.size();
+        queue.take(milliseconds(0), messages, report);
+        ASSERT_GT(messages.size(), before);
+        ASSERT_LE(messages.size() - before, MessageQueue::most_a_call);
+    }
+    queue.take(milliseconds(0), messages, report);
+    EXPECT_EQ(messages.size(), MessageQueue::most_waiting);
+    EXPECT_EQ(messages.front().time_s, 3.0);
+    EXPECT_EQ(report.messages, MessageQueue::most_waiting + 3);
+    EXPECT_EQ(report.unusable.at("messages that came in faster than they were looked at"), 3U);
+    EXPECT_EQ(report.unusable.at("bytes"), 7U);
+}
+
+TEST(MessageQueue, MarksTheFirstMessageOfANewClock) {
+    MessageQueue queue(1.0);
+    queue.count_restart(false);
+    queue.push({1.0, "1 A"});
+    queue.count_restart(true);
+    queue.push({2.0, "1 A"});
+    queue.push({3.0, "1 A"});
+    std::vector<IncomingMessage> messages;
+    SourceReport report;
+    queue.take(milliseconds(0), messages, report);
+    ASSERT_EQ(messages.size(), 3U);
+    EXPECT_FALSE(messages[0].after_restart);
+    EXPECT_TRUE(messages[1].after_restart);
+    EXPECT_FALSE(messages[2].after_restart);
+    EXPECT_EQ(report.restarts, 2U);
+}
+
+}  // namespace
+}  // namespace flightwatt::live

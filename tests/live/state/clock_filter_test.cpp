@@ -1,0 +1,86 @@
+#include "live/state/clock_filter.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::live {
+namespace {
+
+std::vector<double> times_of(const std::vector<ClockFilter::Line>& lines) {
+    std::vector<double> times;
+    for (const auto& line : lines) times.push_back(line.time_s);
+    return times;
+}
+
+std::vector<double> pushed(ClockFilter& filter, const std::vector<double>& times) {
+    std::vector<ClockFilter::Line> believed;
+    for (const double time_s : times) filter.push(time_s, "20 PONG", false, believed);
+    return times_of(believed);
+}
+
+TEST(ClockFilter, GapsUpToAMinuteAndLateLinesCountAtOnce) {
+    ClockFilter filter;
+    const std::vector<double> times{10.0, 10.0, 32.0, 31.5, 92.0};
+    EXPECT_EQ(pushed(filter, times), times);
+    EXPECT_EQ(filter.latest_s(), 92.0);
+}
+
+TEST(ClockFilter, ADamagedTimeIsNotBelieved) {
+    ClockFilter filter;
+    EXPECT_EQ(pushed(filter, {10.0, 1e9, 11.0, -5e8, 12.0}), (std::vector<double>{10.0, 11.0, 12.0}));
+    EXPECT_EQ(filter.unconfirmed(), 2U);
+    EXPECT_EQ(filter.latest_s(), 12.0);
+}
+
+TEST(ClockFilter, AGapIsBelievedWhenFiveLinesAgree) {
+    ClockFilter filter;
+    EXPECT_EQ(pushed(filter, {10.0, 500.0, 501.0, 502.0, 503.0}), (std::vector<double>{10.0}));
+    EXPECT_EQ(pushed(filter, {504.0}), (std::vector<double>{500.0, 501.0, 502.0, 503.0, 504.0}));
+    EXPECT_EQ(filter.latest_s(), 504.0);
+    EXPECT_EQ(filter.unconfirmed(), 0U);
+}
+
+TEST(ClockFilter, ItsEndBelievesWhatLiesAhead) {
+    ClockFilter filter;
+    pushed(filter, {10.0, 500.0, 501.0});
+    std::vector<ClockFilter::Line> believed;
+    filter.flush(believed);
+    EXPECT_EQ(times_of(believed), (std::vector<double>{500.0, 501.0}));
+}
+
+TEST(ClockFilter, ALogThatBeginsAnewIsARestart) {
+    ClockFilter filter;
+    pushed(filter, {1000.0, 1001.0});
+    std::vector<ClockFilter::Line> believed;
+    for (int i = 0; i < 4; ++i) EXPECT_FALSE(filter.push(1.0 + i, "20 PONG", false, believed));
+    EXPECT_TRUE(filter.push(5.0, "20 PONG", false, believed));
+    EXPECT_EQ(times_of(believed), (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0}));
+    EXPECT_EQ(filter.latest_s(), 5.0);
+}
+
+TEST(ClockFilter, ASourceThatBeganAnewNeedsNoOthersToAgree) {
+    ClockFilter filter;
+    pushed(filter, {30.0});
+    std::vector<ClockFilter::Line> believed;
+    EXPECT_TRUE(filter.push(1.0, "20 PONG", true, believed));
+    EXPECT_EQ(times_of(believed), (std::vector<double>{1.0}));
+    EXPECT_FALSE(filter.push(40.0, "20 PONG", true, believed)) << "a clock that went on";
+}
+
+TEST(ClockFilter, AClockThatSteppedBackGoesOnFromWhereItWas) {
+    ClockFilter filter;
+    pushed(filter, {100.0});
+    std::vector<double> times;
+    for (int i = 0; i < 20; ++i) times.push_back(70.0 + i);
+    const auto believed = pushed(filter, times);
+    ASSERT_EQ(believed.size(), 20U);
+    EXPECT_EQ(believed[8], 78.0);
+    EXPECT_EQ(believed[9], 100.0) << "the tenth in a row";
+    EXPECT_EQ(believed[19], 110.0);
+    EXPECT_EQ(filter.steps_back(), 1U);
+}
+
+}  // namespace
+}  // namespace flightwatt::live

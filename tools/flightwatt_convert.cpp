@@ -1,0 +1,196 @@
+// flightwatt convert: a binary log as the text that Paparazzi's own sd2log makes of it.
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_use.h"
+#include "cli/numeric_options.h"
+#include "cli/output/json_text.h"
+#include "cli/stage.h"
+#include "flight/load_flight.h"
+#include "telemetry/log_configuration.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace {
+
+using namespace flightwatt;
+
+using Json = nlohmann::ordered_json;
+
+/// A binary log as text, and what stood in it.
+struct ConvertedLog {
+    std::string text;
+    std::size_t lines = 0;
+    std::optional<double> start_s;  ///< nothing for a capture of a link without times
+    double end_s = 0.0;
+    std::size_t untimed = 0;  ///< messages before the first time of a link; they are not in the text
+    std::set<int> senders;
+    telemetry::LinkCounts counts;
+};
+
+class TextWriter {
+  public:
+    void write(const telemetry::LinkMessage& message) {
+        if (message.time_s && !converted_.start_s) {
+            converted_.start_s = *message.time_s;
+            converted_.untimed = std::exchange(converted_.lines, 0);
+            converted_.text.clear();
+            converted_.senders.clear();
+        }
+        const double time_s = message.time_s.value_or(0.0);
+        converted_.end_s = time_s;
+        converted_.senders.insert(message.sender);
+        fmt::format_to(std::back_inserter(converted_.text), "{:.4f} {}\n", time_s, message.text);
+        ++converted_.lines;
+    }
+    ConvertedLog take(const telemetry::LinkCounts& counts) {
+        converted_.counts = counts;
+        return std::move(converted_);
+    }
+
+  private:
+    ConvertedLog converted_;
+};
+
+ConvertedLog convert_log(const flight::FlightFile& file) {
+    return flight::use_binary(file, [&](const telemetry::BinaryLog& log) {
+        telemetry::LinkDecoder decoder(*log.messages, log.framing, link_version(log));
+        TextWriter writer;
+        const auto sink = [&](const telemetry::LinkMessage& message) { writer.write(message); };
+        decoder.push(log.bytes, sink);
+        decoder.flush(sink);
+        require_fitting(decoder.counts(), log);
+        return writer.take(decoder.counts());
+    });
+}
+
+/// "103 of class 1: 10 frames".
+std::vector<std::string> told_ids(const std::map<std::uint16_t, std::size_t>& ids) {
+    std::vector<std::string> told;
+    for (const auto& [number, frames] : ids) {
+        told.push_back(
+            fmt::format("{} of class {} ({} frame{})", number % 256, number / 256, frames, frames == 1 ? "" : "s"));
+    }
+    return told;
+}
+
+std::vector<std::string> warnings_of(const ConvertedLog& log, const std::string& definitions) {
+    std::vector<std::string> warnings;
+    const auto& counts = log.counts;
+    if (counts.unknown > 0) {
+        warnings.push_back(fmt::format("{} frames are of messages that {} does not define: {}", counts.unknown,
+                                       definitions, short_list(told_ids(counts.unknown_ids))));
+    }
+    if (counts.other_lengths > 0) {
+        warnings.push_back(fmt::format("{} frames have other lengths than {} defines: {}", counts.other_lengths,
+                                       definitions, short_list(told_ids(counts.other_length_ids))));
+    }
+    if (counts.skipped_bytes > 0) {
+        warnings.push_back(fmt::format("damaged: {} bytes in {} places hold no frame with a right checksum",
+                                       counts.skipped_bytes, counts.skipped_parts));
+    }
+    if (!log.start_s) warnings.emplace_back("a capture of a link, whose messages have no times: all are written as 0");
+    if (log.untimed > 0) {
+        warnings.push_back(
+            fmt::format("{} messages before the first TIMESTAMP have no time, and are not written", log.untimed));
+    }
+    return warnings;
+}
+
+Json json_of(const std::map<std::uint16_t, std::size_t>& ids) {
+    auto list = Json::array();
+    for (const auto& [number, frames] : ids)
+        list.push_back({{"class", number / 256}, {"id", number % 256}, {"frames", frames}});
+    return list;
+}
+
+Json summary(const flight::FlightFile& file, const ConvertedLog& log, const std::vector<std::string>& warnings) {
+    const auto& counts = log.counts;
+    return {{"log", file.path().string()},
+            {"definitions", file.log_file().string()},
+            {"framing", to_string(counts.framing.value())},
+            {"link", to_string(counts.version.value())},
+            {"bytes", counts.bytes},
+            {"frames", counts.frames},
+            {"messages", log.lines},
+            {"unknown", json_of(counts.unknown_ids)},
+            {"other_lengths", json_of(counts.other_length_ids)},
+            {"other_frames", counts.other_frames},
+            {"skipped_bytes", counts.skipped_bytes},
+            {"skipped_parts", counts.skipped_parts},
+            {"zero_bytes", counts.zero_bytes},
+            {"untimed", log.untimed},
+            {"senders", log.senders},
+            {"start_s", log.start_s ? Json(*log.start_s) : Json()},
+            {"end_s", log.start_s ? Json(log.end_s) : Json()},
+            {"warnings", warnings}};
+}
+
+/// NAME.log for NAME.data, where the binary log has one beside it.
+std::optional<std::filesystem::path> log_to_write(const cli::StageCall& call, const std::filesystem::path& log) {
+    if (!call.output || !telemetry::find_log_file(log)) return std::nullopt;
+    const std::filesystem::path output = *call.output;
+    return output.parent_path() / (telemetry::flight_name(output) + ".log");
+}
+
+void tell(const cli::StageCall& call, const flight::FlightFile& file, const ConvertedLog& log) {
+    const auto& counts = log.counts;
+    const auto times = log.start_s ? fmt::format(", {:.1f} to {:.1f} s", *log.start_s, log.end_s) : std::string();
+    cli::note(call, fmt::format("{}: {}, {}: {} frames, {} messages of {}{}{}", file.path().string(),
+                                to_string(counts.framing.value()), to_string(counts.version.value()), counts.frames,
+                                log.lines, fmt::join(log.senders, ", "), times,
+                                counts.zero_bytes > 0 ? fmt::format("; {} bytes set aside", counts.zero_bytes) : ""));
+}
+
+int convert(const cli::StageCall& call) {
+    constexpr std::size_t bytes_per_mb = 1'000'000;
+    const std::filesystem::path path = call.inputs.front();
+    const auto most_bytes = bytes_per_mb * cli::count_option(call, "max-log-mb", 1, 1'000'000);
+    const flight::FlightFile file(path, most_bytes, call.maybe<std::string>("messages"));
+    if (!file.framing()) {
+        throw InputError({path.string()}, "is no binary log: no frames with right checksums follow each other in it",
+                         "expected the .LOG or .tlm of an SD card, or a capture of a link");
+    }
+    const auto log_file = log_to_write(call, path);
+    if (log_file) declare_output(*log_file);
+    const auto converted = convert_log(file);
+    file.require_unchanged();
+    if (log_file) write_file_atomically(*log_file, file.log_text().value());
+    cli::write_result(call, converted.text);
+    const auto warnings = warnings_of(converted, file.log_file().string());
+    for (const auto& warning : warnings) cli::warn(call, fmt::format("{}: {}", path.string(), warning));
+    if (call.json) {
+        cli::print(cli::json_text(summary(file, converted, warnings)));
+    } else {
+        tell(call, file, converted);
+    }
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "convert", "LOG",
+        R"(Writes a binary log as text, as Paparazzi's sd2log does: the .LOG or .tlm of an SD card, or a capture
+of a serial line, of UDP or of an XBee (also .gz, .bz2, .xz, .zst). With -o NAME.data, NAME.log is
+written beside it where the log has one. All stages read the binary log itself, too, and come to the
+same.)"};
+    stage.max_inputs = 1;
+    stage.options.add_options()("messages", cli::input_file("FILE"),
+                                "definitions where no .log stands beside: a messages.xml, or the .log of the same "
+                                "build")("max-log-mb", cli::value("MB")->default_value("100"),
+                                         "refuse a compressed log that unpacks to more");
+    return cli::run_stage(argc, argv, stage, convert);
+}

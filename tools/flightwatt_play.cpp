@@ -1,0 +1,127 @@
+// flightwatt play: a log once more as it came in, over the links that flightwatt watch listens to.
+
+#include "base/error.h"
+#include "base/signal_watch.h"
+#include "cli/numeric_options.h"
+#include "cli/output/json_text.h"
+#include "cli/stage.h"
+#include "live/playback.h"
+#include "telemetry/log_configuration.h"
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using namespace flightwatt;
+
+/// The definitions that frames are made with: those of --messages, or of the log's own .log.
+telemetry::MessageDictionary read_definitions(const cli::StageCall& call) {
+    if (const auto file = call.maybe<std::string>("messages")) return telemetry::read_message_dictionary(*file);
+    const auto& log = call.inputs.front();
+    if (const auto beside = telemetry::find_log_file(log)) return telemetry::read_message_dictionary(*beside);
+    throw InputError({log}, "no .log is beside it, and frames need the definitions of their messages",
+                     "give --messages messages.xml");
+}
+
+telemetry::LinkVersion link_version(const cli::StageCall& call) {
+    return cli::count_option(call, "link-version", 1, 2) == 1 ? telemetry::LinkVersion::v1 : telemetry::LinkVersion::v2;
+}
+
+live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const std::string& to) {
+    const bool to_udp = to.starts_with("udp:");
+    if (!to_udp && (call.has("messages") || !call.options["link-version"].defaulted()))
+        throw UsageError("--messages and --link-version are of frames: they go with --to udp:ADDRESS:PORT");
+    if (!to.starts_with("ivy:") && call.has("as-aircraft"))
+        throw UsageError("--as-aircraft goes with --to ivy:ADDRESS:PORT");
+    live::PlaybackTargetSetup setup;
+    setup.version = link_version(call);
+    setup.as_aircraft = call.has("as-aircraft");
+    if (to_udp) setup.definitions = read_definitions(call);
+    return setup;
+}
+
+/// Lines to the standard output, each at once.
+class OutputTarget : public live::PlaybackTarget {
+  public:
+    std::string_view send(double time_s, std::string_view text) override {
+        has_reader_ = cli::print_at_once(fmt::format("{} {}\n", time_s, text));
+        return {};
+    }
+    bool has_reader() const { return has_reader_; }
+
+  private:
+    bool has_reader_ = true;
+};
+
+nlohmann::ordered_json json_of(const live::PlaybackReport& report) {
+    nlohmann::ordered_json left_out = nlohmann::ordered_json::object();
+    for (const auto& [reason, lines] : report.left_out) left_out[reason] = lines;
+    return {{"messages", report.messages}, {"left_out", left_out},        {"shortened_gaps", report.shortened_gaps},
+            {"log_s", report.log_s},       {"played_s", report.played_s}, {"latest_s", report.latest_s},
+            {"stopped", report.stopped}};
+}
+
+void tell(const cli::StageCall& call, const live::PlaybackReport& report) {
+    for (const auto& [reason, lines] : report.left_out)
+        cli::warn(call, fmt::format("{} line{} left out: {}", lines, lines == 1 ? "" : "s", reason));
+    if (report.shortened_gaps > 0) {
+        cli::note(call, fmt::format("{} gap{} of more than {:.0f} s played as so long", report.shortened_gaps,
+                                    report.shortened_gaps == 1 ? "" : "s", live::longest_played_gap_s));
+    }
+    if (call.json) cli::print(cli::json_text(json_of(report)));
+    const auto text = fmt::format("{} messages, {:.1f} s of the log, played in {:.1f} s{}\n", report.messages,
+                                  report.log_s, report.played_s, report.stopped ? ": stopped" : "");
+    if (call.output || call.get<std::string>("to") != "-") return cli::write_result(call, text);
+    cli::note(call, text);
+}
+
+int play(const cli::StageCall& call) {
+    constexpr double fastest = 100'000.0;
+    if (!call.has("to"))
+        throw UsageError("nowhere to play to: expected --to udp:ADDRESS:PORT, ivy:ADDRESS:PORT, file:NAME.data or -");
+    const auto to = call.get<std::string>("to");
+    if (to == "-" && call.json) throw UsageError("--json would stand among the lines of --to -");
+    const double speed = cli::positive_option(call, "speed", "times as fast", fastest).value_or(1.0);
+    const SignalWatch signals;
+    const auto stop = [&] { return signals.caught().has_value(); };
+    const auto setup = target_setup(call, to);
+    if (to == "-") {
+        OutputTarget output;
+        const auto stop_output = [&] { return stop() || !output.has_reader(); };
+        tell(call, live::play(call.inputs.front(), speed, output, stop_output));
+        return cli::ok;
+    }
+    const auto target = live::open_playback_target(to, setup);
+    constexpr std::chrono::seconds longest_wait{10};
+    if (!target->is_heard(longest_wait)) {
+        throw NoAnswerError(fmt::format("{}: no other agent came within {} s", to, longest_wait.count()));
+    }
+    tell(call, live::play(call.inputs.front(), speed, *target, stop));
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "play", "LOG --to TARGET",
+        R"(Plays a log once more as it came in, in its own time or faster, over a link that flightwatt watch listens to:
+a test bench for what is to run while an aircraft flies. Targets: udp:ADDRESS:PORT (Paparazzi's link frames, a
+datagram each), ivy:ADDRESS:PORT (a replay on an Ivy bus, as Paparazzi's log player says it), file:NAME.data (a
+file that grows), - (the standard output).)"};
+    stage.max_inputs = 1;
+    stage.output_help = "write how it was played to FILE instead of the standard output";
+    auto add = stage.options.add_options();
+    add("to", cli::value("TARGET"), "where to");
+    add("speed", cli::value<double>("X"), "so many times as fast (1)");
+    add("messages", cli::input_file("FILE"),
+        "definitions of the messages, for udp: a messages.xml, or a .log (the one beside the log)");
+    add("link-version", cli::value("N")->default_value("2"), "of pprzlink, for udp: 1 or 2");
+    add("as-aircraft", "for ivy: messages as the aircraft itself would say them, without their time");
+    return cli::run_stage(argc, argv, stage, play);
+}

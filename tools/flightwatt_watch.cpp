@@ -1,0 +1,295 @@
+// flightwatt watch: the energy of a flight that is in the air, once a second.
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/signal_watch.h"
+#include "cli/numeric_options.h"
+#include "cli/output/basis_options.h"
+#include "cli/output/json_text.h"
+#include "cli/output/prediction_output.h"
+#include "cli/output/source_options.h"
+#include "cli/output/watch_output.h"
+#include "cli/stage.h"
+#include "cli/terminal.h"
+#include "live/page_server.h"
+#include "live/recorder.h"
+#include "report/page.h"
+#include "telemetry/log_configuration.h"
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace {
+
+using namespace flightwatt;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// What is said, in the way that was asked for.
+class Speaker {
+  public:
+    Speaker(const cli::StageCall& call, const compute::ComputeModel& compute,
+            const std::optional<live::PredictionBasis>& basis)
+        : call_(call), compute_(compute), basis_(basis), plot_(cli::terminal_plot(call, "state of charge, %")) {}
+
+    void say(const live::LiveState& state) {
+        for (const auto& warning : state.warnings)
+            if (said_.size() < most_said && said_.insert(warning).second && !plot_) cli::warn(call_, warning);
+        if (state.battery && state.battery->state) soc_.add(state.time_s, state.battery->state->soc_percent);
+        if (plot_) {
+            draw(state);
+        } else if (call_.json) {
+            is_read_ = cli::print_at_once(cli::json_of(state, compute_).dump(-1, ' ', false, replace) + "\n");
+        } else {
+            is_read_ = cli::print_at_once(cli::line_of(state, compute_));
+        }
+    }
+
+    bool is_read() const { return is_read_; }
+
+    /// The last words.
+    void end(const live::LiveFlight& flight, const std::string& why) {
+        const auto& last = flight.last_predicted();
+        if (call_.json) {
+            nlohmann::ordered_json json{{"ended", why}, {"last_prediction", nullptr}};
+            if (last) json["last_prediction"] = cli::json_of(*last, compute_);
+            cli::print(json.dump(-1, ' ', false, replace) + "\n");
+        } else {
+            cli::note(call_, why);
+        }
+        const auto text = last ? cli::text_of(*last->prediction) : std::string();
+        if (call_.output || !text.empty()) cli::write_result(call_, text);
+    }
+
+  private:
+    static constexpr std::size_t most_said = 200;
+    static constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
+
+    void draw(const live::LiveState& state) {
+        constexpr double often_s = 0.25;
+        if (drawn_ && seconds_since(*drawn_) < often_s) return;
+        drawn_ = Clock::now();
+        auto lines = cli::screen_of(state, compute_);
+        for (const auto& warning : said_) lines.push_back("          " + warning);
+        std::string text = "\x1b[H\x1b[J";  // the whole screen anew
+        for (const auto& line : lines) text += line.substr(0, plot_->columns) + "\n";
+        is_read_ = cli::print_at_once(text + curve(state));
+    }
+
+    std::string curve(const live::LiveState& state) const {
+        std::vector<cli::TerminalLine> curves;
+        if (const auto& flown = soc_.curve(); flown.time_s.size() > 1)
+            curves.push_back({flown.time_s, flown.value, "flown"});
+        if (basis_) {
+            if (auto ahead = live::soc_ahead(state, *basis_); ahead.time_s.size() > 1)
+                curves.push_back({std::move(ahead.time_s), std::move(ahead.value), "ahead"});
+        }
+        return curves.empty() ? "" : cli::draw(*plot_, curves);
+    }
+
+    const cli::StageCall& call_;
+    const compute::ComputeModel& compute_;
+    const std::optional<live::PredictionBasis>& basis_;
+    std::optional<cli::TerminalPlot> plot_;
+    live::CurveHistory soc_;
+    std::set<std::string> said_;
+    std::optional<Clock::time_point> drawn_;
+    bool is_read_ = true;
+};
+
+/// Runs --on-decision's command where what runs changes.
+class DecisionHook {
+  public:
+    DecisionHook(const cli::StageCall& call, const compute::ComputeModel& compute) : call_(call), compute_(compute) {
+        if (call.has("on-decision")) command_.emplace(call.get<std::string>("on-decision"));
+    }
+
+    void look(const live::LiveState& state) {
+        if (!command_) return;
+        if (state.decision && state.decision->changes != changes_) {
+            changes_ = state.decision->changes;
+            command_->run(cli::decision_environment(state, compute_));
+        }
+        tell();
+    }
+
+    void end() {
+        constexpr int most_ms = 5000;
+        if (!command_) return;
+        if (!command_->wait(most_ms)) cli::warn(call_, "--on-decision: its command still runs");
+        tell();
+    }
+
+  private:
+    void tell() {
+        if (const auto failure = command_->look()) cli::warn(call_, "--on-decision: " + *failure);
+    }
+
+    const cli::StageCall& call_;
+    const compute::ComputeModel& compute_;
+    std::optional<live::DecisionCommand> command_;
+    std::size_t changes_ = 0;
+};
+
+/// Shows what is said on a page.
+class Page {
+  public:
+    Page(const cli::StageCall& call, const compute::ComputeModel& compute,
+         const std::optional<live::PredictionBasis>& basis)
+        : compute_(compute), basis_(basis) {
+        if (!call.has("serve")) return;
+        const auto web = report::read_live_web_files(report::web_folder());
+        server_.emplace(call.get<std::string>("serve"), report::live_page_html(web));
+        cli::note(call, "the page is at " + server_->address());
+        if (web.libraries.empty())
+            cli::warn(call, "the page has no charts: what draws them is not installed (scripts/install_dependencies)");
+    }
+
+    void say(const live::LiveState& state) {
+        if (!server_) return;
+        const auto ahead = basis_ ? live::soc_ahead(state, *basis_) : live::TimeCurve{};
+        const auto event = cli::page_event(state, compute_, ahead);
+        server_->publish(event.state, event.point);
+    }
+
+  private:
+    const compute::ComputeModel& compute_;
+    const std::optional<live::PredictionBasis>& basis_;
+    std::optional<live::PageServer> server_;
+};
+
+struct Watched {
+    std::optional<mission::AnyMission> mission;
+    std::optional<live::PredictionBasis> basis;
+    compute::ComputeModel compute;
+};
+
+Watched read_watched(const cli::StageCall& call) {
+    Watched watched;
+    const bool needs_mission = call.has("decide") || call.has("on-decision");
+    if (needs_mission && !call.has("mission")) throw UsageError("--decide and --on-decision go with --mission");
+    if (call.has("mission") || call.has("model"))
+        watched.basis = cli::read_basis(call, cli::PathNeed::optional, &watched.mission);
+    else if (call.has("battery") || call.has("remaining"))
+        throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
+    if (watched.mission) watched.compute = setup_of(*watched.mission).compute;
+    return watched;
+}
+
+/// The mission's schedule beside the flight; none for a mission that runs nothing.
+std::unique_ptr<live::LiveSchedule> schedule_of(const cli::StageCall& call, const Watched& watched) {
+    if (!watched.mission || (watched.compute.components.empty() && !call.has("decide"))) return nullptr;
+    return std::make_unique<live::LiveSchedule>(*watched.mission, call.has("decide"));
+}
+
+/// Looks at the flight after every second of it, or of silence.
+using Look = std::function<std::string(double silent_s)>;
+
+/// Until the source ends, a signal comes, or `look` says why to end; returns that.
+std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, const Look& look) {
+    constexpr std::chrono::milliseconds wait{100};
+    constexpr double silence_said_s = 1.0;
+    const SignalWatch signals;
+    const auto start = Clock::now();
+    auto heard = start;
+    auto looked = start;
+    std::optional<double> looked_at_s;
+    std::vector<live::IncomingMessage> messages;
+    while (true) {
+        messages.clear();
+        source.receive(wait, messages);
+        for (const auto& message : messages) {
+            flight.receive(message, seconds_since(start));
+            const auto clock_s = flight.clock_s();
+            const bool is_due = clock_s && (!looked_at_s || std::abs(*clock_s - *looked_at_s) >= 1.0);
+            if (!is_due) continue;
+            looked_at_s = clock_s;
+            if (auto why = look(0.0); !why.empty()) return why;
+            looked = Clock::now();
+        }
+        if (!messages.empty()) heard = Clock::now();
+        if (const auto signal = signals.caught()) return "ended by " + signal_name(*signal);
+        if (source.at_end()) return "the telemetry ends";
+        if (seconds_since(looked) < silence_said_s) continue;
+        if (auto why = look(seconds_since(heard)); !why.empty()) return why;
+        looked = Clock::now();
+    }
+}
+
+int watch(const cli::StageCall& call) {
+    auto watched = read_watched(call);
+    live::LiveOptions options;
+    options.aircraft_id = call.maybe<std::string>("aircraft");
+    options.silence_s = cli::positive_option(call, "silence-s", "s").value();
+    std::optional<std::string> log_text;
+    if (const auto file = cli::definitions_of_source(call)) {
+        log_text = read_file(*file, telemetry::most_log_configuration_bytes);
+        options.configuration = telemetry::parse_log_configuration(*log_text, *file);
+    }
+    const auto source = cli::open_source(call);
+    std::optional<live::Recorder> recorder;
+    if (const auto folder = call.maybe<std::string>("record")) {
+        const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+        recorder.emplace(*folder, live::log_name(now), log_text);
+        options.on_lines = [&](std::string_view lines, bool anew) { recorder->write(lines, anew); };
+    }
+    live::LiveFlight flight(std::move(options), watched.basis, schedule_of(call, watched));
+    Speaker speaker(call, watched.compute, watched.basis);
+    DecisionHook hook(call, watched.compute);
+    Page page(call, watched.compute, watched.basis);
+    const auto look = [&](double silent_s) -> std::string {
+        const auto state = flight.look(silent_s);
+        speaker.say(state);
+        page.say(state);
+        hook.look(state);
+        if (!speaker.is_read()) return "nobody reads the output any more";
+        return call.has("until-landed") && state.landed ? "the aircraft has landed" : "";
+    };
+    const auto why = watch_source(*source, flight, look);
+    flight.end();
+    look(0.0);
+    hook.end();
+    for (const auto& [reason, count] : source->report().unusable) cli::warn(call, fmt::format("{}: {}", reason, count));
+    if (recorder && !recorder->failure().empty()) cli::warn(call, "the recording ended early: " + recorder->failure());
+    speaker.end(flight, why);
+    return flight.last_predicted() || !watched.basis || !watched.basis->cannot_predict.empty() ? cli::ok
+                                                                                               : cli::no_answer;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "watch", "SOURCE [--mission MISSION.toml | --model MODEL.toml --remaining S]",
+        R"(Says once a second of a flight that is in the air: phase, energy, state of charge, and how it will
+land, as flightwatt predict does from the same telemetry; with a mission also the schedule from here,
+and with --decide one that is planned anew in flight. On a terminal it is one screen; else a line a
+second, with --json an object a line, with --serve also a page for a browser (docs/live.md). It ends
+with its source, or by a signal, and then says its last prediction. The source is one of --follow, --udp,
+--serial, --ivy and - (the standard input).)"};
+    stage.min_inputs = 0;
+    stage.max_inputs = 1;
+    stage.output_help = "write the last prediction to FILE, when it ends, instead of the standard output";
+    auto add = stage.options.add_options();
+    cli::add_source_options(stage.options);
+    add("aircraft", cli::value("ID"), "the aircraft to watch; by default the one that flies");
+    add("model", cli::input_file("MODEL.toml"), "from flightwatt fit, of two flights or more");
+    cli::add_basis_options(stage.options, cli::PathNeed::optional);
+    add("decide", "plan the rest of the mission anew at every slot of its [plan], or as its [policy] says");
+    add("on-decision", cli::value("COMMAND"),
+        "run by sh at each change of what software runs, with the decision in its environment (FLIGHTWATT_...)");
+    add("record", cli::output_file("DIR"), "keep what came in as a log in this folder");
+    add("serve", cli::value("PORT"), "show it all as a page on this machine; at ADDRESS:PORT also on others");
+    add("silence-s", cli::value<double>("S")->default_value(30.0), "the link is called silent after so long");
+    add("until-landed", "end when the aircraft has landed");
+    return cli::run_stage(argc, argv, stage, watch);
+}
