@@ -16,6 +16,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -137,11 +138,15 @@ Json summary(const flight::FlightFile& file, const ConvertedLog& log, const std:
             {"warnings", warnings}};
 }
 
-/// NAME.log for NAME.data, where the binary log has one beside it.
+/// NAME.log for NAME.data, where the binary log has one beside it that is not there already.
 std::optional<std::filesystem::path> log_to_write(const cli::StageCall& call, const std::filesystem::path& log) {
-    if (!call.output || !telemetry::find_log_file(log)) return std::nullopt;
+    const auto own = telemetry::find_log_file(log);
+    if (!call.output || !own) return std::nullopt;
     const std::filesystem::path output = *call.output;
-    return output.parent_path() / (telemetry::flight_name(output) + ".log");
+    auto beside = output.parent_path() / (telemetry::flight_name(output) + ".log");
+    std::error_code error;
+    if (std::filesystem::equivalent(beside, *own, error)) return std::nullopt;
+    return beside;
 }
 
 void tell(const cli::StageCall& call, const flight::FlightFile& file, const ConvertedLog& log) {

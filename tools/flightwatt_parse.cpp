@@ -57,8 +57,8 @@ int parse(const cli::StageCall& call) {
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
         "parse", "FLIGHT.data",
-        R"(Reads a Paparazzi .data log (also .gz, .bz2, .xz, .zst) with the .log beside it and writes all that
-it tells of the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,
+        R"(Reads a Paparazzi log with the .log beside it, .data or the .LOG of an SD card (also .gz, .bz2, .xz,
+.zst), and writes all that it tells of the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,
 altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.
 Any stage reads the series file as it reads the log, and comes to the same.)"};
     stage.max_inputs = 1;

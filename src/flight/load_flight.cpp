@@ -46,13 +46,10 @@ telemetry::TelemetryLog read_log(const FlightFile& file) {
     return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
 }
 
-/// A synthetic log says in its first line, or frame, what its .log says by the aircraft's name.
+/// A synthetic log says in its first line, which is the ground's, what its .log says by the aircraft's name.
 void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidates) {
-    constexpr std::size_t longest_frame = 264;
-    const auto first =
-        file.framing() ? file.text().substr(0, longest_frame) : file.text().substr(0, file.text().find('\n'));
-    const auto* const mark = file.framing() ? "SYNTHETIC:" : "INFO_MSG \"SYNTHETIC:";
-    if (first.find(mark) == std::string_view::npos) return;
+    if (file.framing()) return;
+    if (file.text().substr(0, file.text().find('\n')).find("INFO_MSG \"SYNTHETIC:") == std::string_view::npos) return;
     for (auto& series : candidates)
         if (series.aircraft_name.empty()) series.aircraft_name = unnamed_synthetic;
 }

@@ -2,6 +2,7 @@
 // can name, every option that writes.
 
 #include "base/atomic_file.h"
+#include "helpers/binary_frames.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
@@ -61,10 +62,9 @@ std::vector<Command> commands() {
         {"parse", "a.data", {"a.data", "a.log"}, "--output"},
         {"parse", "s.series.csv", {"s.series.csv"}, "--output"},
         {"segment", "a.data", {"a.data", "a.log"}, "--output"},
-        {"play",
-         "a.data --to udp:127.0.0.1:4 --speed 100000 --messages a.log",
-         {"a.data", "a.log"},
-         "--output"},
+        {"play", "a.data --to udp:127.0.0.1:4 --speed 100000 --messages a.log", {"a.data", "a.log"}, "--output"},
+        {"convert", "card.LOG", {"card.LOG", "card.log"}, "--output"},
+        {"convert", "bare.tlm --messages a.log", {"bare.tlm", "a.log"}, "--output"},
         {"validate", "a.data s.series.csv", flight_files, "--output"},
         {"battery", "a.data s.series.csv", flight_files, "--output"},
         {"predict",
@@ -149,6 +149,10 @@ void make_inputs(const std::filesystem::path& folder) {
         put(source / "logs" / (std::string("opterra_synthetic_04") + ending),
             folder / "folder" / "odd" / (std::string("c") + ending));
     }
+    const auto card = test::card_log(read_file(folder / "a.data"), telemetry::read_message_dictionary(folder / "a.log"),
+                                     test::LinkVersion::v2);
+    for (const auto* name : {"card.LOG", "bare.tlm"}) write_file_atomically(folder / name, card);
+    put(folder / "a.log", folder / "card.log");
     write_file_atomically(folder / "folder" / "odd" / "not-fitted.txt", "odd\n");
     std::filesystem::create_directories(folder / "rec");
     for (const auto* name : {"part-5", "part-10", "idle"}) {
@@ -185,8 +189,9 @@ const std::set<std::string> no_files{"N",           "S",      "X",       "P",   
                                      "NAME[,NAME]", "S|now",  "M_PER_S", "PERCENT", "COMMAND"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{"--published", "--model",     "--mission",           "--disturb", "--sysfs",
-                                    "--battery",   "--path-from", "--reference-figures", "--follow",  "--log"};
+const std::set<std::string> reading{"--published", "--model",   "--mission",   "--disturb",
+                                    "--sysfs",     "--battery", "--path-from", "--reference-figures",
+                                    "--follow",    "--log",     "--messages"};
 
 class InputsKept : public testing::Test {
   protected:

@@ -1,8 +1,10 @@
 #include "flight/load_flight.h"
 
+#include "base/atomic_file.h"
 #include "flight/chosen_track.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"
+#include "helpers/binary_frames.h"
 #include "helpers/flown_points.h"
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
@@ -12,6 +14,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -100,6 +103,79 @@ TEST(LoadFlight, FindsEachFlightOfTheArchiveWithoutPower) {
         EXPECT_EQ(sortie.phases.back().phase, Phase::landing);
         EXPECT_THAT(flight.lacks_power, HasSubstr("BAT.voltage * BAT.amps is 0 throughout"));
     }
+}
+
+/// A .data as the SD card of the aircraft would have stored it, and what convert makes of that.
+struct CardAndText {
+    std::filesystem::path card;
+    std::filesystem::path text;
+};
+
+CardAndText stored_on_card(const std::filesystem::path& data, test::LinkVersion version) {
+    const auto folder = test::scratch_dir();
+    const auto log = telemetry::find_log_file(data).value();
+    const auto messages = telemetry::read_message_dictionary(log);
+    const std::string source(telemetry::DataFile(data).text());
+    const auto bytes = test::card_log(source, messages, version);
+    std::string text;
+    telemetry::LinkDecoder decoder(messages);
+    const auto sink = [&](const telemetry::LinkMessage& message) {
+        text += fmt::format("{:.4f} {}\n", message.time_s.value(), message.text);
+    };
+    decoder.push(bytes, sink);
+    decoder.flush(sink);
+    CardAndText made{folder / "card" / "x.LOG", folder / "text" / "x.data"};
+    const auto put = [&](const std::filesystem::path& path, const std::string& content) {
+        std::filesystem::create_directories(path.parent_path());
+        write_file_atomically(path, content);
+        std::filesystem::copy_file(log, path.parent_path() / "x.log");
+    };
+    put(made.card, bytes);
+    put(made.text, text);
+    return made;
+}
+
+std::string everything_of(const std::filesystem::path& log) {
+    const auto flight = load_flight(log);
+    return fmt::format("{}\n{}\n{}", to_csv(flight.series), phases_csv(flight.series, flight.phases),
+                       fmt::join(flight.warnings, "\n"));
+}
+
+TEST(LoadFlight, ComesToTheSameOnABinaryLogAndItsText) {
+    for (const auto version : {test::LinkVersion::v1, test::LinkVersion::v2}) {
+        const auto made = stored_on_card(test::source_dir() / "logs" / "opterra_synthetic_01.data", version);
+        EXPECT_EQ(everything_of(made.card), everything_of(made.text));
+        std::filesystem::remove_all(made.card.parent_path());
+        std::filesystem::remove_all(made.text.parent_path());
+    }
+}
+
+TEST(LoadFlight, ReadsARealFlightFromACardOfV2) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto data = test::shared_dir() / "flights" / "20_07_10__06_53_03.data";
+    const auto made = stored_on_card(data, test::LinkVersion::v2);
+    EXPECT_EQ(everything_of(made.card), everything_of(made.text));
+    const auto card = load_flight(made.card);
+    const auto ground = load_flight(data);
+    ASSERT_EQ(card.phases.sorties.size(), ground.phases.sorties.size());
+    EXPECT_NEAR(card.phases.sorties[0].start_s(), ground.phases.sorties[0].start_s(), 0.1);
+    EXPECT_NEAR(card.phases.sorties[0].end_s(), ground.phases.sorties[0].end_s(), 0.1);
+    EXPECT_EQ(power_track(card.series).time_s.size(), power_track(ground.series).time_s.size());
+}
+
+TEST(FlightFile, OfABinaryLogNeedsDefinitions) {
+    const auto folder = test::scratch_dir();
+    const auto made = stored_on_card(test::source_dir() / "logs" / "opterra_synthetic_01.data", test::LinkVersion::v2);
+    const auto bare = folder / "bare.tlm";
+    std::filesystem::copy_file(made.card, bare);
+    EXPECT_EQ(FlightFile(bare).framing(), telemetry::Framing::card);
+    EXPECT_THAT(test::rejected([&] { load_flight(bare); }, folder),
+                HasSubstr("bare.tlm: is a binary log, and no .log beside it defines its messages; name the"));
+    LoadOptions options;
+    options.messages = made.text.parent_path() / "x.log";
+    EXPECT_EQ(load_flight(bare, options).phases.sorties.size(), 1u);
+    std::filesystem::copy_file(*options.messages, folder / "bare.LOG");
+    EXPECT_EQ(load_flight(bare).phases.sorties.size(), 1u) << "bare.LOG is XML";
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/number.h"
 #include "telemetry/link_decoder.h"
 
 #include <algorithm>
@@ -96,7 +97,7 @@ inline const telemetry::WireMessage* message_of(const telemetry::MessageDictiona
 }  // namespace detail
 
 /// Header and fields of "20 ENERGY 57 11.62 1.64", a line of a .data without its time; nothing where the message is not
-/// defined or has another number of fields.
+/// defined or has another number of fields, or the sender is no byte (ground).
 inline std::optional<std::string> binary_message(std::string_view line, const telemetry::MessageDictionary& dictionary,
                                                  LinkVersion version, const Addressing& addressing = {}) {
     auto words = detail::split(line, ' ');
@@ -105,7 +106,9 @@ inline std::optional<std::string> binary_message(std::string_view line, const te
     if (message == nullptr) return std::nullopt;
     if (message->fields.empty() && words.size() == 3 && words[2].empty()) words.pop_back();  // "PONG "
     if (words.size() != message->fields.size() + 2) return std::nullopt;
-    std::string bytes(1, static_cast<char>(std::stoi(words[0])));
+    const auto sender = parse_unsigned(words[0]);
+    if (!sender || *sender > 0xFF) return std::nullopt;
+    std::string bytes(1, static_cast<char>(*sender));
     if (version == LinkVersion::v2) {
         bytes += static_cast<char>(addressing.destination);
         bytes += static_cast<char>(message->class_id | addressing.component << 4);

@@ -3,6 +3,7 @@
 #include "telemetry/link_decoder.h"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -28,20 +29,27 @@ enum class Look {
 
 inline std::uint8_t byte_at(const char* p) { return static_cast<std::uint8_t>(*p); }
 
-/// The sum of bytes, modulo 256; eight at a time.
+/// The sum of 8 to 1000 bytes, modulo 256; eight at a time.
 inline std::uint8_t sum_of(const char* p, std::size_t size) {
-    constexpr std::uint64_t every_other = 0x00FF00FF00FF00FFu;
+    constexpr std::uint64_t every_other = 0x00FF00FF00FF00FFU;
     std::uint64_t sums = 0;  // four of 16 bits: of up to 128 steps of two bytes each
+    const auto add = [&sums](std::uint64_t bytes) { sums += (bytes & every_other) + ((bytes >> 8) & every_other); };
+    std::uint64_t bytes = 0;
     for (; size >= 8; p += 8, size -= 8) {
-        std::uint64_t bytes = 0;
         std::memcpy(&bytes, p, sizeof bytes);
-        sums += (bytes & every_other) + ((bytes >> 8) & every_other);
+        add(bytes);
+    }
+    if (size > 0) {  // the eight bytes up to the end, less those that are not asked for
+        std::memcpy(&bytes, p + size - 8, sizeof bytes);
+        if constexpr (std::endian::native == std::endian::little) {
+            add(bytes >> (8 * (8 - size)));
+        } else {
+            add(bytes & (~std::uint64_t{0} >> (8 * (8 - size))));
+        }
     }
     sums += sums >> 32;
     sums += sums >> 16;
-    auto sum = static_cast<std::uint8_t>(sums);
-    for (; size > 0; --size) sum = static_cast<std::uint8_t>(sum + byte_at(p++));
-    return sum;
+    return static_cast<std::uint8_t>(sums);
 }
 
 /// What a framing's frames begin with.

@@ -2,6 +2,7 @@
 
 #include "telemetry/message_dictionary.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -32,20 +33,41 @@ inline double as_written(float value) {
     const double exact{value};
     const double magnitude = std::fabs(exact);
     if (!(magnitude < 1e9 && magnitude > 1e-9)) return exact == 0.0 ? exact : as_written_slowly(value);
-    constexpr double tenths[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    const auto rounded = [exact, &tenths](int decimals) {
+    if (static_cast<double>(static_cast<std::int64_t>(exact)) == exact) return exact;
+    static constexpr double tenths[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9, 1e10,
+                                        1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20};
+    const auto exponent = static_cast<int>(std::bit_cast<std::uint32_t>(value) >> 23 & 0xFFU) - 127;
+    // What is nearer than half a step of floats is read as this float (or its neighbour: asked for at the end).
+    const double half_step = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + exponent - 24) << 52);
+    const auto digits_of = [exact](int decimals) {
         const double scaled = exact * tenths[decimals];
-        return static_cast<double>(static_cast<std::int64_t>(scaled + std::copysign(0.5, scaled))) / tenths[decimals];
+        return static_cast<double>(static_cast<std::int64_t>(scaled + std::copysign(0.5, scaled)));
     };
-    if (rounded(0) == exact) return exact;
-    // Eight digits behind the leading zeros; most floats of sensors need seven to nine.
-    constexpr double decades_per_octave = 0.30103;
-    const int exponent = static_cast<int>(std::floor(decades_per_octave * std::ilogb(magnitude)));
-    int decimals = std::max(0, std::min(22, 7 - exponent));
-    while (decimals < 22 && static_cast<float>(rounded(decimals)) != value) ++decimals;
-    while (decimals > 0 && static_cast<float>(rounded(decimals - 1)) == value) --decimals;
-    return rounded(decimals);
+    const auto reads_back = [&](int decimals) {
+        return std::fabs(digits_of(decimals) - exact * tenths[decimals]) <= half_step * tenths[decimals];
+    };
+    // Up to four decimals, else from six significant digits on: most floats of sensors need seven to nine. Asked for all at
+    // once, which is faster than one after the other. 1233 / 4096 is log10(2).
+    constexpr int most_decimals = 20;
+    const auto reading_back = [&](int first) {
+        unsigned found = 0;
+        for (int i = 0; i < 5; ++i) found |= (reads_back(first + i) ? 1U : 0U) << i;
+        return found;
+    };
+    int decimals = 0;
+    if (const auto few = reading_back(0); few != 0) {
+        decimals = std::countr_zero(few);
+    } else {
+        decimals = std::clamp(5 - (exponent * 1233 >> 12), 0, most_decimals - 5);
+        if (const auto some = reading_back(decimals); some != 0) decimals += std::countr_zero(some);
+        while (decimals > 0 && reads_back(decimals - 1)) --decimals;
+    }
+    double number = digits_of(decimals) / tenths[decimals];
+    while (decimals < most_decimals && static_cast<float>(number) != value) {
+        ++decimals;
+        number = digits_of(decimals) / tenths[decimals];
+    }
+    return number;
 }
 
 /// One element as a number; a char is its code.
