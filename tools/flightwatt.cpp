@@ -40,6 +40,7 @@ constexpr StageLine stages[] = {
     {"simulate", "a mission file to its state of charge over time"},
     {"compare", "several missions, ranked by final state of charge"},
     {"plan", "the schedule of highest utility that lands a mission with its reserve"},
+    {"replay", "schedules judged on flights that were flown: planned, replanned in flight, in hindsight"},
     {"path", "the path of a mission leg by leg; of a log as waypoints"},
     {"report", "flights, model and missions as one page, and figures for papers"},
     {"synthesize", "synthetic Paparazzi logs of flights after a model"},
