@@ -42,6 +42,7 @@ constexpr StageLine stages[] = {
     {"simulate", "a mission file to its state of charge over time"},
     {"compare", "several missions, ranked by final state of charge"},
     {"plan", "the schedule of highest utility that lands a mission with its reserve"},
+    {"replay", "schedules judged on flights that were flown: planned, replanned in flight, in hindsight"},
     {"path", "the path of a mission leg by leg; of a log as waypoints"},
     {"play", "a log once more as it came in, over the links that watch listens to"},
     {"report", "flights, model and missions as one page, and figures for papers"},

@@ -17,6 +17,7 @@
 #include "report/model_section.h"
 #include "report/page.h"
 #include "report/physical_section.h"
+#include "report/replay_section.h"
 
 #include <algorithm>
 #include <chrono>
@@ -116,6 +117,20 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
         report::identify_for_report(content.flights, identification, cli::count_option(call, "max-battery-flights"))));
 }
 
+/// The missions on the batch's flights.
+void add_replay(Page& page, const cli::StageCall& call, const ReportInputs& inputs) {
+    const auto content = report::read_batch_content(*inputs.out);
+    mission::ReplayOptions options;
+    if (content.fit) options.fit = content.fit->options;
+    const auto replays = replay_flights(inputs.missions, content.measured, options);
+    for (const auto& left : replays.not_replayed)
+        cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
+    if (replays.replays.empty())
+        page.head.notes.emplace_back("There is no replay: no mission could be flown on any flight.");
+    else
+        page.sections.push_back(report::replay_section(replays.replays));
+}
+
 nlohmann::ordered_json summary_json(const Page& page) {
     auto figures = nlohmann::ordered_json::array();
     for (const auto& section : page.sections) {
@@ -147,6 +162,9 @@ void refuse_bad_numbers(const cli::StageCall& call) {
 int write_page(const cli::StageCall& call) {
     refuse_bad_numbers(call);
     const auto inputs = read_inputs(call);
+    if (call.has("replay") && (!inputs.out || inputs.missions.empty()))
+        throw UsageError(
+            "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
     Page page{{"FlightWatt report", {}, {}}, {}};
     if (const auto title = call.maybe<std::string>("title")) page.head.title = report::valid_utf8(*title);
     auto& facts = page.head.facts;
@@ -166,6 +184,7 @@ int write_page(const cli::StageCall& call) {
         auto sections = mission_sections(report::simulate_for_report(inputs.missions), published);
         std::move(sections.begin(), sections.end(), std::back_inserter(page.sections));
     }
+    if (call.has("replay")) add_replay(page, call, inputs);
     const bool wants_page = call.output || (!call.json && !call.has("figures"));
     if (wants_page || call.has("figures")) {
         const auto web = report::read_web_files(report::web_folder());
@@ -195,6 +214,7 @@ and .pdf (where rsvg-convert is). The model is the batch's own, with the bands t
         "validate by leave-one-out with no more than N flights: the work grows with their square");
     add("capacity", cli::value<double>("AH"),
         "the capacity of the flights' battery; without it, what flightwatt battery would say");
+    add("replay", "fly the missions' schedules on the power that the batch's flights measured (flightwatt replay)");
     add("max-battery-flights", cli::value("N")->default_value("12"),
         "identify the battery from no more than N flights: the work grows with their square");
     return cli::run_stage(argc, argv, stage, write_page);

@@ -120,6 +120,11 @@ void declare_files(const StageCall& call, const po::options_description& options
         }
     };
     visit(FileRole::input, [](const std::string& file, const std::string&) { note_input(file); });
+    for (const auto& option : options.options()) {
+        const bool names_files = dynamic_cast<const InputFilesValue*>(option->semantic().get()) != nullptr;
+        if (!names_files || !call.has(option->long_name())) continue;
+        for (const auto& file : call.get<std::vector<std::string>>(option->long_name())) note_input(file);
+    }
     visit(FileRole::output, [](const std::string& file, const std::string& name) {
         if (file != "-") declare_output(file, "--" + name);
     });

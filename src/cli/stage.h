@@ -32,6 +32,13 @@ class FileValue : public boost::program_options::typed_value<std::string> {
     FileRole role_;
 };
 
+/// An option that names a file to read and may be given several times.
+class InputFilesValue : public boost::program_options::typed_value<std::vector<std::string>> {
+  public:
+    explicit InputFilesValue(const char* name) : typed_value(nullptr) { value_name(name); }
+};
+
+inline InputFilesValue* input_files(const char* name) { return new InputFilesValue(name); }
 inline FileValue* input_file(const char* name) { return new FileValue(name, FileRole::input); }
 inline FileValue* output_file(const char* name) { return new FileValue(name, FileRole::output); }
 

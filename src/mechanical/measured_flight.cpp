@@ -1,5 +1,6 @@
 #include "mechanical/measured_flight.h"
 
+#include "base/piecewise_linear.h"
 #include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "mechanical/covariates.h"
@@ -55,6 +56,22 @@ std::vector<double> airspeed_cubed_parts(const flight::Track& airspeed, const fl
     return parts;
 }
 
+PhasePower power_over(const flight::Track& power, const flight::PhaseSpan& span, flight::PhaseStatistics statistics) {
+    PhasePower measured;
+    measured.statistics = statistics;
+    const double start_s = span.start.time_s;
+    const auto add = [&](double time_s, double power_w) {
+        measured.time_s.push_back(time_s);
+        measured.power_w.push_back(power_w);
+    };
+    add(0.0, interpolate_clamped(power.time_s, power.value, start_s));
+    auto i = static_cast<std::size_t>(std::ranges::upper_bound(power.time_s, start_s) - power.time_s.begin());
+    for (; i < power.time_s.size() && power.time_s[i] < span.end.time_s; ++i)
+        add(power.time_s[i] - start_s, power.value[i]);
+    add(span.duration_s(), interpolate_clamped(power.time_s, power.value, span.end.time_s));
+    return measured;
+}
+
 bool has_any_phase(const MeasuredFlight& flight) {
     return std::ranges::any_of(flight.samples.phases.values, [](const auto& samples) { return samples.has_value(); });
 }
@@ -82,6 +99,8 @@ MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight
             const double start_s = span.start.time_s;
             auto samples = samples_of(tracks["power_w"], span, flight.samples.flight);
             auto why = why_excluded(span);
+            const auto statistics = statistics_of_power.between(start_s, span.end.time_s);
+            if (why.empty()) flight.power[span.phase] = power_over(tracks["power_w"], span, statistics);
             if (why.empty()) why = why_too_few(samples, needed_samples);
             if (!why.empty()) {
                 measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(why)});
@@ -93,7 +112,6 @@ MeasuredFlights measure_flights(const flight::FlightSeries& series, const flight
                 samples.covariates = covariates_of(tracks, sortie);
                 samples.airspeed_cubed_parts = airspeed_cubed_parts(tracks["airspeed_m_per_s"], span);
             }
-            const auto statistics = statistics_of_power.between(start_s, span.end.time_s);
             flight.energy_wh[span.phase] = statistics.energy_wh;
             flight.counter_energy_wh[span.phase] = statistics.counter_energy_wh;
             flight.samples.phases[span.phase] = std::move(samples);

@@ -24,7 +24,7 @@ std::string flight_name_of_sortie(const std::string& flight, std::size_t sortie)
 
 /// What a fit or a validation takes from one log: the power samples of complete phases, each on its own
 /// normalised time, less those at its ends that have the power of the neighbouring phase (PhaseSamples::edge_samples),
-/// and their measured energy (phase_statistics; of all samples). Every sortie counts as a flight. Phases that
+/// and their measured energy (phase_statistics; of all samples). Their power itself is kept where the edges are known, too few samples or not. Every sortie counts as a flight. Phases that
 /// are incomplete, have fewer samples than needed, or begin or end in a gap longer than a quarter of them (so
 /// that their time is not known) are excluded, and reported.
 struct MeasuredFlights {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/phase_statistics.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/physical/motion_bins.h"
 #include "mechanical/prediction.h"
@@ -11,6 +12,14 @@
 
 namespace flightwatt::mechanical {
 
+/// The power measured over one phase, whatever is fitted of it: straight lines between the samples, as statistics and fit
+/// have them.
+struct PhasePower {
+    std::vector<double> time_s;  ///< since the phase began: rises from 0 to the phase's duration
+    std::vector<double> power_w;
+    flight::PhaseStatistics statistics;
+};
+
 /// One flight as the validation needs it: what may be fitted, and the measured truth of the same phases.
 struct MeasuredFlight {
     FlightSamples samples;
@@ -19,6 +28,7 @@ struct MeasuredFlight {
     std::optional<FlightProgress> flown;                        ///< only for a validation in flight
     FlightMotion motion = {};                                   ///< as it was flown
     std::vector<MotionBin> cruise_ahead = {};                   ///< of `motion`'s kind, from `flown` to the landing
+    flight::PerPhase<std::optional<PhasePower>> power = {};     ///< of its complete phases
 };
 
 /// What one model says of a flight that it has not seen.

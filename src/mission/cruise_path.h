@@ -10,9 +10,9 @@
 
 namespace flightwatt::mission {
 
-/// A part of the cruise with constant mechanical power.
+/// A part of a phase with constant mechanical power.
 struct PowerPiece {
-    double start_s = 0.0;  ///< since the cruise began; the first starts at 0, each other where the one before ends
+    double start_s = 0.0;  ///< since the phase began; the first starts at 0, each other where the one before ends
     double end_s = 0.0;
     double power_w = 0.0;
     double energy_before_j = 0.0;  ///< of all pieces before
@@ -41,10 +41,10 @@ double duration_s(const CruisePath& cruise);
 double energy_j(const CruisePath& cruise);
 double mean_power_w(const CruisePath& cruise);
 
-/// The piece at a time of the cruise; at a jump the one that starts. Times outside have the nearest.
+/// The piece at a time of the phase; at a jump the one that starts. Times outside have the nearest.
 const PowerPiece& piece_at(const PowerPieces& pieces, double time_s);
 
-/// The energy [J] from the start of the cruise to a time within it.
+/// The energy [J] from the start of the phase to a time within it.
 double energy_until_j(const PowerPieces& pieces, double time_s);
 
 /// One element of a path as it is flown: means over its time.

@@ -7,6 +7,7 @@
 #include "mission/schedule.h"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -50,8 +51,10 @@ struct MissionSetup {
     /// The cruise's mean power under the stated conditions, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
     std::optional<CruisePath> cruise_path = {};  ///< what the cruise's power is then, instead of the model's curve
-    PerPhase<double> duration_s;                 ///< 0: the phase is not flown
-    PerPhase<bool> duration_is_stated;           ///< by the mission, and not its model's: all flights take so long
+    /// Of a flight that was flown: the power of its phases as it was measured, instead of what model and path say.
+    PerPhase<std::shared_ptr<const PowerPieces>> measured = {};
+    PerPhase<double> duration_s;        ///< 0: the phase is not flown
+    PerPhase<bool> duration_is_stated;  ///< by the mission, and not its model's: all flights take so long
     battery::Battery battery;
     bool capacity_is_stated = false;  ///< by the mission, and not its battery's: all packs hold so much
     bool may_charge = false;          ///< power below 0 is meant, and charges the battery
@@ -77,9 +80,10 @@ struct ComponentChoices {
 
 /// How a mission's schedule may be planned.
 struct PlanSettings {
-    double slot_s = 10.0;                   ///< QoS may change at its multiples, counted from each phase's start
-    double dwell_s = 0.0;                   ///< a configuration once chosen stays at least so long
-    std::vector<ComponentChoices> choices;  ///< one a component
+    double slot_s = 10.0;                         ///< QoS may change at its multiples, counted from each phase's start
+    double dwell_s = 0.0;                         ///< a configuration once chosen stays at least so long
+    std::vector<ComponentChoices> choices;        ///< one a component
+    PerPhase<double> slot_part{{1.0, 1.0, 1.0}};  ///< of slot_s, where a phase takes another time than was planned
 };
 
 /// How a schedule is made in flight; mission/replanning/adaptive_flight.h says what the numbers do.

@@ -110,6 +110,8 @@ std::vector<Command> commands() {
           "fits/battery/synthetic-3s.toml", "fits/compute/tx2-detection.csv"},
          "--output"},
         {"compare", simulate, disturbed, "--output"},
+        {"replay", "a.data s.series.csv --model " + model + " --mission " + mission, flight_files + mission_files,
+         "--output"},
         {"synthesize",
          model + " --truth --flights 1 --cruise 60 --name x",
          {model},

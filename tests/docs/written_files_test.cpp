@@ -91,6 +91,8 @@ TEST(WrittenColumns, AreDocumented) {
     output_of("simulate", {phased, "--samples", "10", "--samples-csv", "samples.csv", "-o", "soc.csv"}, folder);
     expect_columns(folder / "soc.csv", "State of charge");
     expect_columns(folder / "samples.csv", "Sampled state of charge");
+    output_of("replay", logs() + Words{"--order", "1", "--mission", phased, "-o", "replay.csv"}, folder);
+    expect_columns(folder / "replay.csv", "Replayed schedules");
     output_of("path", {survey_path, "-o", "legs.csv"}, folder);
     expect_columns(folder / "legs.csv", "Legs of a path");
     output_of("profile", {"specification.toml", "-o", "profiles"}, folder);
@@ -202,6 +204,9 @@ TEST(WrittenKeys, OfMissionsAreDocumented) {
     expect_summary("plan", {phased, "--largest-payload"}, folder);
     expect_summary("plan", {survey_path, "--longest-cruise"}, folder);
     expect_summary("path", {survey_path, "-o", "legs.csv"}, folder);
+    expect_summary("replay",
+                   {log_file, "--model", published, "--mission", path_of("missions/paper/adaptive-replanned.toml")},
+                   folder);
 }
 
 TEST(WrittenKeys, OfAReportAreDocumented) {

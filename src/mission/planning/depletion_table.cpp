@@ -129,7 +129,7 @@ PhaseDepletion tabulate(PhaseLoad load, const PowerPieces& pieces) {
     double depleted = 0.0;
     for (const auto& [start_s, end_s, power_w, energy_before_j] : pieces) {
         load.mechanical = mechanical::FourierModel{0.0, power_w, {}, {}};
-        auto of_piece = tabulate(load, end_s - start_s);
+        auto of_piece = tabulate(load, end_s - start_s, 1);  // of constant power: exact
         depletion.deliverable = depletion.deliverable && of_piece.deliverable;
         depletion.error_percent += of_piece.error_percent;
         const double before = depleted;
@@ -180,8 +180,8 @@ DepletionTable make_depletion_table(const MissionSetup& mission, std::vector<com
             const PhaseLoad load{mission.battery, mission.cutoff_voltage_v, flown.mechanical[phase],
                                  power_w(mission.compute, table.configurations[c])};
             auto& depletion = table.depletions[c][phase];
-            depletion = phase == Phase::cruise && flown.cruise_pieces ? tabulate(load, *flown.cruise_pieces)
-                                                                      : tabulate(load, mission.duration_s[phase]);
+            depletion =
+                flown.pieces[phase] ? tabulate(load, *flown.pieces[phase]) : tabulate(load, mission.duration_s[phase]);
             table.error_percent = std::max(table.error_percent, depletion.error_percent);
             table.charges = table.charges || charges(depletion);
         }

@@ -23,7 +23,7 @@ struct PhaseDepletion {
     std::vector<Node> nodes;                       ///< cells + 1; empty for a phase that is not flown
     std::vector<std::size_t> undeliverable_cells;  ///< how many up to each node are beyond the power limit
     double error_percent = 0.0;  ///< the greatest seen halfway between nodes, and that of the quadrature
-    /// Of a cruise along a path, whose power jumps: one for each piece, instead of nodes.
+    /// Of a phase in pieces, whose power jumps: one for each piece, instead of nodes.
     struct Piece;
     std::vector<Piece> pieces;
 };

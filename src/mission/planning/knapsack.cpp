@@ -28,7 +28,8 @@ struct Search {
     CostToGo by_slope;
     CostToGo by_cost;  ///< minus the least cost to the end
     KnapsackPath best;
-    double bound = 0.0;  ///< of the relaxation, or better
+    KnapsackPath beyond;  ///< as good by the slope, and over the budget
+    double bound = 0.0;   ///< of the relaxation, or better
 };
 
 /// Rounding in sums of costs.
@@ -169,7 +170,8 @@ KnapsackPath path_by(const KnapsackGraph& graph, double utility_weight, double c
 /// Brings the relaxation's slope to where its bound is least: between a path that costs too much and one
 /// that does not, the slope of the line through both, until no path lies above that line.
 void relax(const KnapsackPath& greedy, Search& search) {
-    KnapsackPath beyond = greedy;
+    auto& beyond = search.beyond;
+    beyond = greedy;
     for (int round = 0; round < 100; ++round) {
         search.slope =
             std::max(0.0, (beyond.sum.utility - search.best.sum.utility) / (beyond.sum.cost - search.best.sum.cost));
@@ -180,6 +182,31 @@ void relax(const KnapsackPath& greedy, Search& search) {
         if (above(path) <= above(beyond) + 1e-12 * (1.0 + std::abs(above(beyond)))) return;
         (path.sum.cost <= search.budget ? search.best : beyond) = path;
     }
+}
+
+/// The best within the budget of the paths that begin as one of two and end as the other. Where all slots are alike, the
+/// relaxation jumps from one path to the other, and everything in between is as good by its slope: more than labels
+/// hold. Returns whether one is better than the best.
+bool cross(const MultipleChoiceKnapsack& problem, Search& search) {
+    const auto from = search.best;
+    const auto& to = search.beyond;
+    bool is_better = false;
+    for (const bool from_the_front : {true, false}) {
+        auto path = from;
+        for (std::size_t k = 0; k < path.choices.size(); ++k) {
+            const auto i = from_the_front ? k : path.choices.size() - 1 - k;
+            const auto& slot = problem.slots[i];
+            const auto before = path.choices[i];
+            const auto after = to.choices[i];
+            path.choices[i] = after;
+            path.sum.cost += slot.cost[after] - slot.cost[before];
+            path.sum.utility += (problem.utility_per_s[after] - problem.utility_per_s[before]) * slot.duration_s;
+            if (path.sum.cost > search.budget || path.sum.utility <= search.best.sum.utility) continue;
+            search.best = path;
+            is_better = true;
+        }
+    }
+    return is_better;
 }
 
 /// As many labels as the effort allows, and as time and memory do for many slots, choices or long runs.
@@ -197,7 +224,7 @@ std::size_t affordable_labels(const KnapsackGraph& graph, const KnapsackEffort& 
 KnapsackSolution solve_knapsack(const MultipleChoiceKnapsack& problem, const KnapsackEffort& effort) {
     const auto graph = make_knapsack_graph(problem);
     KnapsackSolution result;
-    Search search{graph, problem.budget, 0.0, {}, cost_to_go(graph, 0.0, 1.0), {}, 0.0};
+    Search search{graph, problem.budget, 0.0, {}, cost_to_go(graph, 0.0, 1.0), {}, {}, 0.0};
     const double least = search.by_cost.any.empty() ? 0.0
                          : graph.begin_choice == KnapsackGraph::no_choice
                              ? search.by_cost.any[graph.begin]
@@ -225,6 +252,9 @@ KnapsackSolution solve_knapsack(const MultipleChoiceKnapsack& problem, const Kna
         LabelPass(search, std::min(labels, most_labels), gap).run(search);
         if (labels >= most_labels) break;
     }
+    const double wanted = effort.relative_gap * std::max(std::abs(search.best.sum.utility), 1e-9);
+    if (problem.dwell_s == 0.0 && search.bound - search.best.sum.utility > wanted && cross(problem, search))
+        LabelPass(search, most_labels, wanted).run(search);
     return finish(search.best, true, search.bound);
 }
 

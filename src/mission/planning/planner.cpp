@@ -104,7 +104,10 @@ void add_free_slots(PhaseSegment free, double slot_s, double tolerance_s, std::v
 }
 
 void require_few_slots(const PlanningProblem& problem, double duration_s) {
-    if (duration_s / problem.plan.slot_s <= most_slots) return;
+    double slots = 0.0;
+    for (const auto phase : all_phases)
+        slots += problem.duration_s[phase] / (problem.plan.slot_s * problem.plan.slot_part[phase]);
+    if (slots <= most_slots) return;
     throw InputError({problem.file},
                      fmt::format("{:.6g} s in slots of {:.6g} s are more than {} slots", duration_s,
                                  problem.plan.slot_s, most_slots),
@@ -229,7 +232,8 @@ std::vector<MissionSlot> slots_of(const PlanningProblem& problem, double time_s)
         const double tolerance_s = same_time_tolerance_s(duration_s);
         double covered_s = std::max(0.0, time_s - timeline.start_s[phase]);
         const auto fill_until = [&](double until_s) {
-            add_free_slots({phase, covered_s, until_s}, problem.plan.slot_s, tolerance_s, slots);
+            add_free_slots({phase, covered_s, until_s}, problem.plan.slot_s * problem.plan.slot_part[phase],
+                           tolerance_s, slots);
         };
         for (const auto& segment : problem.fixed) {
             if (segment.phase != phase || segment.end_s <= covered_s + tolerance_s) continue;

@@ -104,10 +104,10 @@ MissionLoad load_of(const MissionSetup& mission) {
     MissionLoad load{mission, timeline_of(mission.duration_s), {}, {}};
     for (const auto phase : all_phases) {
         if (!mission.mechanical || mission.duration_s[phase] == 0.0) continue;
-        if (phase == Phase::cruise && mission.cruise_path) {
-            load.cruise_pieces = mission.cruise_path->pieces;
-            continue;
-        }
+        load.pieces[phase] = mission.measured[phase];
+        if (phase == Phase::cruise && mission.cruise_path && !load.pieces[phase])
+            load.pieces[phase] = mission.cruise_path->pieces;
+        if (load.pieces[phase]) continue;
         load.mechanical[phase] =
             flown_model(mission.mechanical->phases[phase], mission.duration_s[phase], mission.phase_clock);
     }
@@ -121,7 +121,7 @@ LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& schedul
     segment.start_s = segment.phase_start_s + scheduled.start_s;
     segment.end_s = segment.phase_start_s + scheduled.end_s;
     segment.mechanical = load.mechanical[scheduled.phase];
-    if (scheduled.phase == Phase::cruise) segment.pieces = load.cruise_pieces;
+    segment.pieces = load.pieces[scheduled.phase];
     segment.compute_w = power_w(load.mission.compute, scheduled.run);
     return segment;
 }

@@ -14,14 +14,14 @@ namespace flightwatt::mission {
 inline constexpr double lasting_tolerance_s = 1e-6;
 
 /// What a mission demands while one configuration runs: mechanical power, smooth but for the jumps between the pieces of
-/// a path, and constant computing. Times are those of the mission.
+/// a path or of a measured flight, and constant computing. Times are those of the mission.
 struct LoadSegment {
     Phase phase = Phase::takeoff;
     double phase_start_s = 0.0;
     double start_s = 0.0;
     double end_s = 0.0;
     std::optional<mechanical::FourierModel> mechanical;  ///< in the phase's own time
-    std::shared_ptr<const PowerPieces> pieces;           ///< of a path, instead: in the phase's own time too
+    std::shared_ptr<const PowerPieces> pieces;           ///< instead: in the phase's own time too
     double compute_w = 0.0;
     double soc_drop_percent = 0.0;  ///< [points] that the battery loses at once as this starts
 };
@@ -32,14 +32,14 @@ struct MissionLoad {
     MissionTimeline timeline;
     /// Of the phases that are flown, in their own time; none without a mechanical model.
     PerPhase<std::optional<mechanical::FourierModel>> mechanical;
-    std::shared_ptr<const PowerPieces> cruise_pieces = nullptr;  ///< of a path, instead of a curve
+    PerPhase<std::shared_ptr<const PowerPieces>> pieces = {};  ///< of a path or a measured flight, instead of a curve
 };
 
 MissionLoad load_of(const MissionSetup& mission);
-/// Of a path it may hold jumps, which smooth_parts parts.
+/// Of pieces it may hold jumps, which smooth_parts parts.
 LoadSegment load_segment(const MissionLoad& load, const ScheduleSegment& scheduled);
 
-/// A segment, parted where the pieces of a path meet: each of one constant power. Others are one part.
+/// A segment, parted where its pieces meet: each of one constant power. Others are one part.
 std::vector<LoadSegment> smooth_parts(const LoadSegment& segment);
 
 /// The load of a schedule in smooth parts, in order and without gaps: each starts exactly where the one before ends.

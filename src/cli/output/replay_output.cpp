@@ -1,0 +1,268 @@
+#include "cli/output/replay_output.h"
+
+#include "base/csv.h"
+#include "base/units.h"
+#include "cli/output/json_text.h"
+#include "cli/output/mission_output.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using mission::Replay;
+using mission::ReplayedSchedule;
+using mission::ReplayedWay;
+using mission::Verdict;
+using Replays = std::span<const Replay>;
+
+constexpr std::array baselines{ReplayedWay::planned, ReplayedWay::planned_with_margin};
+
+double total_s(const mission::PerPhase<double>& duration_s) {
+    return std::accumulate(duration_s.values.begin(), duration_s.values.end(), 0.0);
+}
+
+std::string model_text(const Replay& replay) {
+    switch (replay.model_saw_flight) {
+        case mission::ModelSawFlight::yes:
+            return fmt::format("{}, which saw this flight", replay.model);
+        case mission::ModelSawFlight::unknown:
+            return fmt::format("{}, which does not name its flights", replay.model);
+        case mission::ModelSawFlight::no:
+            break;
+    }
+    return fmt::format("{}, {} flight{}", replay.model, replay.model_flights.size(),
+                       replay.model_flights.size() == 1 ? "" : "s");
+}
+
+std::optional<double> undeliverable_at_s(const ReplayedSchedule& replayed) {
+    return replayed.summary.undeliverable ? std::optional(replayed.summary.undeliverable->time_s) : std::nullopt;
+}
+
+std::string how_it_ended(const ReplayedSchedule& replayed) {
+    const auto& summary = replayed.summary;
+    if (summary.undeliverable) return fmt::format("beyond power at {:.0f} s", summary.undeliverable->time_s);
+    if (summary.depleted_at_s) return fmt::format("empty at {:.0f} s", *summary.depleted_at_s);
+    if (summary.cut_off_at_s) return fmt::format("cut off at {:.0f} s", *summary.cut_off_at_s);
+    return summary.keeps_reserve ? "kept" : "below";
+}
+
+/// The way, and whether no plan was found to keep the reserve with.
+std::string way_text(const ReplayedSchedule& replayed) {
+    const bool is_hopeless = replayed.summary.schedule == mission::ScheduleOrigin::infeasible;
+    return mission::to_string(replayed.way) + (is_hopeless ? " (least energy)" : "");
+}
+
+std::vector<std::string> missions_of(Replays replays) {
+    std::vector<std::string> names;
+    for (const auto& replay : replays)
+        if (std::ranges::find(names, replay.mission) == names.end()) names.push_back(replay.mission);
+    return names;
+}
+
+std::string_view to_string(Verdict verdict) {
+    constexpr std::array<std::string_view, 3> names{"better", "tie", "worse"};
+    return names.at(static_cast<std::size_t>(verdict));
+}
+
+std::string baseline_words(ReplayedWay baseline) {
+    return baseline == ReplayedWay::planned ? "planning beforehand" : "planning beforehand with the policy's margin";
+}
+
+/// "F (kept, +0.12 utility, -1.30 points)".
+std::string case_text(const mission::Comparison& comparison) {
+    std::string reserve = "both keep the reserve";
+    if (comparison.replanned_keeps_reserve != comparison.baseline_keeps_reserve)
+        reserve = comparison.replanned_keeps_reserve ? "only replanning keeps the reserve"
+                                                     : "only the plan keeps the reserve";
+    else if (!comparison.replanned_keeps_reserve)
+        reserve = "neither keeps the reserve";
+    return fmt::format("{} ({}, utility {:+.4g}, final charge {})", comparison.flight, reserve, comparison.more_utility,
+                       comparison.more_soc_percent ? fmt::format("{:+.2f} points", *comparison.more_soc_percent) : "-");
+}
+
+std::string cases_text(const std::vector<mission::Comparison>& comparisons, Verdict verdict) {
+    std::vector<std::string> cases;
+    for (const auto& comparison : comparisons)
+        if (comparison.verdict == verdict) cases.push_back(case_text(comparison));
+    const auto what = verdict == Verdict::tie ? std::string("a tie") : std::string(to_string(verdict));
+    if (cases.empty()) return fmt::format("{} on none", what);
+    return fmt::format("{} on {}: {}", what, cases.size(), fmt::join(cases, ", "));
+}
+
+std::string sentence(const std::string& mission, ReplayedWay baseline,
+                     const std::vector<mission::Comparison>& comparisons) {
+    const auto flights = comparisons.size();
+    const auto count = [&](bool mission::Comparison::*keeps) {
+        return std::ranges::count_if(comparisons, [&](const auto& comparison) { return comparison.*keeps; });
+    };
+    double utility = 0.0;
+    double soc_percent = 0.0;
+    std::size_t charged = 0;
+    for (const auto& comparison : comparisons) {
+        utility += comparison.more_utility;
+        if (!comparison.more_soc_percent) continue;
+        soc_percent += *comparison.more_soc_percent;
+        ++charged;
+    }
+    auto text = fmt::format(
+        "{}: replanning in flight against {}, on {} flight{}: {}; {}; {}. It keeps the reserve on {} of {}, the plan "
+        "on {}; on average it has {:+.4g} of utility",
+        mission, baseline_words(baseline), flights, flights == 1 ? "" : "s", cases_text(comparisons, Verdict::better),
+        cases_text(comparisons, Verdict::tie), cases_text(comparisons, Verdict::worse),
+        count(&mission::Comparison::replanned_keeps_reserve), flights,
+        count(&mission::Comparison::baseline_keeps_reserve), utility / static_cast<double>(flights));
+    if (charged > 0)
+        text += fmt::format(" and leaves {:+.2f} points of charge", soc_percent / static_cast<double>(charged));
+    return text + ".";
+}
+
+nlohmann::ordered_json phases_json(const mission::PerPhase<double>& values) {
+    nlohmann::ordered_json json;
+    for (const auto phase : mission::all_phases) json[std::string(flight::to_string(phase))] = values[phase];
+    return json;
+}
+
+nlohmann::ordered_json schedule_json(const ReplayedSchedule& replayed) {
+    nlohmann::ordered_json json{{"way", mission::to_string(replayed.way)}};
+    auto summary = cli::to_json(replayed.summary);
+    summary.erase("mission");
+    json.update(summary);
+    json["undeliverable_at_s"] = optional_json(undeliverable_at_s(replayed));
+    json["expected_soc_percent"] = optional_json(replayed.expected_soc_percent);
+    json["regret"] = optional_json(replayed.regret);
+    return json;
+}
+
+nlohmann::ordered_json replay_json(const Replay& replay) {
+    constexpr std::array<std::string_view, 3> seen{"no", "yes", "unknown"};
+    nlohmann::ordered_json json{{"flight", replay.flight},
+                                {"mission", replay.mission},
+                                {"model", replay.model},
+                                {"model_flights", replay.model_flights},
+                                {"model_saw_flight", seen.at(static_cast<std::size_t>(replay.model_saw_flight))},
+                                {"planned_s", phases_json(replay.planned_s)},
+                                {"flown_s", phases_json(replay.flown_s)},
+                                {"expected_mechanical_wh", replay.expected_mechanical_wh},
+                                {"measured_mechanical_wh", replay.measured_mechanical_wh},
+                                {"counter_energy_wh", optional_json(replay.counter_energy_wh)},
+                                {"gaps", replay.gaps},
+                                {"longest_gap_s", replay.longest_gap_s},
+                                {"bound", replay.bound_is_proven ? optional_json(replay.bound) : nullptr},
+                                {"notes", replay.notes}};
+    json["schedules"] = nlohmann::ordered_json::array();
+    for (const auto& replayed : replay.schedules) json["schedules"].push_back(schedule_json(replayed));
+    return json;
+}
+
+nlohmann::ordered_json comparison_json(const std::string& mission, ReplayedWay baseline,
+                                       const std::vector<mission::Comparison>& comparisons) {
+    nlohmann::ordered_json json{{"mission", mission},
+                                {"baseline", mission::to_string(baseline)},
+                                {"sentence", sentence(mission, baseline, comparisons)}};
+    json["flights"] = nlohmann::ordered_json::array();
+    for (const auto& comparison : comparisons) {
+        json["flights"].push_back({{"flight", comparison.flight},
+                                   {"verdict", to_string(comparison.verdict)},
+                                   {"replanned_keeps_reserve", comparison.replanned_keeps_reserve},
+                                   {"baseline_keeps_reserve", comparison.baseline_keeps_reserve},
+                                   {"more_utility", comparison.more_utility},
+                                   {"more_soc_percent", optional_json(comparison.more_soc_percent)}});
+    }
+    return json;
+}
+
+}  // namespace
+
+TextTable replay_basis_table(Replays replays) {
+    TextTable table{{"flight", "mission", "model", "planned s", "flown s", "expected Wh", "measured Wh", "counter Wh",
+                     "gaps", "longest gap s", "bound"},
+                    {}};
+    for (const auto& replay : replays) {
+        table.rows.push_back({replay.flight, replay.mission, model_text(replay), fixed(total_s(replay.planned_s), 0),
+                              fixed(total_s(replay.flown_s), 0), fixed(replay.expected_mechanical_wh, 3),
+                              fixed(replay.measured_mechanical_wh, 3), fixed(replay.counter_energy_wh, 3),
+                              std::to_string(replay.gaps), fixed(replay.longest_gap_s, 1),
+                              fixed(replay.bound_is_proven ? replay.bound : std::nullopt, 4)});
+    }
+    return table;
+}
+
+TextTable replay_table(Replays replays) {
+    TextTable table{{"flight", "mission", "schedule", "expected SoC %", "final SoC %", "reserve %", "reserve",
+                     "utility", "regret", "computing Wh"},
+                    {}};
+    for (const auto& replay : replays) {
+        for (const auto& replayed : replay.schedules) {
+            const auto& summary = replayed.summary;
+            table.rows.push_back(
+                {replay.flight, replay.mission, way_text(replayed), fixed(replayed.expected_soc_percent, 2),
+                 fixed(summary.final_soc_percent, 2), fixed(summary.reserve_soc_percent, 2), how_it_ended(replayed),
+                 fixed(summary.utility, 4), fixed(replayed.regret, 4), fixed(summary.compute_energy_wh, 3)});
+        }
+    }
+    return table;
+}
+
+std::vector<std::string> replay_sentences(Replays replays) {
+    std::vector<std::string> sentences;
+    for (const auto& name : missions_of(replays)) {
+        for (const auto baseline : baselines) {
+            const auto comparisons = compare_replanned(replays, name, baseline);
+            if (!comparisons.empty()) sentences.push_back(sentence(name, baseline, comparisons));
+        }
+    }
+    return sentences;
+}
+
+std::string replay_remark() {
+    return "The power is what the aircraft measured, autopilot and radios included; battery, computing power and its "
+           "utility are the missions' own and were not aboard.";
+}
+
+std::string replay_text(Replays replays) {
+    auto text = to_text(replay_basis_table(replays)) + "\n" + to_text(replay_table(replays)) + "\n";
+    for (const auto& sentence : replay_sentences(replays)) text += sentence + "\n";
+    return text + replay_remark() + "\n";
+}
+
+std::string replay_csv(Replays replays) {
+    constexpr int digits = 10;
+    CsvWriter csv({"flight", "mission", "schedule", "reserve_soc_percent", "keeps_reserve", "expected_soc_percent",
+                   "final_soc_percent", "utility", "regret", "bound", "depleted_at_s", "cut_off_at_s",
+                   "undeliverable_at_s", "mechanical_energy_wh", "compute_energy_wh", "duration_s"},
+                  digits);
+    for (const auto& replay : replays) {
+        for (const auto& replayed : replay.schedules) {
+            const auto& summary = replayed.summary;
+            csv.add(replay.flight, replay.mission, mission::to_string(replayed.way), summary.reserve_soc_percent,
+                    summary.keeps_reserve ? "true" : "false", replayed.expected_soc_percent, summary.final_soc_percent,
+                    summary.utility, replayed.regret, replay.bound_is_proven ? replay.bound : std::nullopt,
+                    summary.depleted_at_s, summary.cut_off_at_s, undeliverable_at_s(replayed),
+                    summary.mechanical_energy_wh, summary.compute_energy_wh, summary.duration_s);
+        }
+    }
+    return csv.text();
+}
+
+nlohmann::ordered_json to_json(const mission::Replays& replays) {
+    nlohmann::ordered_json json{{"replays", nlohmann::ordered_json::array()},
+                                {"comparisons", nlohmann::ordered_json::array()},
+                                {"not_replayed", nlohmann::ordered_json::array()}};
+    for (const auto& replay : replays.replays) json["replays"].push_back(replay_json(replay));
+    for (const auto& name : missions_of(replays.replays)) {
+        for (const auto baseline : baselines) {
+            const auto comparisons = compare_replanned(replays.replays, name, baseline);
+            if (!comparisons.empty()) json["comparisons"].push_back(comparison_json(name, baseline, comparisons));
+        }
+    }
+    for (const auto& left : replays.not_replayed)
+        json["not_replayed"].push_back({{"flight", left.flight}, {"mission", left.mission}, {"reason", left.reason}});
+    return json;
+}
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,61 @@
+#include "mission/replanning/flown_mission.h"
+
+#include <algorithm>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double shortest_piece_s = 1.0;  // as long as the coarse steps of flights that are flown by the thousand
+
+}  // namespace
+
+PowerPieces power_pieces(const mechanical::PhasePower& measured) {
+    const auto& time_s = measured.time_s;
+    const auto& power_w = measured.power_w;
+    PowerPieces pieces;
+    double energy_j = 0.0;  // of the piece that is being made
+    double start_s = 0.0;
+    double before_j = 0.0;
+    for (std::size_t i = 1; i < time_s.size(); ++i) {
+        energy_j += (power_w[i - 1] + power_w[i]) / 2.0 * (time_s[i] - time_s[i - 1]);
+        const double length_s = time_s[i] - start_s;
+        if (length_s <= 0.0 || (length_s < shortest_piece_s && i + 1 < time_s.size())) continue;
+        const double mean_w = std::max(0.0, energy_j / length_s);
+        pieces.push_back({start_s, time_s[i], mean_w, before_j});
+        before_j += mean_w * length_s;
+        start_s = time_s[i];
+        energy_j = 0.0;
+    }
+    return pieces;
+}
+
+MissionSetup known_mission(const MissionSetup& stated, const mechanical::MechanicalModel& model,
+                           const std::optional<PerPhase<double>>& flown_s) {
+    auto known = stated;
+    known.mechanical = model;
+    known.cruise_level.reset();
+    known.cruise_path.reset();
+    for (const auto phase : all_phases) {
+        if (stated.duration_s[phase] == 0.0) continue;
+        if (flown_s) {
+            known.duration_s[phase] = (*flown_s)[phase];
+            known.duration_is_stated[phase] = true;
+        } else if (!stated.duration_is_stated[phase]) {
+            known.duration_s[phase] = model.phases[phase].duration_s;
+        }
+    }
+    return known;
+}
+
+MissionSetup flown_mission(const MissionSetup& known, const mechanical::MeasuredFlight& flight) {
+    auto flown = known;
+    for (const auto phase : all_phases) {
+        if (known.duration_s[phase] == 0.0) continue;
+        const auto& power = flight.power[phase].value();
+        flown.measured[phase] = std::make_shared<const PowerPieces>(power_pieces(power));
+        flown.duration_s[phase] = power.time_s.back();
+    }
+    return flown;
+}
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,375 @@
+#include "mission/replay.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "mission/plan.h"
+#include "mission/replanning/adaptive_flight.h"
+#include "mission/replanning/flown_mission.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+/// One mission on one flight: as it is known before, and as it was.
+struct Folded {
+    MissionSetup known;
+    MissionSetup actual;
+};
+
+std::vector<std::string> flights_of(const mechanical::MechanicalModel& model) {
+    std::vector<std::string> names;
+    for (const auto& contribution : model.flights) names.push_back(contribution.flight);
+    return names;
+}
+
+ModelSawFlight saw(const std::vector<std::string>& model_flights, const std::string& flight) {
+    if (model_flights.empty()) return ModelSawFlight::unknown;
+    return std::ranges::count(model_flights, flight) > 0 ? ModelSawFlight::yes : ModelSawFlight::no;
+}
+
+/// Why a mission cannot be flown on a flight; empty if it can.
+std::string why_not(const MissionSetup& mission, const mechanical::MeasuredFlight& flight) {
+    for (const auto phase : all_phases) {
+        if (mission.duration_s[phase] == 0.0 || flight.power[phase]) continue;
+        return fmt::format("the power of its {} was not measured from end to end", to_string(phase));
+    }
+    return "";
+}
+
+void note_what_differs(const MissionSetup& mission, const mechanical::MeasuredFlight& flight, Replay& replay) {
+    if (mission.cruise_path)
+        replay.notes.emplace_back(
+            "the mission's path is not flown: its duration is planned for, with the model's cruise");
+    else if (mission.cruise_level)
+        replay.notes.emplace_back("the mission's conditions are not used: the model's cruise is as it was fitted");
+    for (const auto phase : all_phases) {
+        if (mission.duration_s[phase] > 0.0 || !flight.power[phase]) continue;
+        replay.notes.push_back(fmt::format("the mission has no {}: that of the flight is left out", to_string(phase)));
+    }
+}
+
+/// Energies, durations and gaps of what is flown.
+void describe_flight(const Folded& folded, const mechanical::MeasuredFlight& flight, Replay& replay) {
+    replay.planned_s = folded.known.duration_s;
+    replay.flown_s = folded.actual.duration_s;
+    replay.counter_energy_wh = 0.0;
+    double measured_wh = 0.0;
+    for (const auto phase : all_phases) {
+        const double planned_s = folded.known.duration_s[phase];
+        if (planned_s == 0.0) continue;
+        const auto curve = flown_model(folded.known.mechanical->phases[phase], planned_s, folded.known.phase_clock);
+        replay.expected_mechanical_wh += units::wh_from_joule(energy_j(curve, planned_s));
+        const auto& pieces = *folded.actual.measured[phase];
+        replay.measured_mechanical_wh += units::wh_from_joule(energy_until_j(pieces, pieces.back().end_s));
+        const auto& statistics = flight.power[phase]->statistics;
+        measured_wh += statistics.energy_wh;
+        replay.gaps += statistics.gaps;
+        replay.longest_gap_s = std::max(replay.longest_gap_s, statistics.longest_gap_s);
+        if (statistics.counter_energy_wh && replay.counter_energy_wh)
+            *replay.counter_energy_wh += *statistics.counter_energy_wh;
+        else
+            replay.counter_energy_wh.reset();
+    }
+    constexpr double shown_wh = 5e-4;
+    if (const double added_wh = replay.measured_mechanical_wh - measured_wh; added_wh > shown_wh)
+        replay.notes.push_back(fmt::format("power measured below 0 counts as 0, which adds {:.3f} Wh", added_wh));
+}
+
+/// A schedule that was made beforehand, flown.
+ReplayedSchedule flown_schedule(const Folded& folded, ReplayedWay way, const Schedule& schedule,
+                                ScheduleOrigin origin) {
+    ReplayedSchedule replayed;
+    replayed.way = way;
+    replayed.expected_soc_percent = simulate(folded.known, schedule).summary.final_soc_percent;
+    replayed.schedule = rescale_to_flown_durations(schedule, folded.known.duration_s, folded.actual.duration_s);
+    replayed.summary = simulate(folded.actual, replayed.schedule).summary;
+    replayed.summary.schedule = origin;
+    return replayed;
+}
+
+ReplayedSchedule planned_before(const Folded& folded, const PlanningProblem& problem, ReplayedWay way,
+                                const std::optional<double>& probability = std::nullopt) {
+    const auto plan = plan_mission(problem, probability);
+    return flown_schedule(folded, way, plan.flown.schedule, labelled_summary(plan).schedule);
+}
+
+/// The best configuration that, run wherever nothing is fixed, keeps the reserve; else the one of least power.
+ReplayedSchedule invariant(const Folded& folded, const PlanningProblem& problem, const Planner& planner) {
+    const auto slots = slots_of(problem);
+    const auto schedule_with = [&](std::size_t choice) {
+        Schedule schedule;
+        for (const auto& slot : slots)
+            append_merged(schedule, {slot, slot.fixed.value_or(planner.depletions.configurations[choice])});
+        return schedule;
+    };
+    // By rising power, all the way: where one does not keep the reserve, none behind it does.
+    std::size_t best = 0;
+    bool any = false;
+    std::size_t low = 0;
+    std::size_t high = planner.free_choices;
+    while (low < high) {
+        const auto middle = low + (high - low) / 2;
+        const bool keeps = simulate(folded.known, schedule_with(middle)).summary.keeps_reserve;
+        any = any || keeps;
+        (keeps ? low : high) = keeps ? middle + 1 : middle;
+    }
+    for (std::size_t choice = 0; choice < low; ++choice)
+        if (planner.utility_per_s[choice] > planner.utility_per_s[best]) best = choice;
+    return flown_schedule(folded, ReplayedWay::invariant, schedule_with(best),
+                          any ? ScheduleOrigin::planned : ScheduleOrigin::infeasible);
+}
+
+ReplayedSchedule phased(const Folded& folded, PlanningProblem problem) {
+    problem.plan.slot_s = std::ranges::max(problem.duration_s.values);
+    problem.plan.dwell_s = 0.0;
+    return planned_before(folded, problem, ReplayedWay::phased);
+}
+
+ReplayedSchedule replanned(const Folded& folded, const AdaptivePlanner& planner) {
+    ReplayedSchedule replayed;
+    replayed.way = ReplayedWay::replanned;
+    auto flight = fly_adaptively(planner, folded.actual, {});
+    replayed.schedule = std::move(flight.schedule);
+    replayed.summary = simulate(folded.actual, replayed.schedule).summary;
+    replayed.summary.schedule = ScheduleOrigin::replanned;
+    replayed.summary.decisions = flight.decisions;
+    return replayed;
+}
+
+/// The best that is known afterwards: the plan by the measured power, or one of the schedules if that is better still
+/// (it may change between the plan's slots).
+void add_hindsight(const Folded& folded, PlanningProblem problem, Replay& replay) {
+    for (const auto phase : all_phases) {
+        if (folded.known.duration_s[phase] == 0.0) continue;
+        problem.plan.slot_part[phase] *= folded.actual.duration_s[phase] / folded.known.duration_s[phase];
+    }
+    problem.fixed =
+        rescale_to_flown_durations(std::move(problem.fixed), folded.known.duration_s, folded.actual.duration_s);
+    static_cast<MissionSetup&>(problem) = folded.actual;
+    const auto plan = plan_mission(problem);
+    ReplayedSchedule best;
+    best.way = ReplayedWay::hindsight;
+    best.schedule = plan.flown.schedule;
+    best.summary = labelled_summary(plan);
+    for (const auto& other : replay.schedules) {
+        if (!other.summary.keeps_reserve) continue;
+        if (best.summary.keeps_reserve && *other.summary.utility <= *best.summary.utility) continue;
+        best.schedule = other.schedule;
+        best.summary = other.summary;
+        best.summary.decisions.reset();
+        best.summary.schedule = ScheduleOrigin::planned;
+    }
+    if (plan.plan.feasible) {
+        replay.bound = plan.plan.bound;
+        replay.bound_is_proven = plan.plan.bound_is_proven;
+    }
+    if (best.summary.keeps_reserve) {
+        for (auto& other : replay.schedules)
+            if (other.summary.keeps_reserve) other.regret = *best.summary.utility - *other.summary.utility;
+        best.regret = 0.0;
+    }
+    replay.schedules.push_back(std::move(best));
+}
+
+/// What may be chosen in hindsight where the mission does not say so: what was profiled, and what its schedule runs.
+PlanningProblem choices_in_hindsight(const Mission& mission, const MissionSetup& known) {
+    PlanningProblem problem{known, {}, {}, std::nullopt};
+    for (const auto& component : mission.compute.components) problem.plan.choices.push_back({component.profile.axes});
+    auto& choices = problem.plan.choices;
+    for (const auto& run : configurations_of(mission.schedule)) {
+        for (std::size_t c = 0; c < choices.size(); ++c) {
+            const auto running = std::ranges::find(run, c, &compute::RunningComponent::component);
+            if (running == run.end()) {
+                choices[c].may_be_off = true;
+                continue;
+            }
+            for (std::size_t i = 0; i < running->qos.size(); ++i) {
+                auto& levels = choices[c].levels[i];
+                if (std::ranges::count(levels, running->qos[i]) == 0) levels.push_back(running->qos[i]);
+            }
+        }
+    }
+    return problem;
+}
+
+bool has_utility(const MissionSetup& mission) {
+    return std::ranges::any_of(mission.utilities, [](const auto& utility) { return utility.has_value(); });
+}
+
+void replay_given(const Mission& mission, const Folded& folded, Replay& replay) {
+    const auto known = rescale_to_flown_durations(mission.schedule, mission.duration_s, folded.known.duration_s);
+    replay.schedules.push_back(flown_schedule(folded, ReplayedWay::given, known, ScheduleOrigin::given));
+    if (has_utility(mission))
+        add_hindsight(folded, choices_in_hindsight(mission, folded.known), replay);
+    else
+        replay.notes.emplace_back("the mission states no utility: hindsight has nothing to choose by");
+}
+
+void replay_planned(const PlanningProblem& stated, const Folded& folded, Replay& replay) {
+    auto problem = stated;
+    static_cast<MissionSetup&>(problem) = folded.known;
+    problem.fixed = rescale_to_flown_durations(std::move(problem.fixed), stated.duration_s, folded.known.duration_s);
+    if (!problem.adaptive) {
+        problem.adaptive.emplace();
+        problem.adaptive->decide_every_s = problem.plan.slot_s;
+    }
+    const auto planner = make_adaptive_planner(problem);
+    auto& schedules = replay.schedules;
+    schedules.push_back(invariant(folded, problem, planner.planner));
+    schedules.push_back(phased(folded, problem));
+    schedules.push_back(planned_before(folded, problem, ReplayedWay::planned));
+    try {
+        require_known_spread(problem);
+        schedules.push_back(
+            planned_before(folded, problem, ReplayedWay::planned_with_margin, problem.adaptive->probability));
+    } catch (const InputError& error) {
+        replay.notes.push_back(fmt::format("no plan with a margin: {}", error.what()));
+    }
+    schedules.push_back(replanned(folded, planner));
+    add_hindsight(folded, problem, replay);
+}
+
+/// The model that a flight's schedules are made with.
+mechanical::MechanicalModel model_for(const mechanical::MeasuredFlight& flight,
+                                      std::span<const mechanical::MeasuredFlight> flights,
+                                      const ReplayOptions& options) {
+    if (options.model) return *options.model;
+    std::vector<mechanical::FlightSamples> others;
+    for (const auto& other : flights)
+        if (&other != &flight) others.push_back(other.samples);
+    auto fit = options.fit;
+    fit.name = "fitted to the other flights";
+    return fit_model(others, fit).model;
+}
+
+void require_flights(std::span<const mechanical::MeasuredFlight> flights, const ReplayOptions& options) {
+    if (flights.size() < 2 && !options.model) {
+        throw NoAnswerError(fmt::format("{} flight{}: a model of the other flights needs 2 or more; or give a model",
+                                        flights.size(), flights.size() == 1 ? "" : "s"));
+    }
+    std::set<std::string> names;
+    for (const auto& flight : flights) {
+        if (names.insert(flight.samples.flight).second) continue;
+        throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
+    }
+}
+
+/// Throws InputError for a mission that cannot be replayed whatever the flight.
+void require_flies(const MissionSetup& mission) {
+    if (mission.mechanical) return;
+    throw InputError({mission.file}, "nothing flies in this mission: there is no power to measure for it",
+                     "replay a mission with a mechanical model, or `flightwatt simulate` this one");
+}
+
+Replay replay_one(const AnyMission& mission, const mechanical::MeasuredFlight& flight,
+                  const mechanical::MechanicalModel& model, const ReplayOptions& options) {
+    const auto& stated = setup_of(mission);
+    PerPhase<double> flown_s;
+    for (const auto phase : all_phases)
+        if (flight.power[phase]) flown_s[phase] = flight.power[phase]->time_s.back();
+    auto known = known_mission(stated, model, options.durations_are_known ? std::optional(flown_s) : std::nullopt);
+    auto actual = flown_mission(known, flight);
+    const Folded folded{std::move(known), std::move(actual)};
+    Replay replay;
+    replay.flight = flight.samples.flight;
+    replay.mission = stated.name;
+    replay.model = model.name;
+    replay.model_flights = flights_of(model);
+    replay.model_saw_flight = saw(replay.model_flights, replay.flight);
+    note_what_differs(stated, flight, replay);
+    describe_flight(folded, flight, replay);
+    if (const auto* scheduled = std::get_if<Mission>(&mission))
+        replay_given(*scheduled, folded, replay);
+    else
+        replay_planned(std::get<PlanningProblem>(mission), folded, replay);
+    return replay;
+}
+
+const ReplayedSchedule* schedule_by(const Replay& replay, ReplayedWay way) {
+    const auto found = std::ranges::find(replay.schedules, way, &ReplayedSchedule::way);
+    return found == replay.schedules.end() ? nullptr : &*found;
+}
+
+Verdict verdict_of(const MissionSummary& ours, const MissionSummary& theirs) {
+    if (ours.keeps_reserve != theirs.keeps_reserve) return ours.keeps_reserve ? Verdict::better : Verdict::worse;
+    double more = 0.0;
+    double rounding = 0.0;
+    if (ours.keeps_reserve) {
+        more = ours.utility.value_or(0.0) - theirs.utility.value_or(0.0);
+        rounding = tie_part * std::max(ours.utility.value_or(0.0), theirs.utility.value_or(0.0));
+    } else if (ours.feasible && theirs.feasible) {
+        more = *ours.final_soc_percent - *theirs.final_soc_percent;
+        rounding = 1e-6;
+    } else {
+        more = powered_until_s(ours) - powered_until_s(theirs);
+        rounding = 1e-3;
+    }
+    if (std::abs(more) <= rounding) return Verdict::tie;
+    return more > 0.0 ? Verdict::better : Verdict::worse;
+}
+
+}  // namespace
+
+std::string to_string(ReplayedWay way) {
+    constexpr std::array names{"given",     "invariant", "phased", "planned", "planned_with_margin",
+                               "replanned", "hindsight"};
+    return names.at(static_cast<std::size_t>(way));
+}
+
+Replays replay_flights(std::span<const AnyMission> missions, std::span<const mechanical::MeasuredFlight> flights,
+                       const ReplayOptions& options) {
+    require_flights(flights, options);
+    for (const auto& mission : missions) require_flies(setup_of(mission));
+    std::vector<std::optional<mechanical::MechanicalModel>> models(flights.size());
+    std::vector<std::string> why_no_model(flights.size());
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        try {
+            models[i] = model_for(flights[i], flights, options);
+        } catch (const NoAnswerError& error) {
+            why_no_model[i] = fmt::format("there is no model of the other flights: {}", error.what());
+        }
+    }
+    Replays result;
+    for (const auto& mission : missions) {
+        const auto& setup = setup_of(mission);
+        for (std::size_t i = 0; i < flights.size(); ++i) {
+            auto reason = models[i] ? why_not(setup, flights[i]) : why_no_model[i];
+            if (!reason.empty())
+                result.not_replayed.push_back({flights[i].samples.flight, setup.name, std::move(reason)});
+            else
+                result.replays.push_back(replay_one(mission, flights[i], *models[i], options));
+        }
+    }
+    return result;
+}
+
+std::vector<Comparison> compare_replanned(std::span<const Replay> replays, const std::string& mission,
+                                          ReplayedWay baseline) {
+    std::vector<Comparison> comparisons;
+    for (const auto& replay : replays) {
+        if (replay.mission != mission) continue;
+        const auto* replanned = schedule_by(replay, ReplayedWay::replanned);
+        const auto* other = schedule_by(replay, baseline);
+        if (!replanned || !other) continue;
+        const auto& ours = replanned->summary;
+        const auto& theirs = other->summary;
+        Comparison comparison{replay.flight,
+                              verdict_of(ours, theirs),
+                              ours.keeps_reserve,
+                              theirs.keeps_reserve,
+                              ours.utility.value_or(0.0) - theirs.utility.value_or(0.0),
+                              std::nullopt};
+        if (ours.final_soc_percent && theirs.final_soc_percent)
+            comparison.more_soc_percent = *ours.final_soc_percent - *theirs.final_soc_percent;
+        comparisons.push_back(std::move(comparison));
+    }
+    return comparisons;
+}
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "mission/replay.h"
+#include "report/html.h"
+
+#include <span>
+
+namespace flightwatt::report {
+
+/// What the missions' schedules came to on the flights' measured power: tables, sentences, and a figure a mission that is
+/// yet to be planned. `replays` is not empty.
+Section replay_section(std::span<const mission::Replay> replays);
+
+}  // namespace flightwatt::report

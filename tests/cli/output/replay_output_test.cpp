@@ -1,0 +1,98 @@
+#include "cli/output/replay_output.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using mission::ReplayedWay;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+mission::ReplayedSchedule ended(ReplayedWay way, double soc_percent, double utility) {
+    mission::ReplayedSchedule schedule;
+    schedule.way = way;
+    schedule.summary.final_soc_percent = soc_percent;
+    schedule.summary.utility = utility;
+    schedule.summary.feasible = true;
+    schedule.summary.duration_s = 600.0;
+    schedule.summary.reserve_soc_percent = 20.0;
+    schedule.summary.keeps_reserve = soc_percent >= 20.0;
+    return schedule;
+}
+
+mission::ReplayedSchedule emptied(ReplayedWay way, double at_s) {
+    auto schedule = ended(way, 0.0, 10.0);
+    schedule.summary.feasible = false;
+    schedule.summary.depleted_at_s = at_s;
+    return schedule;
+}
+
+mission::Replay replay_of(const std::string& flight, mission::ReplayedSchedule planned,
+                          mission::ReplayedSchedule replanned) {
+    mission::Replay replay;
+    replay.flight = flight;
+    replay.mission = "survey";
+    replay.model = "others";
+    replay.model_flights = {"x"};
+    replay.schedules = {std::move(planned), std::move(replanned)};
+    return replay;
+}
+
+std::vector<mission::Replay> all_cases() {
+    constexpr auto planned = ReplayedWay::planned;
+    constexpr auto replanned = ReplayedWay::replanned;
+    return {replay_of("saved", ended(planned, 12.0, 30.0), ended(replanned, 20.5, 27.0)),
+            replay_of("spent", ended(planned, 30.0, 20.0), ended(replanned, 21.0, 24.0)),
+            replay_of("tied", ended(planned, 20.2, 25.0), ended(replanned, 20.4, 24.99)),
+            replay_of("hoarded", ended(planned, 20.0, 25.0), ended(replanned, 22.0, 24.0)),
+            replay_of("lost", ended(planned, 20.0, 25.0), ended(replanned, 19.0, 26.0)),
+            replay_of("hopeless", emptied(planned, 500.0), emptied(replanned, 550.0))};
+}
+
+TEST(ReplaySentences, NameTheCasesInWhichItWasAndWasNot) {
+    const auto sentences = replay_sentences(all_cases());
+    ASSERT_EQ(sentences.size(), 1U) << "there is no plan with a margin";
+    EXPECT_THAT(
+        sentences[0],
+        AllOf(HasSubstr("survey: replanning in flight against planning beforehand, on 6 flights: better on 3: saved"),
+              HasSubstr("saved (only replanning keeps the reserve, utility -3, final charge +8.50 points)"),
+              HasSubstr("hopeless (neither keeps the reserve"), HasSubstr("a tie on 1: tied (both keep the reserve"),
+              HasSubstr("worse on 2: hoarded (both keep the reserve, utility -1"),
+              HasSubstr("lost (only the plan keeps the reserve"),
+              HasSubstr("keeps the reserve on 4 of 6, the plan on 4")));
+}
+
+TEST(ReplaySentences, SayOfNoneThatThereIsNone) {
+    const std::vector replays{all_cases()[1]};
+    EXPECT_THAT(replay_sentences(replays),
+                ElementsAre(AllOf(HasSubstr("on 1 flight: better on 1"), HasSubstr("a tie on none; worse on none"))));
+}
+
+TEST(ReplayCsv, LeavesEmptyWhatIsNot) {
+    const std::vector replays{all_cases()[5]};
+    EXPECT_THAT(replay_csv(replays), HasSubstr("\nhopeless,survey,planned,20,false,,0,10,,,500,,,0,0,600\n"));
+}
+
+TEST(ReplayTable, TellsWhereASchedulesBatteryEnded) {
+    const auto table = replay_table(all_cases());
+    ASSERT_EQ(table.rows.size(), 12U);
+    EXPECT_EQ(table.rows[0][6], "below");
+    EXPECT_EQ(table.rows[1][6], "kept");
+    EXPECT_EQ(table.rows[10][6], "empty at 500 s");
+}
+
+TEST(ReplayBasis, SaysWhatTheModelSaw) {
+    auto replay = all_cases()[0];
+    const auto model_cell = [&] { return replay_basis_table(std::vector{replay}).rows[0][2]; };
+    EXPECT_EQ(model_cell(), "others, 1 flight");
+    replay.model_saw_flight = mission::ModelSawFlight::yes;
+    EXPECT_EQ(model_cell(), "others, which saw this flight");
+    replay.model_saw_flight = mission::ModelSawFlight::unknown;
+    EXPECT_EQ(model_cell(), "others, which does not name its flights");
+}
+
+}  // namespace
+}  // namespace flightwatt::cli

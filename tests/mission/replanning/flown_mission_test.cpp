@@ -1,0 +1,59 @@
+#include "mission/replanning/flown_mission.h"
+
+#include "helpers/replayed_flights.h"
+#include "helpers/steady_mission.h"
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mission {
+namespace {
+
+TEST(PowerPieces, HaveTheEnergyBetweenTheirSamples) {
+    mechanical::PhasePower measured;
+    measured.time_s = {0.0, 2.0, 5.0, 27.0, 27.4, 27.8, 28.6, 29.0};  // with a gap of 22 s, and faster at the end
+    measured.power_w = {10.0, 20.0, 30.0, 20.0, 10.0, 10.0, 20.0, 40.0};
+    const auto pieces = power_pieces(measured);
+    ASSERT_EQ(pieces.size(), 5U);
+    EXPECT_EQ(pieces[0].power_w, 15.0);
+    EXPECT_EQ(pieces[1].power_w, 25.0);
+    EXPECT_EQ(pieces[2].power_w, 25.0) << "a straight line over the gap";
+    EXPECT_EQ(pieces[3].end_s, 28.6) << "as many samples as make a second";
+    EXPECT_EQ(pieces[4].end_s, 29.0);
+    EXPECT_NEAR(pieces[3].power_w * 1.6, 6.0 + 4.0 + 12.0, 1e-9);
+    EXPECT_NEAR(energy_until_j(pieces, 29.0), 30.0 + 75.0 + 550.0 + 22.0 + 12.0, 1e-9);
+    EXPECT_NEAR(energy_until_j(pieces, 5.0), 105.0, 1e-9);
+}
+
+TEST(PowerPieces, GiveNothingBack) {
+    const auto pieces = power_pieces({{0.0, 10.0, 20.0}, {-4.0, -4.0, 24.0}, {}});
+    EXPECT_EQ(pieces[0].power_w, 0.0);
+    EXPECT_EQ(pieces[1].power_w, 10.0);
+    EXPECT_EQ(energy_until_j(pieces, 20.0), 100.0);
+}
+
+TEST(KnownMission, TakesTheModelAndWhatTheMissionStates) {
+    auto stated = static_cast<MissionSetup>(test::steady_mission());
+    auto model = *stated.mechanical;
+    model.phases[Phase::cruise].duration_s = 700.0;
+    model.phases[Phase::landing].duration_s = 60.0;
+    EXPECT_EQ(known_mission(stated, model, std::nullopt).duration_s[Phase::cruise], 700.0);
+    EXPECT_EQ(known_mission(stated, model, std::nullopt).duration_s[Phase::landing], 0.0) << "it has none";
+    const PerPhase<double> flown_s{{1.0, 2.0, 3.0}};
+    EXPECT_EQ(known_mission(stated, model, flown_s).duration_s[Phase::cruise], 2.0);
+    EXPECT_EQ(known_mission(stated, model, flown_s).duration_s[Phase::takeoff], 0.0);
+    stated.duration_is_stated[Phase::cruise] = true;
+    EXPECT_EQ(known_mission(stated, model, std::nullopt).duration_s[Phase::cruise], 1000.0);
+}
+
+TEST(FlownMission, HasPowerAndDurationsOfTheFlight) {
+    const auto known = static_cast<MissionSetup>(test::steady_mission());
+    const auto flight = test::flight_with_power("f", {{10.0, 500.0, 10.0}}, [](auto, double) { return 30.0; });
+    const auto flown = flown_mission(known, flight);
+    EXPECT_EQ(flown.duration_s[Phase::cruise], 500.0);
+    EXPECT_EQ(flown.duration_s[Phase::takeoff], 0.0) << "the mission has none";
+    EXPECT_FALSE(flown.measured[Phase::takeoff]);
+    EXPECT_NEAR(energy_until_j(*flown.measured[Phase::cruise], 500.0), 15000.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace flightwatt::mission

@@ -1,0 +1,95 @@
+// flightwatt replay: missions' schedules on the power that flights measured.
+
+#include "base/error.h"
+#include "cli/output/fit_options.h"
+#include "cli/output/flight_options.h"
+#include "cli/output/json_text.h"
+#include "cli/output/mission_output.h"
+#include "cli/output/replay_output.h"
+#include "cli/stage.h"
+#include "mechanical/measured_flight.h"
+#include "mission/mission_file.h"
+#include "mission/replay.h"
+
+#include <set>
+
+#include <fmt/format.h>
+
+namespace {
+
+using namespace flightwatt;
+
+std::vector<mission::AnyMission> read_missions(const cli::StageCall& call) {
+    if (!call.has("mission")) throw UsageError("no mission given: --mission FILE, as often as there are missions");
+    std::vector<mission::AnyMission> missions;
+    std::set<std::string> names;
+    for (const auto& file : call.get<std::vector<std::string>>("mission")) {
+        missions.push_back(mission::read_mission(file, {true, std::nullopt}));
+        const auto& setup = setup_of(missions.back());
+        cli::warn_of_setup(call, setup);
+        if (!names.insert(setup.name).second)
+            throw UsageError(fmt::format("two missions are called '{}': give them names that differ", setup.name));
+    }
+    return missions;
+}
+
+std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples) {
+    const auto options = cli::read_flight_options(call);
+    return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
+        auto measured = mechanical::measure_flights(loaded, needed_samples);
+        for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
+        return std::move(measured.flights);
+    });
+}
+
+int replay(const cli::StageCall& call) {
+    mission::ReplayOptions options;
+    options.fit = cli::read_fit_options(call);
+    options.durations_are_known = call.has("know-durations");
+    const auto missions = read_missions(call);
+    if (const auto file = call.maybe<std::string>("model")) options.model = mechanical::read_mechanical_model(*file);
+    const auto flights = read_flights(call, mechanical::samples_needed(options.fit.phases.order));
+    const auto replays = replay_flights(missions, flights, options);
+    for (const auto& left : replays.not_replayed)
+        cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
+    for (const auto& replay : replays.replays)
+        for (const auto& text : replay.notes)
+            cli::note(call, fmt::format("{}, {}: {}", replay.flight, replay.mission, text));
+    if (replays.replays.empty()) throw NoAnswerError("no mission could be flown on any flight");
+    if (call.output) cli::write_result(call, cli::replay_csv(replays.replays));
+    if (call.json)
+        cli::print(cli::json_text(cli::to_json(replays)));
+    else
+        cli::print(cli::replay_text(replays.replays));
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "replay", "FLIGHT.data|SERIES.csv... --mission MISSION.toml",
+        R"(Judges schedules on flights that were flown: the power that each flight measured, phase by phase, and
+the computing power of a schedule deplete the mission's battery together. What is known before a flight is
+a model fitted to the other flights alone. Schedules:
+  given                by the mission file; of a mission to be planned instead all of these:
+  invariant            one configuration all the way, the best that the model says keeps the reserve
+  phased               one a phase
+  planned              before the flight, by the model
+  planned_with_margin  the same with a margin, to keep the reserve with the policy's probability
+  replanned            in flight, from the charge reached and the power seen so far ([policy], or its defaults)
+  hindsight            by the power and durations that were measured: no schedule does better
+Where no plan keeps the reserve, what demands least energy is run, and the table says so. Regret is the
+utility that hindsight has more; schedules that do not keep the reserve have none. Last is said what
+replanning in flight was worth against planning beforehand. -o writes the table of schedules as CSV.)"};
+    stage.output_help = "write the table of schedules to FILE, as CSV";
+    auto add = stage.options.add_options();
+    add("mission", cli::input_files("FILE"), "a mission whose schedules are replayed; may be given several times");
+    add("model", cli::input_file("MODEL.toml"),
+        "what is known before each flight is this model, instead of one fitted to the other flights");
+    add("know-durations", "schedules are made for the durations that were flown, as if they had been known before");
+    cli::add_fit_options(stage.options);
+    cli::add_mix_option(stage.options);
+    cli::add_flight_options(stage.options);
+    return cli::run_stage(argc, argv, stage, replay);
+}
