@@ -9,7 +9,6 @@
 #include "telemetry/log_configuration.h"
 
 #include <chrono>
-#include <cstdio>
 #include <string>
 #include <string_view>
 
@@ -50,8 +49,7 @@ live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const std::st
 class OutputTarget : public live::PlaybackTarget {
   public:
     std::string_view send(double time_s, std::string_view text) override {
-        cli::print(fmt::format("{} {}\n", time_s, text));
-        if (std::fflush(stdout) != 0) has_reader_ = false;
+        has_reader_ = cli::print_at_once(fmt::format("{} {}\n", time_s, text));
         return {};
     }
     bool has_reader() const { return has_reader_; }
@@ -76,8 +74,8 @@ void tell(const cli::StageCall& call, const live::PlaybackReport& report) {
                                     report.shortened_gaps == 1 ? "" : "s", live::longest_played_gap_s));
     }
     if (call.json) cli::print(cli::json_text(json_of(report)));
-    const auto text = fmt::format("{} messages, {:.1f} s of the log, played in {:.1f} s{}\n", report.messages, report.log_s,
-                                  report.played_s, report.stopped ? ": stopped" : "");
+    const auto text = fmt::format("{} messages, {:.1f} s of the log, played in {:.1f} s{}\n", report.messages,
+                                  report.log_s, report.played_s, report.stopped ? ": stopped" : "");
     if (call.output || call.get<std::string>("to") != "-") return cli::write_result(call, text);
     cli::note(call, text);
 }

@@ -7,11 +7,13 @@
 #include "cli/output/basis_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/prediction_output.h"
+#include "cli/output/source_options.h"
 #include "cli/output/watch_output.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
+#include "live/page_server.h"
 #include "live/recorder.h"
-#include "live/text_sources.h"
+#include "report/page.h"
 #include "telemetry/log_configuration.h"
 
 #include <chrono>
@@ -31,26 +33,6 @@ using namespace flightwatt;
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-std::unique_ptr<live::MessageSource> open_source(const cli::StageCall& call) {
-    const auto followed = call.maybe<std::string>("follow");
-    if (!call.inputs.empty() && call.inputs.front() != "-")
-        throw UsageError(
-            fmt::format("'{0}': expected - (the standard input); to follow a file: --follow {0}", call.inputs.front()));
-    if (followed && !call.inputs.empty()) throw UsageError("--follow and - exclude each other: give one of them");
-    if (followed) return live::follow_data_file(*followed);
-    if (call.inputs.empty())
-        throw UsageError("no source given: expected --follow FILE.data, or - (the standard input)");
-    return live::standard_input();
-}
-
-/// The .log that --log names, or that lies beside the file that is followed.
-std::optional<std::string> log_file_of(const cli::StageCall& call) {
-    if (call.has("log")) return call.get<std::string>("log");
-    if (!call.has("follow")) return std::nullopt;
-    const auto beside = telemetry::find_log_file(call.get<std::string>("follow"));
-    return beside ? std::optional(beside->string()) : std::nullopt;
-}
 
 /// What is said, in the way that was asked for.
 class Speaker {
@@ -158,6 +140,33 @@ class DecisionHook {
     std::size_t changes_ = 0;
 };
 
+/// Shows what is said on a page.
+class Page {
+  public:
+    Page(const cli::StageCall& call, const compute::ComputeModel& compute,
+         const std::optional<live::PredictionBasis>& basis)
+        : compute_(compute), basis_(basis) {
+        if (!call.has("serve")) return;
+        const auto web = report::read_live_web_files(report::web_folder());
+        server_.emplace(call.get<std::string>("serve"), report::live_page_html(web));
+        cli::note(call, "the page is at " + server_->address());
+        if (web.libraries.empty())
+            cli::warn(call, "the page has no charts: what draws them is not installed (scripts/install_dependencies)");
+    }
+
+    void say(const live::LiveState& state) {
+        if (!server_) return;
+        const auto ahead = basis_ ? live::soc_ahead(state, *basis_) : live::TimeCurve{};
+        const auto event = cli::page_event(state, compute_, ahead);
+        server_->publish(event.state, event.point);
+    }
+
+  private:
+    const compute::ComputeModel& compute_;
+    const std::optional<live::PredictionBasis>& basis_;
+    std::optional<live::PageServer> server_;
+};
+
 struct Watched {
     std::optional<mission::AnyMission> mission;
     std::optional<live::PredictionBasis> basis;
@@ -222,11 +231,11 @@ int watch(const cli::StageCall& call) {
     options.aircraft_id = call.maybe<std::string>("aircraft");
     options.silence_s = cli::positive_option(call, "silence-s", "s").value();
     std::optional<std::string> log_text;
-    if (const auto file = log_file_of(call)) {
+    if (const auto file = cli::definitions_of_source(call)) {
         log_text = read_file(*file, telemetry::most_log_configuration_bytes);
         options.configuration = telemetry::parse_log_configuration(*log_text, *file);
     }
-    const auto source = open_source(call);
+    const auto source = cli::open_source(call);
     std::optional<live::Recorder> recorder;
     if (const auto folder = call.maybe<std::string>("record")) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -236,9 +245,11 @@ int watch(const cli::StageCall& call) {
     live::LiveFlight flight(std::move(options), watched.basis, schedule_of(call, watched));
     Speaker speaker(call, watched.compute, watched.basis);
     DecisionHook hook(call, watched.compute);
+    Page page(call, watched.compute, watched.basis);
     const auto look = [&](double silent_s) -> std::string {
         const auto state = flight.look(silent_s);
         speaker.say(state);
+        page.say(state);
         hook.look(state);
         if (!speaker.is_read()) return "nobody reads the output any more";
         return call.has("until-landed") && state.landed ? "the aircraft has landed" : "";
@@ -258,19 +269,18 @@ int watch(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "watch", "--follow FILE.data | - [--mission MISSION.toml | --model MODEL.toml --remaining S]",
+        "watch", "SOURCE [--mission MISSION.toml | --model MODEL.toml --remaining S]",
         R"(Says once a second of a flight that is in the air: phase, energy, state of charge, and how it will
 land, as flightwatt predict does from the same telemetry; with a mission also the schedule from here,
 and with --decide one that is planned anew in flight. On a terminal it is one screen; else a line a
-second, with --json an object a line (docs/live.md). It ends with its source, or by a signal, and then
-says its last prediction.)"};
+second, with --json an object a line, with --serve also a page for a browser (docs/live.md). It ends
+with its source, or by a signal, and then says its last prediction. The source is one of --follow, --udp,
+--serial, --ivy and - (the standard input).)"};
     stage.min_inputs = 0;
     stage.max_inputs = 1;
     stage.output_help = "write the last prediction to FILE, when it ends, instead of the standard output";
     auto add = stage.options.add_options();
-    add("follow", cli::input_file("FILE.data"), "a log that is being written");
-    add("log", cli::input_file("FILE.log"),
-        "the telemetry's definitions; by default the .log beside a file that is followed, else the built-in ones");
+    cli::add_source_options(stage.options);
     add("aircraft", cli::value("ID"), "the aircraft to watch; by default the one that flies");
     add("model", cli::input_file("MODEL.toml"), "from flightwatt fit, of two flights or more");
     cli::add_basis_options(stage.options, cli::PathNeed::optional);
@@ -278,6 +288,7 @@ says its last prediction.)"};
     add("on-decision", cli::value("COMMAND"),
         "run by sh at each change of what software runs, with the decision in its environment (FLIGHTWATT_...)");
     add("record", cli::output_file("DIR"), "keep what came in as a log in this folder");
+    add("serve", cli::value("PORT"), "show it all as a page on this machine; at ADDRESS:PORT also on others");
     add("silence-s", cli::value<double>("S")->default_value(30.0), "the link is called silent after so long");
     add("until-landed", "end when the aircraft has landed");
     return cli::run_stage(argc, argv, stage, watch);

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "live/serve/page_session.h"
+#include "live/sources/close_on_exec.h"
 #include "live/sources/host_and_port.h"
 #include "live/sources/quiet_thread.h"
 
@@ -89,6 +90,7 @@ class PageServer::Server {
                              fmt::format("cannot listen: {}", error.message()),
                              "see which program has the port (ss -ltp), or take another one");
         }
+        close_on_exec(acceptor_);
         endpoint_ = acceptor_.local_endpoint();
     }
 
@@ -102,6 +104,7 @@ class PageServer::Server {
                 });
                 return;
             }
+            close_on_exec(socket);
             if (sessions_.size() >= most_connections) sessions_.front()->close();  // the oldest
             const auto on_end = [this](const PageSession& ended) {
                 sessions_.remove_if([&](const auto& session) { return session.get() == &ended; });

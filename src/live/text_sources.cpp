@@ -1,20 +1,15 @@
 #include "live/text_sources.h"
 
-#include "base/error.h"
-#include "base/file_use.h"
+#include "live/sources/followed_bytes.h"
 #include "live/sources/line_buffer.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
 #include <poll.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace flightwatt::live {
@@ -85,74 +80,20 @@ class StandardInput : public MessageSource {
 
 class FollowedFile : public MessageSource {
   public:
-    explicit FollowedFile(std::filesystem::path path) : path_(std::move(path)) {
-        note_input(path_);
-        if (std::filesystem::is_directory(path_) || !open()) {
-            throw InputError({path_.string()},
-                             std::filesystem::exists(path_) ? "cannot be read" : "there is no such file",
-                             "expected the .data file that the ground station writes");
-        }
-        struct stat status {};
-        if (::fstat(file_, &status) == 0 && !S_ISREG(status.st_mode)) {
-            ::close(file_);
-            throw InputError({path_.string()}, "is no regular file", "of a pipe: flightwatt watch - < PIPE");
-        }
-    }
-    ~FollowedFile() override { close(); }
+    explicit FollowedFile(const std::filesystem::path& path)
+        : followed_(path,
+                    "expected the .data file that the ground station writes; of a pipe: flightwatt watch - < PIPE") {}
 
     void receive(milliseconds timeout, std::vector<IncomingMessage>& messages) override {
-        constexpr milliseconds look_again{20};
-        const auto until = std::chrono::steady_clock::now() + timeout;
-        while (!read_more(messages)) {
-            reopen_if_replaced();
-            const auto left = until - std::chrono::steady_clock::now();
-            if (left <= milliseconds(0)) return;
-            std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(left, look_again));
-        }
+        const auto piece = followed_.read(timeout);
+        if (piece.anew) text_.begin_anew();
+        text_.push(piece.bytes, messages);
     }
-    std::string description() const override { return "following " + path_.string(); }
+    std::string description() const override { return "following " + followed_.path().string(); }
     const SourceReport& report() const override { return text_.report(); }
 
   private:
-    bool open() {
-        file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-        offset_ = 0;
-        return file_ >= 0;
-    }
-    void close() {
-        if (file_ >= 0) ::close(file_);
-        file_ = -1;
-    }
-
-    bool read_more(std::vector<IncomingMessage>& messages) {
-        if (file_ < 0) return false;
-        struct stat status {};
-        if (::fstat(file_, &status) == 0 && status.st_size < offset_) {  // it was cut and is written anew
-            offset_ = 0;
-            text_.begin_anew();
-        }
-        std::vector<char> bytes(bytes_a_call);
-        const auto count = ::pread(file_, bytes.data(), bytes.size(), offset_);
-        if (count <= 0) return false;
-        offset_ += count;
-        text_.push({bytes.data(), static_cast<std::size_t>(count)}, messages);
-        return true;
-    }
-
-    void reopen_if_replaced() {
-        struct stat named {};
-        if (::stat(path_.c_str(), &named) != 0) return;  // gone for a while: what is open is still read
-        struct stat opened {};
-        const bool is_same = file_ >= 0 && ::fstat(file_, &opened) == 0 && opened.st_ino == named.st_ino &&
-                             opened.st_dev == named.st_dev;
-        if (is_same) return;
-        close();
-        if (open()) text_.begin_anew();
-    }
-
-    std::filesystem::path path_;
-    int file_ = -1;
-    ::off_t offset_ = 0;
+    FollowedBytes followed_;
     TextMessages text_;
 };
 

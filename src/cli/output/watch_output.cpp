@@ -166,6 +166,23 @@ Json json_of(const live::LiveState& state, const compute::ComputeModel& compute)
     return json;
 }
 
+PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& compute, const live::TimeCurve& ahead) {
+    constexpr auto replace = Json::error_handler_t::replace;
+    const auto soc = state.battery ? state.battery->soc_percent : std::nullopt;
+    const auto by_voltage = state.battery ? state.battery->soc_by_voltage_percent : std::nullopt;
+    const Json point{{"t", state.time_s},
+                     {"phase", phase_text(state)},
+                     {"soc", optional_json(soc)},
+                     {"soc_by_voltage", optional_json(by_voltage)},
+                     {"power", optional_json(state.power_w)},
+                     {"expected", optional_json(state.expected_power_w)},
+                     {"altitude", optional_json(state.altitude_m)}};
+    auto json = json_of(state, compute);
+    json["ahead"] = {{"time_s", ahead.time_s}, {"soc_percent", ahead.value}};
+    json["point"] = point;
+    return {json.dump(-1, ' ', false, replace), point.dump(-1, ' ', false, replace)};
+}
+
 std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute) {
     auto line = fmt::format("{:.0f} s  {} {:.0f} s  {}  {}", state.time_s, phase_text(state), state.flight_s,
                             spare(state.energy_wh, 3, "Wh"), spare(state.power_w, 1, "W"));

@@ -17,6 +17,13 @@ namespace flightwatt::cli {
 /// All of a state; null for what is not known (docs/live.md). `compute` names what its decision runs.
 nlohmann::ordered_json json_of(const live::LiveState& state, const compute::ComputeModel& compute);
 
+/// What a page is told.
+struct PageEvent {
+    std::string state;  ///< all of it, with the state of charge ahead and the point, as JSON
+    std::string point;  ///< what charts show of it
+};
+PageEvent page_event(const live::LiveState& state, const compute::ComputeModel& compute, const live::TimeCurve& ahead);
+
 /// One line, for a log of what was said.
 std::string line_of(const live::LiveState& state, const compute::ComputeModel& compute);
 

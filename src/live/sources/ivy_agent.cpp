@@ -1,6 +1,7 @@
 #include "live/sources/ivy_agent.h"
 
 #include "base/error.h"
+#include "live/sources/close_on_exec.h"
 #include "live/sources/ivy_peer.h"
 
 #include <algorithm>
@@ -73,6 +74,8 @@ IvyAgent::IvyAgent(asio::io_context& context, IvyAgentSetup setup)
         acceptor_.bind({setup_.bus.is_local() ? asio::ip::address_v4::loopback() : asio::ip::address_v4(), 0}, error);
     if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
     check(error, setup_.bus, "take connections");
+    close_on_exec(acceptor_);
+    close_on_exec(bus_socket_);
     port_ = acceptor_.local_endpoint().port();
     id_ = new_id(port_);
 }

@@ -1,5 +1,7 @@
 #include "live/sources/ivy_peer.h"
 
+#include "live/sources/close_on_exec.h"
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -50,6 +52,7 @@ void IvyPeer::begin() {
     address_ = remote.address();
     begun_ = true;
     keep_alive(socket_);
+    close_on_exec(socket_);
     const auto& setup = agent_.setup();
     auto hello = to_ivy_line(IvyType::start, agent_.port(), setup.name);
     for (std::size_t i = 0; i < setup.subscriptions.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "live/sources/serial_receiver.h"
 
 #include "base/error.h"
+#include "live/sources/close_on_exec.h"
 
 #include <chrono>
 #include <utility>
@@ -52,6 +53,7 @@ error_code SerialReceiver::open() {
         port_.close(ignored);
         return error;
     }
+    close_on_exec(port_);
     reader_.emplace(dictionary_, std::nullopt, queue_);
     return error;
 }

@@ -1,6 +1,7 @@
 #include "live/sources/udp_receiver.h"
 
 #include "base/error.h"
+#include "live/sources/close_on_exec.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -29,6 +30,7 @@ UdpReceiver::UdpReceiver(boost::asio::io_context& context, MessageQueue& queue, 
                          fmt::format("cannot listen: {}", error.message()),
                          "see which program has the port (ss -lup), or take another one");
     }
+    close_on_exec(socket_);
     socket_.set_option(boost::asio::socket_base::receive_buffer_size(receive_buffer_bytes), ignored);
 }
 

@@ -1,0 +1,124 @@
+// flightwatt watch at the end of a link over which flightwatt play sends a flight: its last prediction is that of flightwatt
+// predict on the log.
+
+#include "base/atomic_file.h"
+#include "helpers/free_port.h"
+#include "helpers/running_program.h"
+#include "helpers/test_paths.h"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The flight to the middle of its cruise, and what is predicted from there.
+class WatchLinks : public testing::Test {
+  protected:
+    void SetUp() override {
+        const auto log = test::source_dir() / "logs" / "opterra_synthetic_01";
+        const auto text = read_file(log.string() + ".data");
+        std::size_t end = 0;
+        constexpr int lines = 9000;
+        for (int i = 0; i < lines; ++i) end = text.find('\n', end) + 1;
+        write_file_atomically(folder / "flown.data", text.substr(0, end));
+        std::filesystem::copy(log.string() + ".log", folder / "flown.log");
+        const auto predicted = test::run_shell("flightwatt predict flown.data --json" + basis(), folder);
+        ASSERT_EQ(predicted.code, 0) << predicted.err;
+        expected = Json::parse(predicted.out);
+    }
+
+    static std::string basis() {
+        return fmt::format(
+            " --model '{0}/mechanical/synthetic-wing.toml' --battery '{0}/battery/synthetic-3s.toml' --remaining 290",
+            (test::source_dir() / "fits").string());
+    }
+
+    /// Watches what is played there, and returns the last prediction.
+    Json watch(const std::string& source, const std::string& target, const std::function<bool()>& listens) {
+        const auto command = "exec flightwatt-watch " + source + basis() + " --json > watched";
+        const auto watching = start_shell(command);
+        EXPECT_TRUE(test::wait_until(listens));
+        const auto played = test::run_shell("flightwatt play flown.data --speed 400 --to " + target, folder);
+        EXPECT_EQ(played.code, 0) << played.err;
+        const auto until_s = expected.at("until_s").get<double>();
+        std::size_t seconds = 0;
+        EXPECT_TRUE(test::wait_until([&] {  // until it says nothing new: it has seen the end, and silence
+            const auto text = read_file(folder / "watched");
+            const auto last = text.rfind("\n{");
+            const auto now = last == std::string::npos ? text : text.substr(last + 1);
+            seconds = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+            return text.ends_with('\n') && Json::parse(now).at("silent_s").get<double>() > 0.0;
+        })) << until_s;
+        EXPECT_GT(seconds, 300U);
+        ::kill(watching, SIGTERM);
+        EXPECT_EQ(test::exit_code_of(watching), 0);
+        const auto text = read_file(folder / "watched");
+        const auto end = Json::parse(text.substr(text.rfind("\n{") + 1));
+        return end.at("last_prediction").at("prediction");
+    }
+
+    ::pid_t start_shell(const std::string& command) {
+        const auto path = fmt::format("PATH='{}':$PATH", (test::binary_dir() / "bin").string());
+        const auto child = ::fork();
+        if (child == 0) {
+            std::filesystem::current_path(folder);
+            ::execl("/bin/sh", "sh", "-c", (path + "; " + command).c_str(), nullptr);
+            ::_exit(127);
+        }
+        return child;
+    }
+
+    void expect_near(const Json& prediction, double relative) const {
+        for (const auto* key : {"flown_energy_wh", "remaining_energy_wh", "total_energy_wh"}) {
+            const auto wanted = expected.at(key).get<double>();
+            EXPECT_NEAR(prediction.at(key).get<double>(), wanted, relative * wanted) << key;
+        }
+        const auto soc = [](const Json& of) {
+            return of.at("battery").at("at_landing").at("soc_percent").get<double>();
+        };
+        EXPECT_NEAR(soc(prediction), soc(expected), 100.0 * relative);
+    }
+
+    const std::filesystem::path folder = test::scratch_dir();
+    Json expected;
+};
+
+/// Somebody has the port.
+bool is_taken(std::uint16_t port) {
+    boost::asio::io_context context;
+    boost::system::error_code error;
+    boost::asio::ip::udp::socket socket(context, boost::asio::ip::udp::v4());
+    socket.bind({boost::asio::ip::udp::v4(), port}, error);
+    return static_cast<bool>(error);
+}
+
+TEST_F(WatchLinks, OverAnIvyBusWithItsTimesItIsTheSame) {
+    const auto bus = fmt::format("127.255.255.255:{}", test::free_udp_port());
+    expect_near(watch("--ivy " + bus + " --log flown.log", "ivy:" + bus, [] { return true; }), 1e-5);
+}
+
+TEST_F(WatchLinks, OverUdpItIsTheSameButForTimesOfArrival) {
+    const auto port = test::free_udp_port();
+    const auto source =
+        fmt::format("--udp {} --messages flown.log --clock-factor 400 --serve {}", port, test::free_udp_port());
+    // Of arrivals some come late by milliseconds, which are seconds at this speed.
+    expect_near(watch(source, fmt::format("udp:127.0.0.1:{}", port), [&] { return is_taken(port); }), 0.05);
+}
+
+}  // namespace
+}  // namespace flightwatt::cli

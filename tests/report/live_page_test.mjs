@@ -1,0 +1,98 @@
+// The page of `flightwatt watch --serve` in headless Chromium while a log is played: charts move, nothing is said on the
+// console, and it comes back when its server does. Environment: BIN, SOURCE, SCRATCH, PORT, FLIGHTWATT_WEB, CHROMIUM.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { createWriteStream, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import path from "node:path";
+import { after, before, test } from "node:test";
+
+const { BIN, SOURCE, SCRATCH, PORT, FLIGHTWATT_WEB, CHROMIUM } = process.env;
+const require = createRequire(path.join(FLIGHTWATT_WEB, "package.json"));
+const { chromium } = require("playwright-core");
+const axe = require("axe-core");
+const log = path.join(SOURCE, "logs/opterra_synthetic_01");
+const growing = path.join(SCRATCH, "growing.data");
+const address = `http://127.0.0.1:${PORT}/`;
+const running = [];
+let browser;
+
+function start(program, ...options) {
+  const child = spawn(path.join(BIN, program), options, { stdio: ["ignore", "ignore", "pipe"] });
+  child.stderr.pipe(createWriteStream(path.join(SCRATCH, `${program}.stderr`), { flags: "a" }));
+  child.ended = new Promise((resolve) => child.once("exit", resolve));
+  running.push(child);
+  return child;
+}
+const watch = () => start("flightwatt-watch", "--follow", growing, "--log", `${log}.log`, "--model", path.join(SOURCE, "fits/mechanical/synthetic-wing.toml"), "--battery", path.join(SOURCE, "fits/battery/synthetic-3s.toml"), "--remaining", "300", "--serve", PORT, "--json");
+
+/** Asks every 100 ms. */
+async function eventually(what, condition) {
+  for (let i = 0; i < 600; ++i) {
+    if (await condition()) return;
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+  assert.fail(`it never came that ${what}`);
+}
+const answers = async () => fetch(`${address}state`).then((answer) => answer.ok, () => false);
+
+before(async () => {
+  rmSync(growing, { force: true });
+  browser = await chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox", "--disable-gpu"] });
+});
+after(async () => {
+  await browser?.close();
+  for (const child of running) child.kill("SIGTERM");
+  await Promise.all(running.map((child) => child.ended));
+});
+
+test("charts move while a flight is played, and the page outlives its server", async () => {
+  start("flightwatt-play", `${log}.data`, "--to", `file:${growing}`, "--speed", "30");
+  await new Promise((resolve) => setTimeout(resolve, 500));
+  const first = watch();
+  await eventually("the server answers", answers);
+  const page = await (await browser.newContext({ viewport: { width: 1100, height: 900 } })).newPage();
+  const faults = [];
+  let serverIsDown = false;
+  page.on("pageerror", (error) => faults.push(`exception: ${error.message}`));
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type()) && !serverIsDown) faults.push(`${message.type()}: ${message.text()}`);
+  });
+  page.on("request", (request) => {
+    if (!request.url().startsWith(address) && !/^(data|blob):/.test(request.url())) faults.push(`request: ${request.url()}`);
+  });
+  await page.goto(address);
+  const points = (id) => page.locator(`#${id}`).evaluate((box) => Number(box.dataset.points || 0));
+  const time = () => page.locator("#page").evaluate((box) => Number(box.dataset.time || 0));
+  for (const id of ["charge", "power", "altitude"]) {
+    await eventually(`#${id} has points`, async () => (await points(id)) > 3);
+    const before = await points(id);
+    const lines = await page.locator(`#${id} svg path`).count();
+    assert.ok(lines > 0, `#${id} draws nothing`);
+    await eventually(`#${id} gets more`, async () => (await points(id)) > before);
+  }
+  await eventually("the cruise is seen and predicted", async () => /95|Wh \(/.test(await page.locator("#landing").innerText()));
+  await page.screenshot({ path: path.join(SCRATCH, "live.png"), fullPage: true });
+  await page.evaluate(axe.source);
+  const { violations } = await page.evaluate(() => window.axe.run());
+  assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
+
+  serverIsDown = true; // the browser itself notes requests that fail
+  first.kill("SIGTERM");
+  await first.ended;
+  await eventually("the page says so", async () => /Nothing is heard/.test(await page.locator("#connection").innerText()));
+  watch();
+  await eventually("the page is back", async () => (await page.locator("#connection").innerText()) === "");
+  serverIsDown = false;
+  const then = await time();
+  await eventually("it goes on", async () => (await time()) > then);
+  assert.deepEqual(faults, []);
+});
+
+test("no other page and no other name is answered", async () => {
+  await eventually("the server answers", answers);
+  const page = await (await browser.newContext()).newPage();
+  await page.goto("data:text/html,<p>another page");
+  const read = await page.evaluate((url) => fetch(`${url}state`).then(() => "read", () => "refused"), address);
+  assert.equal(read, "refused");
+});
