@@ -13,7 +13,7 @@ namespace {
 
 /// A day: whoever flies longer charges meanwhile.
 constexpr double longest_s = 86400.0;
-constexpr double step_s = 1.0;
+constexpr double step_s = 5.0;  // of Runge-Kutta under constant power: a charge and a voltage that hardly bend
 
 Discharge through(const Battery& battery, const BatteryState& state, const PowerStretch& stretch,
                   const LandingLimits& limits) {

@@ -32,7 +32,7 @@ void CurveHistory::add(double time_s, double value) {
 TimeCurve soc_ahead(const LiveState& state, const PredictionBasis& basis) {
     constexpr double most_points = 100.0;
     constexpr double finest_s = 10.0;
-    constexpr double integration_s = 1.0;
+    constexpr double integration_s = 5.0;
     TimeCurve curve;
     if (!state.prediction || !basis.battery || !state.battery || !state.battery->state) return curve;
     const auto stretches = power_ahead(*state.prediction);

@@ -23,8 +23,8 @@ namespace {
 constexpr double judged_every_s = 30.0;  // the record's warnings take as long as all the rest
 constexpr std::size_t most_notes = 50;
 
-std::optional<double> last_of(const flight::FlightSeries& series, const char* name) {
-    const auto track = flight::chosen_track(series, name);
+std::optional<double> last_of(const flight::ChosenTracks& tracks, const char* name) {
+    const auto& track = tracks[name];
     return track.empty() ? std::nullopt : std::optional(track.value.back());
 }
 
@@ -40,7 +40,7 @@ class LiveFlight::Watch {
         : options_(std::move(options)),
           basis_(std::move(basis)),
           schedule_(std::move(schedule)),
-          store_(options_.flight, std::move(options_.configuration)),
+          store_(options_.flight, std::move(options_.configuration), basis_ && (basis_->path || basis_->motion)),
           choice_(options_.aircraft_id) {}
 
     void receive(const IncomingMessage& message, double arrival_s) {
@@ -154,20 +154,21 @@ LiveState LiveFlight::Watch::look(double silent_s) {
 
 void LiveFlight::Watch::look_at_flight(const flight::FlightSeries& series, LiveState& state) {
     phases_ = {};
+    const flight::ChosenTracks tracks(series);
     try {
-        if (!chosen_track(series, "altitude_m").empty()) phases_ = segment(series, {});
+        if (!tracks["altitude_m"].empty()) phases_ = segment(series, {});
     } catch (const InputError& error) {
         state.waits_for = error.what();
     }
     sorties_kept_ = phases_.sorties.size();
     state.sortie = sorties_before_ + sorties_kept_;
-    state.power_w = last_of(series, "power_w");
-    state.voltage_v = last_of(series, "voltage_v");
-    state.current_a = last_of(series, "current_a");
-    state.altitude_m = last_of(series, "altitude_m");
+    state.power_w = last_of(tracks, "power_w");
+    state.voltage_v = last_of(tracks, "voltage_v");
+    state.current_a = last_of(tracks, "current_a");
+    state.altitude_m = last_of(tracks, "altitude_m");
     if (phases_.sorties.empty()) return;
     set_flight_clock(phases_.sorties.back(), mechanical::last_time_s(series), state);
-    if (flight::power_track(series).empty()) return;
+    if (!state.power_w) return;
     const auto& sortie = phases_.sorties.back();
     state.energy_wh =
         integrated_energy_wh(series, sortie.start_s(), state.landed ? sortie.end_s() : mechanical::last_time_s(series));
@@ -189,7 +190,7 @@ void LiveFlight::Watch::predict(const flight::FlightSeries& series,
         state.waits_for = basis_->cannot_predict;
         return;
     }
-    if (flight::power_track(series).empty()) {
+    if (!state.power_w) {
         const auto why = why_no_power(series);
         state.waits_for = why.empty() ? "telemetry that tells of power" : "measured power: " + why;
         return;

@@ -26,7 +26,7 @@ struct LiveOptions {
     double silence_s = 30.0;                                        ///< after which the link is called silent
     /// Called with every .data line that is believed, in their order; `anew`: the clock began anew before them.
     std::function<void(std::string_view lines, bool anew)> on_lines = {};
-    std::size_t most_rows = 40'000;  ///< of messages, kept in memory
+    std::size_t most_rows = 30'000;  ///< of messages, kept in memory
 };
 
 struct Alarm {

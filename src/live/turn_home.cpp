@@ -47,7 +47,7 @@ std::optional<battery::PowerStretch> way_home(const mission::PathForecast& path,
 
 battery::Discharge through(const TurnBudget& budget, const battery::BatteryState& state,
                            const battery::PowerStretch& stretch) {
-    constexpr double step_s = 1.0;
+    constexpr double step_s = 5.0;
     const double power_w = stretch.power_w;
     return discharge(budget.battery, {[power_w](double) { return power_w; }, 0.0, stretch.duration_s}, state,
                      {step_s, budget.limits.cutoff_voltage_v});

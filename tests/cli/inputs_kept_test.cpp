@@ -75,6 +75,14 @@ std::vector<Command> commands() {
          "a.data --mission missions/synthetic/survey-path.toml --until 300",
          {"a.data", "a.log", "missions/synthetic/survey-path.toml", "fits/mechanical/synthetic-wing.toml"},
          "--output"},
+        {"watch",
+         "--follow a.data --until-landed --model spread.toml --remaining 100 --battery fits/battery/synthetic-3s.toml",
+         {"a.data", "a.log", "spread.toml", "fits/battery/synthetic-3s.toml"},
+         "--output"},
+        {"watch",
+         "- --log a.log --mission missions/paper/phased.toml",
+         {"a.log", "missions/paper/phased.toml", "fits/mechanical/opterra-table1.toml"},
+         "--record"},
         {"batch", "a.data s.series.csv --published " + model, flight_files + Words{model}, "--output", flight_names},
         {"batch",
          "folder --published " + model,
@@ -171,14 +179,14 @@ void make_alias(Alias alias, const std::filesystem::path& input, const std::file
 }
 
 /// The metavariables of the help that name no file.
-const std::set<std::string> no_files{"N",           "S",      "X",       "P",      "M",           "W",
-                                     "A",           "AH",     "MB",      "HOW",    "NAME",        "TITLE",
-                                     "ID",          "FLIGHT", "A,B",     "KIND",   "A,B,power_w", "FLIGHT[:PHASE]=W",
-                                     "NAME[,NAME]", "S|now",  "M_PER_S", "PERCENT"};
+const std::set<std::string> no_files{"N",           "S",      "X",       "P",       "M",           "W",
+                                     "A",           "AH",     "MB",      "HOW",     "NAME",        "TITLE",
+                                     "ID",          "FLIGHT", "A,B",     "KIND",    "A,B,power_w", "FLIGHT[:PHASE]=W",
+                                     "NAME[,NAME]", "S|now",  "M_PER_S", "PERCENT", "COMMAND"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{"--published", "--model",   "--mission",   "--disturb",
-                                    "--sysfs",     "--battery", "--path-from", "--reference-figures"};
+const std::set<std::string> reading{"--published", "--model",     "--mission",           "--disturb", "--sysfs",
+                                    "--battery",   "--path-from", "--reference-figures", "--follow",  "--log"};
 
 class InputsKept : public testing::Test {
   protected:

@@ -180,6 +180,19 @@ TEST(WrittenKeys, OfModelsAreDocumented) {
     expect_summary("predict", {log_file, "--model", "model.toml", "--until", "300", "--remaining", "300"}, folder);
 }
 
+TEST(WrittenKeys, OfAWatchAreDocumented) {
+    const auto folder = scratch_dir();
+    const auto said = run_shell("head -n 4000 " + shell_quoted(log_file) + " | flightwatt watch - --json --decide" +
+                                    " --mission " + shell_quoted(survey_path),
+                                folder);
+    EXPECT_EQ(said.code, 0) << said.err;
+    std::stringstream lines(said.out);
+    std::size_t count = 0;
+    for (std::string line; std::getline(lines, line); ++count)
+        if (count % 50 == 49 || line.starts_with("{\"ended\"")) expect_keys(line, "watch", "JSON summaries");
+    EXPECT_GT(count, 100U);
+}
+
 TEST(WrittenKeys, OfMissionsAreDocumented) {
     const auto folder = scratch_dir();
     expect_summary("simulate", {phased, "--samples", "10", "-o", "soc.csv"}, folder);

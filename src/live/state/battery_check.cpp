@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double watched_s = 60.0;         // for the voltage
 constexpr std::size_t enough_samples = 5;  // in there
+constexpr double failed_percent = 200.0;   // below the reserve: where the battery fails it does not land
 
 /// Measured voltage, and what it would be at rest with the RC pair settled, over the last minute.
 void compare_voltage(const battery::Battery& battery, const battery::DischargeRecord& record, LiveBattery& result) {
@@ -51,6 +53,36 @@ void look_at_voltage(const battery::Battery& battery, const flight::FlightSeries
     if (rest_v.size() < enough_samples) return;
     result.soc_by_voltage_percent = battery::resting_soc_percent(battery, median(std::move(rest_v)));
     result.state = battery::BatteryState{*result.soc_by_voltage_percent, 0.0};
+}
+
+/// The part of the expected energy with which nothing is spare: the charge left is nearly straight in it, so that two
+/// secants find it; where the battery fails in between, the root is bracketed. std::nullopt beyond eight standard
+/// deviations `sd` [parts].
+std::optional<double> part_without_spare(const std::function<double(double)>& spare_percent, double sd) {
+    constexpr double most_sds = 8.0;
+    constexpr double exact_percent = 0.02;
+    const double low = std::max(0.0, 1.0 - most_sds * sd);
+    const double high = 1.0 + most_sds * sd;
+    double before = 1.0;
+    double part = 1.0 + 2.0 * sd;
+    double spare_before = spare_percent(before);
+    for (int i = 0; i < 3; ++i) {
+        const double spare = spare_percent(part);
+        const double slope = (spare - spare_before) / (part - before);
+        const bool is_straight = slope < 0.0 && spare > -failed_percent && spare_before > -failed_percent;
+        if (!is_straight) break;
+        before = part;
+        spare_before = spare;
+        part -= spare / slope;
+        if (part <= low || part >= high) return std::nullopt;
+        if (std::abs(spare) < exact_percent) return part;
+    }
+    if (spare_percent(low) < 0.0 || spare_percent(high) >= 0.0) return std::nullopt;
+    std::uintmax_t most_looks = 12;
+    constexpr int bits = 10;  // a thousandth of the range: less than a hundredth of a standard deviation
+    const auto [below, above] = boost::math::tools::toms748_solve(
+        spare_percent, low, high, boost::math::tools::eps_tolerance<double>(bits), most_looks);
+    return 0.5 * (below + above);
 }
 
 /// A pack that rests at a voltage of so many points more than was left in the one before is another one.
@@ -106,20 +138,12 @@ std::optional<double> chance_below_reserve(const PredictionBasis& basis, const P
     const auto spare_percent = [&](double part) {
         const auto landing =
             battery::forecast_landing(*basis.battery, now, power_ahead(prediction, part), 0.0, basis.limits);
-        constexpr double failed_percent = -100.0;  // where it fails it does not land
-        return landing.fails_after_s ? failed_percent : landing.soc_percent - basis.limits.reserve_soc_percent;
+        return landing.fails_after_s ? -failed_percent : landing.soc_percent - basis.limits.reserve_soc_percent;
     };
-    constexpr double most_sds = 8.0;
     const double sd = std::sqrt(rest.variance_wh2) / rest.energy_wh;
-    const double low = std::max(0.0, 1.0 - most_sds * sd);
-    const double high = 1.0 + most_sds * sd;
-    if (spare_percent(low) < 0.0) return 1.0;
-    if (spare_percent(high) >= 0.0) return 0.0;
-    std::uintmax_t most_looks = 12;
-    constexpr int bits = 10;  // a thousandth of the range: less than a hundredth of a standard deviation
-    const auto [below, above] = boost::math::tools::toms748_solve(
-        spare_percent, low, high, boost::math::tools::eps_tolerance<double>(bits), most_looks);
-    const double sds = (0.5 * (below + above) - 1.0) / sd;
+    const auto part = part_without_spare(spare_percent, sd);
+    if (!part) return spare_percent(1.0) < 0.0 ? 1.0 : 0.0;
+    const double sds = (*part - 1.0) / sd;
     if (!(rest.variance_square_per_degree_of_freedom > 0.0)) return cdf(complement(boost::math::normal(), sds));
     const double degrees = rest.variance_wh2 * rest.variance_wh2 / rest.variance_square_per_degree_of_freedom;
     return cdf(complement(boost::math::students_t(degrees), sds));

@@ -15,12 +15,14 @@ namespace flightwatt::live {
 namespace {
 
 /// What a flight series is made of, without what no prediction looks at (and positions cost most to make).
-std::vector<telemetry::MessageRequest> predicting_messages() {
+std::vector<telemetry::MessageRequest> predicting_messages(bool with_bank) {
     static const std::set<std::string> unused_messages{"NAVIGATION", "GPS_LLA", "PPRZ_MODE", "TAKEOFF"};
     static const std::set<std::string> unused_fields{"utm_east", "utm_north", "utm_zone", "course",
                                                      "lat",      "lon",       "temp",     "psi"};
     auto messages = flight::flight_messages();
-    std::erase_if(messages, [](const auto& request) { return unused_messages.contains(request.message); });
+    std::erase_if(messages, [&](const auto& request) {
+        return unused_messages.contains(request.message) || (!with_bank && request.message == "ATTITUDE");
+    });
     for (auto& request : messages) {
         std::erase_if(request.fields, [](const auto& field) { return unused_fields.contains(field); });
         if (request.message != "ROTORCRAFT_FP") continue;
@@ -60,8 +62,9 @@ void filter_rows(telemetry::MessageTable& table, const std::function<bool(std::s
 
 }  // namespace
 
-TelemetryStore::TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration)
-    : wanted_(predicting_messages()) {
+TelemetryStore::TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
+                               bool with_bank)
+    : wanted_(predicting_messages(with_bank)) {
     log_.data_file = flight;
     log_.flight = std::move(flight);
     log_.configuration = std::move(configuration);

@@ -20,7 +20,8 @@ class TelemetryStore {
     static constexpr std::size_t most_senders = 8;   ///< aircraft of which rows are kept
     static constexpr std::size_t most_devices = 64;  ///< of one message
 
-    TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration);
+    /// `with_bank`: whether the bank angle is wanted, which comes most often.
+    TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration, bool with_bank = true);
 
     /// Whole .data lines, each with its break.
     void add(std::string_view lines);

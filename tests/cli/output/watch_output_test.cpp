@@ -1,0 +1,79 @@
+// What watch says, of a state made by hand.
+
+#include "cli/output/watch_output.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using testing::HasSubstr;
+
+compute::ComputeModel two_components() {
+    compute::ComputeModel compute;
+    compute.components.resize(2);
+    compute.components[0].name = "detection";
+    compute.components[0].profile.parameters = {"fps"};
+    compute.components[1].name = "tx-2";
+    return compute;
+}
+
+live::LiveState flying() {
+    live::LiveState state;
+    state.time_s = 400.0;
+    state.aircraft_id = "7";
+    state.phase = flight::Phase::cruise;
+    state.flight_s = 300.0;
+    state.energy_wh = 2.5;
+    state.waits_for = "a model";
+    state.decision.emplace();
+    state.decision->run = {{0, {5.8}}};
+    state.decision->next = compute::Configuration{{0, {32.0}}, {1, {}}};
+    state.decision->next_in_s = 12.0;
+    state.alarms = {{"silence", "nothing was received for 40 s"}};
+    return state;
+}
+
+TEST(WatchOutput, SaysWhatIsKnownAndWhatIsNot) {
+    const auto line = line_of(flying(), two_components());
+    EXPECT_THAT(line, HasSubstr("400 s  cruise 300 s  2.500 Wh"));
+    EXPECT_THAT(line, HasSubstr("waits for: a model"));
+    EXPECT_THAT(line, HasSubstr("runs detection fps=5.8, in 12 s detection fps=32, tx-2"));
+    EXPECT_THAT(line, HasSubstr("ALARM silence: nothing was received for 40 s"));
+    const auto screen = screen_of(flying(), two_components());
+    EXPECT_THAT(screen.back(), HasSubstr("ALARM"));
+    const auto json = json_of(flying(), two_components());
+    EXPECT_TRUE(json["prediction"].is_null());
+    EXPECT_TRUE(json["power_w"].is_null());
+    EXPECT_EQ(json["decision"]["run"]["detection"]["fps"], 5.8);
+    EXPECT_EQ(json["decision"]["next_in_s"], 12.0);
+    EXPECT_EQ(json["alarms"][0]["kind"], "silence");
+}
+
+TEST(WatchOutput, SaysWhenToTurnHome) {
+    auto state = flying();
+    state.battery.emplace();
+    state.battery->reserve_in_s = 600.0;
+    state.battery->chance_below = 0.031;
+    state.turn_home = live::TurnHome{90.0, false};
+    EXPECT_THAT(line_of(state, two_components()),
+                HasSubstr("reserve in 10.0 min of cruise, chance of landing below it 3.1 %, turn home within 1.5 min"));
+    state.turn_home = live::TurnHome{};
+    EXPECT_THAT(line_of(state, two_components()), HasSubstr("too late to turn home"));
+    EXPECT_TRUE(json_of(state, two_components())["turn_home"]["latest_in_s"].is_null());
+}
+
+TEST(WatchOutput, ACommandFindsTheDecisionInItsEnvironment) {
+    const auto variables = decision_environment(flying(), two_components());
+    EXPECT_EQ(variables.at("FLIGHTWATT_PHASE"), "cruise");
+    EXPECT_EQ(variables.at("FLIGHTWATT_TIME_S"), "400");
+    EXPECT_EQ(variables.at("FLIGHTWATT_SOC_PERCENT"), "");
+    EXPECT_EQ(variables.at("FLIGHTWATT_RUN"), "{\"detection\":{\"fps\":5.8}}");
+    EXPECT_EQ(variables.at("FLIGHTWATT_COMPONENT_DETECTION"), "1");
+    EXPECT_EQ(variables.at("FLIGHTWATT_COMPONENT_DETECTION_FPS"), "5.8");
+    EXPECT_EQ(variables.at("FLIGHTWATT_COMPONENT_TX_2"), "0");
+}
+
+}  // namespace
+}  // namespace flightwatt::cli
