@@ -115,25 +115,24 @@
     resolve: { legend: { color: "independent" } },
   });
 
-  async function prepare() {
-    const config = { ...(dark.matches ? theme.dark : theme.light) };
-    const views = {};
-    for (const [id, { title }] of Object.entries(charts)) {
-      const box = element(id);
-      if (!box || typeof vegaEmbed === "undefined") continue;
-      const result = await vegaEmbed(box, specification(title, Math.max(160, box.clientWidth - 240)), { mode: "vega-lite", renderer: "svg", config, actions: false });
-      views[id] = result.view;
-    }
-    drawn = views;
-    draw();
+  // A chart is begun with its first values: Vega has no scale for none.
+  async function begin(id, values, spans) {
+    const box = element(id);
+    if (!box || typeof vegaEmbed === "undefined" || box.dataset.begun) return;
+    box.dataset.begun = "yes";
+    const spec = { ...specification(charts[id].title, Math.max(160, box.clientWidth - 240)), datasets: { values, phases: spans } };
+    const result = await vegaEmbed(box, spec, { mode: "vega-lite", renderer: "svg", config: dark.matches ? theme.dark : theme.light, actions: false });
+    drawn[id] = result.view;
   }
 
   function draw() {
     const spans = phases();
-    for (const [id, view] of Object.entries(drawn)) {
+    for (const id of Object.keys(charts)) {
       const values = charts[id].values();
-      view.data("values", values).data("phases", spans).runAsync();
-      element(id).dataset.points = values.length;
+      if (values.length < 2) continue;
+      if (drawn[id]) drawn[id].data("values", values).data("phases", spans).runAsync();
+      else begin(id, values, spans);
+      if (element(id)) element(id).dataset.points = values.length;
     }
   }
   let due = null;
@@ -161,6 +160,9 @@
   });
   events.addEventListener("error", () => (element("connection").textContent = "Nothing is heard of flightwatt watch: this page asks again every second."));
 
-  dark.addEventListener("change", prepare);
-  prepare();
+  dark.addEventListener("change", () => {
+    drawn = {};
+    for (const id of Object.keys(charts)) if (element(id)) delete element(id).dataset.begun;
+    draw();
+  });
 })();

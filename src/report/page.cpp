@@ -116,7 +116,7 @@ std::string live_page_html(const WebFiles& web) {
     };
     const auto list = [](const char* title, const char* id) {
         return fmt::format("<section><h2>{0}</h2><ul id=\"{1}\" aria-label=\"{0}\"{2}></ul></section>\n", title, id,
-                           std::string_view(id) == "alarms" ? " role=\"alert\"" : "");
+                           std::string_view(id) == "alarms" ? " aria-live=\"assertive\"" : "");
     };
     auto html = head_html({.title = "flightwatt watch", .facts = {}, .notes = {}}, web);
     boost::replace_first(html, "img-src data: blob:", "img-src data: blob:; connect-src 'self'");

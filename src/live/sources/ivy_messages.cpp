@@ -43,19 +43,20 @@ void IvyMessages::heed(std::string_view said) {
         const auto time_s = parse_number(rest.substr(std::min(rest.find_first_not_of(' '), rest.size())));
         if (!time_s || !std::isfinite(*time_s)) return void(++no_messages_);
         ++times_;
-        if (const auto replay = replays_.find(id); replay != replays_.end()) {
+        if (const auto replay = replays_.find(id); !has_aircraft_ && replay != replays_.end()) {
             replay->second.time_s = time_s;
+            latest_time_s_ = time_s;
             hand_on(replay->second);
         }
         return;
     }
     const auto id = id_after(replay_prefix, sender);
     if (id.empty()) {
-        if (is_id(sender) && aircraft_.size() < most_aircraft) aircraft_.emplace(sender);
-        return sink_({std::nullopt, std::string(said)});
+        if (is_id(sender)) has_aircraft_ = true;
+        // What the ground says beside a replay is said on its clock.
+        return sink_({has_aircraft_ ? std::nullopt : latest_time_s_, std::string(said)});
     }
-    if (aircraft_.contains(id) || (replays_.size() >= most_aircraft && !replays_.contains(id)))
-        return void(++unheeded_replays_);
+    if (has_aircraft_ || (replays_.size() >= most_aircraft && !replays_.contains(id))) return void(++unheeded_replays_);
     auto& replay = replays_[std::string(id)];
     replay.waiting.push_back(fmt::format("{}{}", id, rest));
     if (replay.waiting.size() > most_waiting) hand_on(replay);

@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +14,8 @@ namespace flightwatt::live {
 
 /// Telemetry out of what is said on an Ivy bus. An aircraft's messages are handed on at once; they have no time. What
 /// Paparazzi's log player says, "replay20 ENERGY ..." and after it "time20 13.9", becomes the message with its time,
-/// which is handed on with that time or, where none follows, with release(). Of an aircraft that is itself on the bus no
-/// replay is heeded.
+/// which is handed on with that time or, where none follows, with release(). While an aircraft
+/// itself is on the bus no replay is heeded: there is one clock.
 class IvyMessages {
   public:
     using Sink = std::function<void(IncomingMessage)>;
@@ -44,7 +43,8 @@ class IvyMessages {
 
     Sink sink_;
     std::map<std::string, Replay, std::less<>> replays_;  ///< by aircraft
-    std::set<std::string, std::less<>> aircraft_;         ///< whose own messages are on the bus
+    std::optional<double> latest_time_s_;                 ///< of any replay
+    bool has_aircraft_ = false;                           ///< itself is on the bus
     std::size_t times_ = 0, unheeded_replays_ = 0, no_messages_ = 0;
 };
 

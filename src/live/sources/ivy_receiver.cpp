@@ -43,7 +43,7 @@ void IvyReceiver::stop() {
 
 void IvyReceiver::heed(std::string_view said) {
     messages_.heed(said);
-    queue_.count("messages of a replay of an aircraft that is itself on the bus",
+    queue_.count("messages of a replay while an aircraft itself is on the bus",
                  messages_.unheeded_replays() - unheeded_replays_);
     queue_.count("messages of a single word", messages_.no_messages() - no_messages_);
     unheeded_replays_ = messages_.unheeded_replays();

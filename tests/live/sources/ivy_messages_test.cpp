@@ -61,15 +61,27 @@ TEST_F(IvyMessagesTest, HandOnWhatNoTimeFollows) {
     EXPECT_EQ(messages.no_messages(), 1U);
 }
 
-TEST_F(IvyMessagesTest, HeedNoReplayOfAnAircraftThatIsOnTheBus) {
+TEST_F(IvyMessagesTest, HeedNoReplayWhileAnAircraftIsOnTheBus) {
     messages.heed("20 ALIVE 1");
     messages.heed("replay20 ENERGY 57 11.62");
     messages.heed("time20 13.9");
     messages.heed("replay21 ENERGY 57 11.62");
     messages.heed("time21 13.9");
+    messages.heed("ground WIND 20 1 2");
     ASSERT_EQ(came.size(), 2U);
-    EXPECT_EQ(came[1].text, "21 ENERGY 57 11.62");
-    EXPECT_EQ(messages.unheeded_replays(), 1U);
+    EXPECT_EQ(came[1].text, "ground WIND 20 1 2");
+    EXPECT_EQ(came[1].time_s, std::nullopt);
+    EXPECT_EQ(messages.unheeded_replays(), 2U);
+}
+
+TEST_F(IvyMessagesTest, TakeWhatTheGroundSaysBesideAReplayOnItsClock) {
+    messages.heed("ground WIND 20 1 2");
+    messages.heed("replay20 ENERGY 57 11.62");
+    messages.heed("time20 13.9");
+    messages.heed("ground WIND 20 1 3");
+    ASSERT_EQ(came.size(), 3U);
+    EXPECT_EQ(came[0].time_s, std::nullopt);
+    EXPECT_EQ(came[2].time_s, 13.9);
 }
 
 }  // namespace
