@@ -18,7 +18,8 @@ namespace {
 
 /// The messages that an aircraft sends stand in class "telemetry"; other classes may reuse their names.
 void read_messages(std::vector<ProtocolMessage> protocol, LogConfiguration& configuration) {
-    std::ranges::stable_partition(protocol, [](const auto& message) { return message.class_name == "telemetry"; });
+    std::stable_partition(protocol.begin(), protocol.end(),
+                          [](const auto& message) { return message.class_name == "telemetry"; });
     for (auto& message : protocol) {
         auto name = message.definition.name;
         configuration.messages.emplace(std::move(name), std::move(message.definition));

@@ -47,7 +47,7 @@ inline FoundFrame read_message_header(const Frame& frame, LinkVersion version, c
         found.class_id = byte_at(bytes.data() + 2) & 0xF;  // the high bits are the component
     }
     found.id = byte_at(bytes.data() + header - 1);
-    found.fields = bytes.substr(header);
+    found.fields = {bytes.data() + header, bytes.size() - header};
     found.message = dictionary.find(found.class_id, found.id);
     found.fits = found.message != nullptr && found.message->fits(found.fields);
     return found;

@@ -46,22 +46,13 @@ inline double as_written(float value) {
     const auto reads_back = [&](int decimals) {
         return std::fabs(digits_of(decimals) - exact * tenths[decimals]) <= half_step * tenths[decimals];
     };
-    // Up to four decimals, else from six significant digits on: most floats of sensors need seven to nine. Asked for all at
-    // once, which is faster than one after the other. 1233 / 4096 is log10(2).
+    // Eight digits behind the leading zeros; most floats of sensors need seven to nine. 1233 / 4096 is log10(2).
     constexpr int most_decimals = 20;
-    const auto reading_back = [&](int first) {
-        unsigned found = 0;
-        for (int i = 0; i < 5; ++i) found |= (reads_back(first + i) ? 1U : 0U) << i;
-        return found;
-    };
-    int decimals = 0;
-    if (const auto few = reading_back(0); few != 0) {
-        decimals = std::countr_zero(few);
-    } else {
-        decimals = std::clamp(5 - (exponent * 1233 >> 12), 0, most_decimals - 5);
-        if (const auto some = reading_back(decimals); some != 0) decimals += std::countr_zero(some);
-        while (decimals > 0 && reads_back(decimals - 1)) --decimals;
-    }
+    int decimals = std::clamp(7 - (exponent * 1233 >> 12), 0, most_decimals - 2);
+    constexpr int often_enough = 4;
+    if (decimals > often_enough && reads_back(often_enough)) decimals = often_enough;
+    while (decimals > 0 && reads_back(decimals - 1)) --decimals;
+    while (decimals < most_decimals && !reads_back(decimals)) ++decimals;
     double number = digits_of(decimals) / tenths[decimals];
     while (decimals < most_decimals && static_cast<float>(number) != value) {
         ++decimals;

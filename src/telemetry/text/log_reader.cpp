@@ -108,7 +108,7 @@ class LogReader {
 
     std::string definitions() const {
         const auto& file = log_.configuration->file;
-        return file.extension() == ".log" ? "the .log" : file.filename().string();
+        return file.extension() == ".xml" ? file.filename().string() : "the .log";
     }
 
     std::string describe(const SkipKind& skip) const {

@@ -72,6 +72,7 @@ std::vector<Piece> a_log(Random& random, Framing framing, LinkVersion version, c
 
 void damage(Random& random, Piece& piece) {
     auto& bytes = piece.bytes;
+    if (bytes.size() < 2) return;  // little is left of it
     const auto before = bytes;
     const auto at = below(random, bytes.size());
     switch (below(random, 7)) {
