@@ -61,7 +61,7 @@ class Speaker {
 
     void say(const live::LiveState& state) {
         for (const auto& warning : state.warnings)
-            if (said_.size() < most_said && said_.insert(warning).second && !plot_) cli::warn(call_, warning);
+            if (said_.size() < most_said && said_.insert(kind_of(warning)).second && !plot_) cli::warn(call_, warning);
         if (state.battery && state.battery->state) soc_.add(state.time_s, state.battery->state->soc_percent);
         if (plot_) {
             draw(state);
@@ -92,12 +92,18 @@ class Speaker {
     static constexpr std::size_t most_said = 200;
     static constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
 
+    /// The same is said once, whatever numbers come with it: they change as the flight goes on.
+    static std::string kind_of(std::string warning) {
+        std::erase_if(warning, [](char c) { return c >= '0' && c <= '9'; });
+        return warning;
+    }
+
     void draw(const live::LiveState& state) {
         constexpr double often_s = 0.25;
         if (drawn_ && seconds_since(*drawn_) < often_s) return;
         drawn_ = Clock::now();
         auto lines = cli::screen_of(state, compute_);
-        for (const auto& warning : said_) lines.push_back("          " + warning);
+        for (const auto& warning : state.warnings) lines.push_back("          " + cli::one_line(warning));
         std::string text = "\x1b[H\x1b[J";  // the whole screen anew
         for (const auto& line : lines) text += line.substr(0, plot_->columns) + "\n";
         is_read_ = cli::print_at_once(text + curve(state));

@@ -21,15 +21,10 @@ namespace flightwatt::live {
 namespace {
 
 constexpr double judged_every_s = 30.0;  // the record's warnings take as long as all the rest
-constexpr std::size_t most_notes = 50;
 
 std::optional<double> last_of(const flight::ChosenTracks& tracks, const char* name) {
     const auto& track = tracks[name];
     return track.empty() ? std::nullopt : std::optional(track.value.back());
-}
-
-void note_once(std::vector<std::string>& notes, const std::string& text) {
-    if (notes.size() < most_notes && std::ranges::find(notes, text) == notes.end()) notes.push_back(text);
 }
 
 }  // namespace
@@ -269,11 +264,11 @@ void LiveFlight::Watch::judge(const flight::FlightSeries& series, const LiveStat
     options.flight_required = false;
     options.power_required = false;
     try {
-        const auto loaded = examine_flight(series, options);
-        for (const auto& warning : loaded.warnings) note_once(warnings_, warning);
-        if (!loaded.exclusion.empty()) note_once(warnings_, "no prediction can be trusted: " + loaded.exclusion);
+        auto loaded = examine_flight(series, options);
+        warnings_ = std::move(loaded.warnings);
+        if (!loaded.exclusion.empty()) warnings_.push_back("no prediction can be trusted: " + loaded.exclusion);
     } catch (const InputError& error) {
-        note_once(warnings_, error.what());
+        warnings_ = {error.what()};
     }
 }
 
