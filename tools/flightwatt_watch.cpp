@@ -52,6 +52,19 @@ std::optional<std::string> log_file_of(const cli::StageCall& call) {
     return beside ? std::optional(beside->string()) : std::nullopt;
 }
 
+/// A line in lines of so many columns, broken at blanks; those below are indented as a screen's texts are.
+std::string wrapped(std::string line, std::size_t columns) {
+    const std::string indent(10, ' ');
+    std::string text;
+    while (line.size() > columns) {
+        const auto blank = line.rfind(' ', columns);
+        if (blank == std::string::npos || blank <= indent.size()) break;
+        text += line.substr(0, blank) + "\n";
+        line = indent + line.substr(blank + 1);
+    }
+    return text + line + "\n";
+}
+
 /// What is said, in the way that was asked for.
 class Speaker {
   public:
@@ -105,7 +118,7 @@ class Speaker {
         auto lines = cli::screen_of(state, compute_);
         for (const auto& warning : state.warnings) lines.push_back("          " + cli::one_line(warning));
         std::string text = "\x1b[H\x1b[J";  // the whole screen anew
-        for (const auto& line : lines) text += line.substr(0, plot_->columns) + "\n";
+        for (const auto& line : lines) text += wrapped(line, plot_->columns);
         is_read_ = cli::print_at_once(text + curve(state));
     }
 
