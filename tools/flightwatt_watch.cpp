@@ -34,6 +34,19 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+/// A line in lines of so many columns, broken at blanks; those below are indented as a screen's texts are.
+std::string wrapped(std::string line, std::size_t columns) {
+    const std::string indent(10, ' ');
+    std::string text;
+    while (line.size() > columns) {
+        const auto blank = line.rfind(' ', columns);
+        if (blank == std::string::npos || blank <= indent.size()) break;
+        text += line.substr(0, blank) + "\n";
+        line = indent + line.substr(blank + 1);
+    }
+    return text + line + "\n";
+}
+
 /// What is said, in the way that was asked for.
 class Speaker {
   public:
@@ -43,7 +56,7 @@ class Speaker {
 
     void say(const live::LiveState& state) {
         for (const auto& warning : state.warnings)
-            if (said_.size() < most_said && said_.insert(warning).second && !plot_) cli::warn(call_, warning);
+            if (said_.size() < most_said && said_.insert(kind_of(warning)).second && !plot_) cli::warn(call_, warning);
         if (state.battery && state.battery->state) soc_.add(state.time_s, state.battery->state->soc_percent);
         if (plot_) {
             draw(state);
@@ -74,14 +87,20 @@ class Speaker {
     static constexpr std::size_t most_said = 200;
     static constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
 
+    /// The same is said once, whatever numbers come with it: they change as the flight goes on.
+    static std::string kind_of(std::string warning) {
+        std::erase_if(warning, [](char c) { return c >= '0' && c <= '9'; });
+        return warning;
+    }
+
     void draw(const live::LiveState& state) {
         constexpr double often_s = 0.25;
         if (drawn_ && seconds_since(*drawn_) < often_s) return;
         drawn_ = Clock::now();
         auto lines = cli::screen_of(state, compute_);
-        for (const auto& warning : said_) lines.push_back("          " + warning);
+        for (const auto& warning : state.warnings) lines.push_back("          " + cli::one_line(warning));
         std::string text = "\x1b[H\x1b[J";  // the whole screen anew
-        for (const auto& line : lines) text += line.substr(0, plot_->columns) + "\n";
+        for (const auto& line : lines) text += wrapped(line, plot_->columns);
         is_read_ = cli::print_at_once(text + curve(state));
     }
 

@@ -1,6 +1,5 @@
 #include "live/live_flight.h"
 
-#include "base/error.h"
 #include "flight/chosen_track.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
@@ -13,6 +12,7 @@
 #include "mechanical/prediction.h"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,19 +21,15 @@ namespace flightwatt::live {
 namespace {
 
 constexpr double judged_every_s = 30.0;  // the record's warnings take as long as all the rest
-constexpr std::size_t most_notes = 50;
 
 std::optional<double> last_of(const flight::ChosenTracks& tracks, const char* name) {
     const auto& track = tracks[name];
     return track.empty() ? std::nullopt : std::optional(track.value.back());
 }
 
-void note_once(std::vector<std::string>& notes, const std::string& text) {
-    if (notes.size() < most_notes && std::ranges::find(notes, text) == notes.end()) notes.push_back(text);
-}
-
 }  // namespace
 
+/// What cannot be computed from what came in is said, and the watch goes on: whatever a library throws of it.
 class LiveFlight::Watch {
   public:
     Watch(LiveOptions options, std::optional<PredictionBasis> basis, std::unique_ptr<LiveSchedule> schedule)
@@ -135,7 +131,11 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     look_at_flight(series, state);
     look_at_battery_of(series, state, record);
     predict(series, record, state);
-    look_ahead(state);
+    try {
+        look_ahead(state);
+    } catch (const std::exception& error) {
+        state.warnings.emplace_back(error.what());
+    }
     decide(state);
     judge(series, state);
     state.warnings.insert(state.warnings.begin(), warnings_.begin(), warnings_.end());
@@ -157,7 +157,7 @@ void LiveFlight::Watch::look_at_flight(const flight::FlightSeries& series, LiveS
     const flight::ChosenTracks tracks(series);
     try {
         if (!tracks["altitude_m"].empty()) phases_ = segment(series, {});
-    } catch (const InputError& error) {
+    } catch (const std::exception& error) {
         state.waits_for = error.what();
     }
     sorties_kept_ = phases_.sorties.size();
@@ -210,12 +210,8 @@ void LiveFlight::Watch::predict(const flight::FlightSeries& series,
         }
         state.prediction = std::move(energy);
         state.expected_power_w = power_ahead(*state.prediction).front().power_w;
-    } catch (const InputError& error) {
-        state.waits_for = error.what();
-    } catch (const NoAnswerError& error) {
+    } catch (const std::exception& error) {
         state.waits_for = without_flight_name(error.what(), series.flight);
-    } catch (const UsageError& error) {
-        state.waits_for = error.what();
     }
     state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
 }
@@ -254,9 +250,7 @@ void LiveFlight::Watch::decide(LiveState& state) {
     const auto now = state.battery ? state.battery->state : std::nullopt;
     try {
         state.decision = schedule_->at({phase, state.phase ? state.phase_s : 0.0}, state.time_s, now);
-    } catch (const InputError& error) {
-        state.warnings.push_back(fmt::format("no schedule: {}", error.what()));
-    } catch (const NoAnswerError& error) {
+    } catch (const std::exception& error) {
         state.warnings.push_back(fmt::format("no schedule: {}", error.what()));
     }
 }
@@ -269,11 +263,11 @@ void LiveFlight::Watch::judge(const flight::FlightSeries& series, const LiveStat
     options.flight_required = false;
     options.power_required = false;
     try {
-        const auto loaded = examine_flight(series, options);
-        for (const auto& warning : loaded.warnings) note_once(warnings_, warning);
-        if (!loaded.exclusion.empty()) note_once(warnings_, "no prediction can be trusted: " + loaded.exclusion);
-    } catch (const InputError& error) {
-        note_once(warnings_, error.what());
+        auto loaded = examine_flight(series, options);
+        warnings_ = std::move(loaded.warnings);
+        if (!loaded.exclusion.empty()) warnings_.push_back("no prediction can be trusted: " + loaded.exclusion);
+    } catch (const std::exception& error) {
+        warnings_ = {error.what()};
     }
 }
 

@@ -185,6 +185,9 @@ TEST(LiveFlight, GarbageOtherAircraftAndDamageChangeNothing) {
             case 6:
                 disturbed.receive({time_s, "ground FLIGHT_PARAM 7 0 0 0"}, 0.0);
                 break;
+            case 8:
+                disturbed.receive({time_s + 45.0, "7 ENERGY 99 9.9 50 500 9 99"}, 0.0);
+                break;
             case 7:
                 disturbed.receive({-1e9, "7 ESTIMATOR 5000 0"}, 0.0);
                 break;

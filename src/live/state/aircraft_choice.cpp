@@ -1,10 +1,10 @@
 #include "live/state/aircraft_choice.h"
 
-#include "base/error.h"
 #include "flight/chosen_track.h"
 #include "flight/segmentation.h"
 
 #include <algorithm>
+#include <exception>
 
 namespace flightwatt::live {
 namespace {
@@ -14,7 +14,7 @@ bool has_flown(const flight::FlightSeries& series) {
     if (flight::chosen_track(series, "altitude_m").time_s.size() < least_samples) return false;
     try {
         return !segment(series).sorties.empty();
-    } catch (const InputError&) {
+    } catch (const std::exception&) {
         return false;
     }
 }

@@ -1,6 +1,5 @@
 #include "live/state/battery_check.h"
 
-#include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/chosen_track.h"
@@ -8,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <functional>
 
 #include <boost/math/distributions/normal.hpp>
@@ -121,11 +121,11 @@ LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<do
         set_initial(basis, carried_percent, *record, result);
         result.drawn_ah = record->charge_ah.back();
         result.state = state_after(battery, *record, result.initial_soc_percent);
+        result.state->soc_percent =
+            std::min(result.state->soc_percent, units::percent_per_whole);  // a counter ran back
         result.soc_percent = result.state->soc_percent;
         compare_voltage(battery, *record, result);
-    } catch (const InputError&) {
-        look_at_voltage(battery, series, result);
-    } catch (const NoAnswerError&) {  // more was drawn than there was
+    } catch (const std::exception&) {  // no record yet, or more was drawn than there was
         look_at_voltage(battery, series, result);
     }
     return result;

@@ -15,20 +15,32 @@ bool ClockFilter::push(double time_s, std::string text, bool restarted, std::vec
         held_.clear();
     }
     Line line{time_s + offset_s_, std::move(text)};
-    if (started_ && !anew && std::abs(line.time_s - latest_s_) > most_step_s) return hold(std::move(line), believed);
+    const double ahead_s = line.time_s - latest_s_;
+    if (started_ && !anew && (ahead_s > most_ahead_s || ahead_s < -most_step_s)) return hold(std::move(line), believed);
     unconfirmed_ += held_.size();
     held_.clear();
+    if (!started_ || anew || line.time_s > latest_s_ + late_s) near_latest_ = 0;
     latest_s_ = started_ && !anew ? std::max(latest_s_, line.time_s) : line.time_s;
     started_ = true;
-    late_ = line.time_s < latest_s_ - late_s ? late_ + 1 : 0;
-    if (late_ == late_lines) {
-        offset_s_ += latest_s_ - line.time_s;
-        line.time_s = latest_s_;
-        late_ = 0;
-        ++steps_back_;
-    }
+    look_at_late(line);
     believed.push_back(std::move(line));
     return anew;
+}
+
+void ClockFilter::look_at_late(Line& line) {
+    const bool is_late = line.time_s < latest_s_ - late_s;
+    late_ = is_late ? late_ + 1 : 0;
+    near_latest_ += is_late ? 0 : 1;
+    if (late_ < late_lines) return;
+    late_ = 0;
+    if (near_latest_ < agreeing) {
+        ++unconfirmed_;
+        latest_s_ = line.time_s;
+        return;
+    }
+    offset_s_ += latest_s_ - line.time_s;
+    line.time_s = latest_s_;
+    ++steps_back_;
 }
 
 bool ClockFilter::hold(Line line, std::vector<Line>& believed) {
@@ -45,6 +57,7 @@ bool ClockFilter::hold(Line line, std::vector<Line>& believed) {
     }
     latest_s_ = std::ranges::max(held_, {}, &Line::time_s).time_s;
     late_ = 0;
+    near_latest_ = agreeing;
     std::ranges::move(held_, std::back_inserter(believed));
     held_.clear();
     return anew;

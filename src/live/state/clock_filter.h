@@ -7,12 +7,14 @@
 
 namespace flightwatt::live {
 
-/// What to believe of the times that come in. A time more than a minute from the latest one counts when four more
-/// behind it agree (a single one is a damaged line): forwards it is a gap, backwards the log or the aircraft began anew.
-/// A clock that went back by less goes on from where it was: ten lines in a row more than 2 s behind the latest show it.
+/// What to believe of the times that come in. A time more than 10 s ahead of the latest one, or a minute behind it,
+/// counts when four more behind it agree (a single one is a damaged line): forwards it is a gap, backwards the log or the
+/// aircraft began anew. Ten lines in a row more than 2 s behind the latest say that the clock went back: it goes on from
+/// where it was; or, where fewer than five lines had come near the latest, that the latest was damaged.
 class ClockFilter {
   public:
     static constexpr double most_step_s = 60.0;
+    static constexpr double most_ahead_s = 10.0;
     static constexpr std::size_t agreeing = 5;
     static constexpr double late_s = 2.0;
     static constexpr std::size_t late_lines = 10;
@@ -35,11 +37,13 @@ class ClockFilter {
 
   private:
     bool hold(Line line, std::vector<Line>& believed);
+    void look_at_late(Line& line);
 
     bool started_ = false;
     double latest_s_ = 0.0;
     double offset_s_ = 0.0;
     std::size_t late_ = 0;
+    std::size_t near_latest_ = 0;  ///< lines since it was reached that are not late
     std::vector<Line> held_;
     std::size_t unconfirmed_ = 0;
     std::size_t steps_back_ = 0;

@@ -20,11 +20,21 @@ std::vector<double> pushed(ClockFilter& filter, const std::vector<double>& times
     return times_of(believed);
 }
 
-TEST(ClockFilter, GapsUpToAMinuteAndLateLinesCountAtOnce) {
+TEST(ClockFilter, ShortGapsAndLateLinesCountAtOnce) {
     ClockFilter filter;
-    const std::vector<double> times{10.0, 10.0, 32.0, 31.5, 92.0};
+    const std::vector<double> times{10.0, 10.0, 20.0, 11.5, 29.0};
     EXPECT_EQ(pushed(filter, times), times);
-    EXPECT_EQ(filter.latest_s(), 92.0);
+    EXPECT_EQ(filter.latest_s(), 29.0);
+}
+
+TEST(ClockFilter, ADamagedTimeALittleAheadDoesNotMoveTheClock) {
+    ClockFilter filter;
+    std::vector<double> times{10.0, 19.0};
+    for (int i = 1; i <= 30; ++i) times.push_back(10.0 + 0.1 * i);
+    EXPECT_EQ(pushed(filter, times), times);
+    EXPECT_EQ(filter.latest_s(), 13.0);
+    EXPECT_EQ(filter.steps_back(), 0U);
+    EXPECT_EQ(pushed(filter, {45.0, 13.1}), (std::vector<double>{13.1}));
 }
 
 TEST(ClockFilter, ADamagedTimeIsNotBelieved) {
@@ -71,7 +81,7 @@ TEST(ClockFilter, ASourceThatBeganAnewNeedsNoOthersToAgree) {
 
 TEST(ClockFilter, AClockThatSteppedBackGoesOnFromWhereItWas) {
     ClockFilter filter;
-    pushed(filter, {100.0});
+    pushed(filter, {99.0, 99.5, 99.8, 99.9, 100.0});
     std::vector<double> times;
     for (int i = 0; i < 20; ++i) times.push_back(70.0 + i);
     const auto believed = pushed(filter, times);
