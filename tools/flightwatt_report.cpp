@@ -117,12 +117,26 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
         report::identify_for_report(content.flights, identification, cli::count_option(call, "max-battery-flights"))));
 }
 
+/// What the batch's fit took of its flights, with the power that their series hold.
+std::vector<mechanical::MeasuredFlight> flights_with_power(const report::BatchContent& content) {
+    auto flights = content.measured;
+    for (const auto& logged : content.flights) {
+        if (!logged.rejected.empty()) continue;
+        for (auto& measured : mechanical::measure_flights(logged.series, logged.phases, 1).flights) {
+            const auto same = std::ranges::find_if(
+                flights, [&](const auto& flight) { return flight.samples.flight == measured.samples.flight; });
+            if (same != flights.end()) same->power = std::move(measured.power);
+        }
+    }
+    return flights;
+}
+
 /// The missions on the batch's flights.
 void add_replay(Page& page, const cli::StageCall& call, const ReportInputs& inputs) {
     const auto content = report::read_batch_content(*inputs.out);
     mission::ReplayOptions options;
     if (content.fit) options.fit = content.fit->options;
-    const auto replays = replay_flights(inputs.missions, content.measured, options);
+    const auto replays = replay_flights(inputs.missions, flights_with_power(content), options);
     for (const auto& left : replays.not_replayed)
         cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
     if (replays.replays.empty())
