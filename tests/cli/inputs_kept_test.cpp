@@ -185,10 +185,33 @@ void make_alias(Alias alias, const std::filesystem::path& input, const std::file
 }
 
 /// The metavariables of the help that name no file.
-const std::set<std::string> no_files{"N",           "S",      "X",       "P",       "M",           "W",
-                                     "A",           "AH",     "MB",      "HOW",     "NAME",        "TITLE",
-                                     "ID",          "FLIGHT", "A,B",     "KIND",    "A,B,power_w", "FLIGHT[:PHASE]=W",
-                                     "NAME[,NAME]", "S|now",  "M_PER_S", "PERCENT", "COMMAND"};
+const std::set<std::string> no_files{"N",
+                                     "S",
+                                     "X",
+                                     "P",
+                                     "M",
+                                     "W",
+                                     "A",
+                                     "AH",
+                                     "MB",
+                                     "HOW",
+                                     "NAME",
+                                     "TITLE",
+                                     "ID",
+                                     "FLIGHT",
+                                     "A,B",
+                                     "KIND",
+                                     "A,B,power_w",
+                                     "FLIGHT[:PHASE]=W",
+                                     "NAME[,NAME]",
+                                     "S|now",
+                                     "M_PER_S",
+                                     "PERCENT",
+                                     "COMMAND",
+                                     "PORT",
+                                     "ADDRESS:PORT",
+                                     "DEVICE:BAUD",
+                                     "TARGET"};
 
 /// Options that name files to read; those that write have a command above.
 const std::set<std::string> reading{"--published", "--model",   "--mission",   "--disturb",

@@ -165,13 +165,15 @@ void add_basis_options(boost::program_options::options_description& options, Pat
 PredictionBasis read_basis(const StageCall& call, PathNeed need, std::optional<mission::AnyMission>* mission) {
     if (call.has("initial-soc") && !call.has("battery") && (need == PathNeed::required || !call.has("mission")))
         throw UsageError("--initial-soc goes with --battery");
+    std::optional<double> initial_soc_percent;
+    if (call.has("initial-soc"))
+        initial_soc_percent = number_option(call, "initial-soc", 0.0, units::percent_per_whole);
     auto basis = call.has("mission") ? read_mission_basis(call, need, mission) : read_model_basis(call);
     if (const auto file = call.maybe<std::string>("battery")) {
         basis.battery = battery::read_battery(*file);
         basis.battery_file = *file;
     }
-    if (call.has("initial-soc"))
-        basis.initial_soc_percent = number_option(call, "initial-soc", 0.0, units::percent_per_whole);
+    if (initial_soc_percent) basis.initial_soc_percent = initial_soc_percent;
     return basis;
 }
 
