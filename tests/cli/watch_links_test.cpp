@@ -48,12 +48,13 @@ class WatchLinks : public testing::Test {
             (test::source_dir() / "fits").string());
     }
 
-    /// Watches what is played there, and returns the last prediction.
-    Json watch(const std::string& source, const std::string& target, const std::function<bool()>& listens) {
+    /// Watches what is played there so many times as fast, and returns the last prediction.
+    Json watch(const std::string& source, const std::string& target, int speed, const std::function<bool()>& listens) {
         const auto command = "exec flightwatt-watch " + source + basis() + " --json > watched";
         const auto watching = start_shell(command);
         EXPECT_TRUE(test::wait_until(listens));
-        const auto played = test::run_shell("flightwatt play flown.data --speed 400 --to " + target, folder);
+        const auto played =
+            test::run_shell(fmt::format("flightwatt play flown.data --speed {} --to {}", speed, target), folder);
         EXPECT_EQ(played.code, 0) << played.err;
         const auto until_s = expected.at("until_s").get<double>();
         std::size_t seconds = 0;
@@ -64,7 +65,7 @@ class WatchLinks : public testing::Test {
             seconds = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
             return text.ends_with('\n') && Json::parse(now).at("silent_s").get<double>() > 0.0;
         })) << until_s;
-        EXPECT_GT(seconds, 300U);
+        EXPECT_GT(seconds, 100U);  // of 464; a busy machine passes over some
         ::kill(watching, SIGTERM);
         EXPECT_EQ(test::exit_code_of(watching), 0);
         const auto text = read_file(folder / "watched");
@@ -109,15 +110,15 @@ bool is_taken(std::uint16_t port) {
 
 TEST_F(WatchLinks, OverAnIvyBusWithItsTimesItIsTheSame) {
     const auto bus = fmt::format("127.255.255.255:{}", test::free_udp_port());
-    expect_near(watch("--ivy " + bus + " --log flown.log", "ivy:" + bus, [] { return true; }), 1e-5);
+    expect_near(watch("--ivy " + bus + " --log flown.log", "ivy:" + bus, 400, [] { return true; }), 1e-5);
 }
 
 TEST_F(WatchLinks, OverUdpItIsTheSameButForTimesOfArrival) {
     const auto port = test::free_udp_port();
     const auto source =
-        fmt::format("--udp {} --messages flown.log --clock-factor 400 --serve {}", port, test::free_udp_port());
-    // Of arrivals some come late by milliseconds, which are seconds at this speed.
-    expect_near(watch(source, fmt::format("udp:127.0.0.1:{}", port), [&] { return is_taken(port); }), 0.05);
+        fmt::format("--udp {} --messages flown.log --clock-factor 100 --serve {}", port, test::free_udp_port());
+    // Of arrivals some come late by milliseconds, of a busy machine by tens, which are seconds at this speed.
+    expect_near(watch(source, fmt::format("udp:127.0.0.1:{}", port), 100, [&] { return is_taken(port); }), 0.05);
 }
 
 }  // namespace
