@@ -1,9 +1,10 @@
 // Any bytes as a binary log: of each framing and version, into columns and as text, whole and in pieces.
 
+#include "telemetry/binary_log.h"
+
 #include "flight/telemetry_series.h"
 #include "fuzz/fuzz_target.h"
 #include "helpers/binary_definitions.h"
-#include "telemetry/binary_log.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <utility>
 
 #include <boost/asio/buffer.hpp>
@@ -59,8 +60,12 @@ class IvyTarget : public PlaybackTarget {
         agent_.start();
     }
     ~IvyTarget() override {
-        agent_.stop();
-        context_.run();  // what was begun ends, since all is closed
+        try {
+            agent_.stop();
+            context_.run();  // what was begun ends, since all is closed
+        } catch (const std::exception&) {
+            // Peers that are left without a good-bye see that the line is closed.
+        }
     }
 
     bool is_heard(std::chrono::milliseconds timeout) override {
