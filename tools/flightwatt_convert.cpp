@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -138,6 +140,12 @@ Json summary(const flight::FlightFile& file, const ConvertedLog& log, const std:
             {"warnings", warnings}};
 }
 
+/// Not an input: it may be written over if that changes nothing.
+bool holds(const std::filesystem::path& file, const std::string& text) {
+    std::ifstream stream(file, std::ios::binary);
+    return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == text;
+}
+
 /// NAME.log for NAME.data, where the binary log has one beside it that is not there already.
 std::optional<std::filesystem::path> log_to_write(const cli::StageCall& call, const std::filesystem::path& log) {
     const auto own = telemetry::find_log_file(log);
@@ -168,7 +176,15 @@ int convert(const cli::StageCall& call) {
                          "expected the .LOG or .tlm of an SD card, or a capture of a link");
     }
     const auto log_file = log_to_write(call, path);
-    if (log_file) declare_output(*log_file);
+    if (log_file) {
+        declare_output(*log_file);
+        if (std::filesystem::exists(*log_file) && !holds(*log_file, file.log_text().value())) {
+            throw UsageError(
+                fmt::format("{} is there already, with other definitions than {}: move it away, or name "
+                            "another output",
+                            log_file->string(), file.log_file().string()));
+        }
+    }
     const auto converted = convert_log(file);
     file.require_unchanged();
     if (log_file) write_file_atomically(*log_file, file.log_text().value());

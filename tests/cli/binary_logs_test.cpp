@@ -68,6 +68,18 @@ TEST_F(BinaryLogs, AreReadAsTheirTextByEveryProgram) {
     EXPECT_TRUE(unpacked == printed("parse card/a.LOG.gz"));
 }
 
+TEST_F(BinaryLogs, NeverReplaceTheDefinitionsOfAnotherFlight) {
+    write_file_atomically(folder / "text" / "a.log", "of another flight");
+    const auto refused = run("convert card/a.LOG -o text/a.data");
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("text/a.log is there already, with other definitions than card/a.log"));
+    EXPECT_EQ(read_file(folder / "text" / "a.log"), "of another flight");
+    EXPECT_FALSE(std::filesystem::exists(folder / "text" / "a.data"));
+    std::filesystem::remove(folder / "text" / "a.log");
+    EXPECT_EQ(run("convert card/a.LOG -o text/a.data").code, 0);
+    EXPECT_EQ(run("convert card/a.LOG -o text/a.data").code, 0);  // the same again
+}
+
 TEST_F(BinaryLogs, WithoutALogTakeTheirDefinitionsFromMessages) {
     for (const std::string command : {"parse bare/a.tlm", "convert bare/b.tlm"}) {
         const auto refused = run(command);
