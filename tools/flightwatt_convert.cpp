@@ -81,6 +81,7 @@ ConvertedLog convert_log(const flight::FlightFile& file) {
 /// "103 of class 1: 10 frames".
 std::vector<std::string> told_ids(const std::map<std::uint16_t, std::size_t>& ids) {
     std::vector<std::string> told;
+    told.reserve(ids.size());
     for (const auto& [number, frames] : ids) {
         told.push_back(
             fmt::format("{} of class {} ({} frame{})", number % 256, number / 256, frames, frames == 1 ? "" : "s"));

@@ -4,6 +4,7 @@
 #include "telemetry/link_decoder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -169,7 +170,7 @@ inline std::string card_log(std::string_view data, const telemetry::MessageDicti
         if (blank == std::string::npos) continue;
         const auto message = binary_message(std::string_view(line).substr(blank + 1), dictionary, version);
         if (!message) continue;
-        log += card_frame(*message, static_cast<std::uint32_t>(std::strtod(line.c_str(), nullptr) * 1e4 + 0.5));
+        log += card_frame(*message, static_cast<std::uint32_t>(std::llround(std::strtod(line.c_str(), nullptr) * 1e4)));
     }
     return log;
 }
