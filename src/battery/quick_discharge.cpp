@@ -150,6 +150,7 @@ Discharge quick_discharge(const Battery& battery, const Load& load, const Batter
     }
     if (state.soc_percent <= 0.0) return {{0.0, state.rc_voltage_v}, load.start_s};
     const double length_s = load.end_s - load.start_s;
+    if (length_s == 0.0) return {state};
     const double longest_s = longest_step_s(*battery.thevenin, steps.longest_s);
     const auto count = static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / longest_s * (1.0 - 1e-12))));
     const double step_s = length_s / static_cast<double>(count);

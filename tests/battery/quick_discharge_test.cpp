@@ -41,6 +41,17 @@ DrawnLoad drawn_load(std::mt19937_64& random, double start_s, bool constant) {
     return {{power_w, start_s, end_s}, 2.0 * 3.14159265 / (12.0 * 3.0 * omega)};
 }
 
+TEST(QuickDischarge, ChangesNothingInNoTime) {
+    std::mt19937_64 random(4712);
+    const auto pack = drawn_pack(random);
+    const BatteryState before{61.25, 0.125};
+    const auto after = quick_discharge(pack, {[](double) { return 30.0; }, 12.0, 12.0}, before, {20.0, 9.0});
+    EXPECT_EQ(after.soc_percent, before.soc_percent);
+    EXPECT_EQ(after.rc_voltage_v, before.rc_voltage_v);
+    EXPECT_FALSE(after.undeliverable);
+    EXPECT_FALSE(after.ended_at_s());
+}
+
 TEST(QuickDischarge, IsTheExactOneWithinItsTolerance) {
     std::mt19937_64 random(4711);
     std::size_t ended = 0;

@@ -89,6 +89,22 @@ TEST(SampledFlights, GiveBandsOverTime) {
     EXPECT_NEAR(bands.back().p50_percent, 100.0 - 20.0 / 0.36, 0.15);
 }
 
+TEST(SampledFlights, AreTheSameWithBandsOnATheveninPack) {
+    const auto mission = mission::read_mission(test::source_dir() / "missions/synthetic/thevenin-pack.toml");
+    const auto alone = sample_flights(prepare(mission), {}, {50, 1, 0});
+    const auto banded = sample_flights(prepare(mission), {}, {50, 1, 12});
+    EXPECT_EQ(banded.probability_below_reserve, alone.probability_below_reserve);
+    EXPECT_NEAR(banded.final_soc_mean_percent, alone.final_soc_mean_percent, 1e-3) << "the steps end elsewhere";
+    ASSERT_EQ(banded.bands.size(), 12U);
+    double last_percent = 100.0;
+    for (const auto& band : banded.bands) {
+        EXPECT_LE(band.p05_percent, band.p50_percent);
+        EXPECT_LE(band.p50_percent, last_percent);
+        last_percent = band.p50_percent;
+    }
+    EXPECT_NEAR(last_percent, banded.final_soc_mean_percent, 1.0);
+}
+
 TEST(SampledFlights, LetAnAdaptivePolicyAnswerEachFlight) {
     auto adaptive = test::paper_problem("adaptive-replanned");
     adaptive.uncertainty.level_sd_percent[flight::Phase::cruise] = 5.0;
