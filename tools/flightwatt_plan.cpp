@@ -141,19 +141,21 @@ int answer(const cli::StageCall& call, const mission::MissionSetup& mission, con
     return cli::ok;
 }
 
-/// --longest-cruise of a mission that says where it flies.
-int answer_of_path(const cli::StageCall& call, const MissionFile& file, const mission::AnyMission& mission,
-                   const mission::CruisePath& cruise) {
+/// --longest-cruise.
+int answer_reach(const cli::StageCall& call, const MissionFile& file) {
+    const auto reach = mission::longest_reach(
+        [&](const mission::MissionReading& reading) { return file.read(reading); }, probability(call));
+    const auto mission = file.read();
     const auto& setup = setup_of(mission);
-    const auto& path = cruise.plan->path;
-    if (question_of(path) == mission::PathQuestion::circles) {
-        const auto most =
-            mission::most_circles([&](double circles) { return file.read({.circles = circles}); }, probability(call));
-        return answer(call, setup, "most_circles", "circles", most);
+    switch (reach.unit) {
+        case mission::ReachUnit::circles:
+            return answer(call, setup, "most_circles", "circles", reach.limit);
+        case mission::ReachUnit::return_m:
+            return answer(call, setup, "farthest_return_m", "m", reach.limit);
+        case mission::ReachUnit::cruise_s:
+            break;
     }
-    const auto most = mission::farthest_return([&](double after_m) { return file.read({.return_after_m = after_m}); },
-                                               length_of_legs_m(path), probability(call));
-    return answer(call, setup, "farthest_return_m", "m", most);
+    return answer(call, setup, "longest_cruise_s", "s", reach.limit);
 }
 
 int plan_file(const cli::StageCall& call) {
@@ -161,13 +163,7 @@ int plan_file(const cli::StageCall& call) {
     const bool cruise = call.has("longest-cruise");
     const bool payload = call.has("largest-payload");
     if (cruise && payload) throw UsageError("--longest-cruise and --largest-payload are two questions: ask one");
-    if (cruise) {
-        const auto mission = file.read();
-        if (const auto& flown = setup_of(mission).cruise_path) return answer_of_path(call, file, mission, *flown);
-        const auto most = mission::longest_cruise([&](double cruise_s) { return file.read_with_cruise(cruise_s); },
-                                                  probability(call));
-        return answer(call, setup_of(mission), "longest_cruise_s", "s", most);
-    }
+    if (cruise) return answer_reach(call, file);
     if (payload) {
         const auto mission = file.read();
         return answer(call, setup_of(mission), "largest_payload_w", "W", largest_payload(mission, probability(call)));

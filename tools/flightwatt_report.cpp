@@ -8,7 +8,9 @@
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "flight/flight_identity.h"
+#include "mechanical/model_check.h"
 #include "mission/mission_file.h"
+#include "report/answers_section.h"
 #include "report/batch_content.h"
 #include "report/battery_section.h"
 #include "report/figure_files.h"
@@ -67,25 +69,34 @@ std::string time_of_report() {
 struct Page {
     report::PageHead head;
     std::vector<report::Section> sections;
+    report::PageAnswers answers;
+    std::vector<report::ReportFlight> flights;
+    std::optional<mechanical::MechanicalModel> model;  ///< of the flights
 };
 
 /// The flights' model with its validation.
 void add_model(Page& page, const cli::StageCall& call, const report::BatchContent& content,
                const report::PublishedFigures& figures) {
     if (!content.fit) {
-        page.head.notes.push_back("There is no model of these flights: the batch could not fit them.");
+        page.answers.notes.push_back("There is no model of these flights: the batch could not fit them.");
         return;
     }
-    page.sections.push_back(model_section(report::model_of(*content.fit, cli::read_published(call)), figures, "model"));
+    page.model = content.fit->model;
+    page.answers.warnings = model_warnings(*page.model);
+    auto model = report::model_of(*content.fit, cli::read_published(call));
+    const bool synthetic = report::any_synthetic(content.flights);
+    if (synthetic) model.origin = "Fitted by flightwatt batch to the SYNTHETIC flights above: no aircraft flew them.";
+    page.sections.push_back(model_section(model, figures, "model"));
     const auto most = cli::count_option(call, "max-validation-flights");
     if (content.measured.size() < 2 || content.measured.size() > most) {
-        page.head.notes.push_back(
+        page.answers.notes.push_back(
             fmt::format("The model is validated with 2 to {} flights, and there are {}; flightwatt validate does it.",
                         most, content.measured.size()));
         return;
     }
     if (auto section = report::physical_section(content.measured)) page.sections.push_back(std::move(*section));
-    page.sections.push_back(report::validation_section(leave_one_out(content.measured, content.fit->options)));
+    page.answers.validated = leave_one_out(content.measured, content.fit->options);
+    page.sections.push_back(report::validation_section(page.answers.validated, synthetic));
 }
 
 /// Why there is no battery of these flights: they are of several aircraft, and the batch was not asked to mix them.
@@ -103,18 +114,35 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
                const report::PublishedFigures& figures) {
     battery::IdentificationOptions identification;
     identification.capacity_ah = cli::positive_option(call, "capacity", "Ah");
-    const auto content = report::read_batch_content(out);
+    auto content = report::read_batch_content(out);
     for (const auto& damaged : content.damaged) cli::warn(call, damaged);
     page.head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
     page.sections.push_back(
         report::flights_section(content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt));
     add_model(page, call, content, figures);
     if (const auto mix = mix_of(content); !mix.empty()) {
-        page.head.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
-        return;
+        page.answers.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
+    } else {
+        page.sections.push_back(report::battery_section(report::identify_for_report(
+            content.flights, identification, cli::count_option(call, "max-battery-flights"))));
     }
-    page.sections.push_back(report::battery_section(
-        report::identify_for_report(content.flights, identification, cli::count_option(call, "max-battery-flights"))));
+    page.flights = std::move(content.flights);
+}
+
+/// What the missions come to: answers and evidence.
+void add_missions(Page& page, const ReportInputs& inputs, const report::PublishedFigures& figures) {
+    std::string names;
+    for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + setup_of(mission).file;
+    page.head.facts.emplace_back("missions", names);
+    page.answers.missions = report::simulate_for_report(inputs.missions);
+    for (std::size_t i = 0; i < inputs.missions.size(); ++i) {
+        const std::filesystem::path file = setup_of(inputs.missions[i]).file;
+        page.answers.answers.push_back(report::answer_for(
+            page.answers.missions[i],
+            [&](const mission::MissionReading& reading) { return mission::read_mission(file, reading); }));
+    }
+    auto sections = mission_sections(page.answers.missions, figures, page.model);
+    std::move(sections.begin(), sections.end(), std::back_inserter(page.sections));
 }
 
 /// What the batch's fit took of its flights, with the power that their series hold.
@@ -140,7 +168,7 @@ void add_replay(Page& page, const cli::StageCall& call, const ReportInputs& inpu
     for (const auto& left : replays.not_replayed)
         cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
     if (replays.replays.empty())
-        page.head.notes.emplace_back("There is no replay: no mission could be flown on any flight.");
+        page.answers.notes.emplace_back("There is no replay: no mission could be flown on any flight.");
     else
         page.sections.push_back(report::replay_section(replays.replays));
 }
@@ -152,7 +180,16 @@ nlohmann::ordered_json summary_json(const Page& page) {
             figures.push_back({{"id", figure.id}, {"section", section.title}, {"description", figure.description}});
         }
     }
-    return {{"title", page.head.title}, {"notes", page.head.notes}, {"figures", figures}};
+    auto missions = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < page.answers.missions.size(); ++i)
+        missions.push_back(to_json(page.answers.missions[i], page.answers.answers[i]));
+    return {{"title", page.head.title},
+            {"missions", missions},
+            {"aircraft", report::aircraft_lines(page.flights)},
+            {"prediction", report::prediction_line(page.answers.validated)},
+            {"warnings", page.answers.warnings},
+            {"notes", page.answers.notes},
+            {"figures", figures}};
 }
 
 /// Where figures are wanted as files.
@@ -179,7 +216,8 @@ int write_page(const cli::StageCall& call) {
     if (call.has("replay") && (!inputs.out || inputs.missions.empty()))
         throw UsageError(
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
-    Page page{{"FlightWatt report", {}, {}}, {}};
+    Page page;
+    page.head.title = "FlightWatt report";
     if (const auto title = call.maybe<std::string>("title")) page.head.title = report::valid_utf8(*title);
     auto& facts = page.head.facts;
     facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}};
@@ -187,18 +225,11 @@ int write_page(const cli::StageCall& call) {
     if (const auto folder = call.maybe<std::string>("reference-figures")) {
         published = report::read_published_figures(*folder);
         facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
-    } else {
-        facts.emplace_back("beside", "no reference figures: none were given (--reference-figures)");
     }
     if (inputs.out) add_batch(page, call, *inputs.out, published);
-    if (!inputs.missions.empty()) {
-        std::string names;
-        for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + setup_of(mission).file;
-        facts.emplace_back("missions", names);
-        auto sections = mission_sections(report::simulate_for_report(inputs.missions), published);
-        std::move(sections.begin(), sections.end(), std::back_inserter(page.sections));
-    }
+    if (!inputs.missions.empty()) add_missions(page, inputs, published);
     if (call.has("replay")) add_replay(page, call, inputs);
+    page.sections.insert(page.sections.begin(), report::answers_section(page.answers, page.flights));
     const bool wants_page = call.output || (!call.json && !call.has("figures"));
     if (wants_page || call.has("figures")) {
         const auto web = report::read_web_files(report::web_folder());

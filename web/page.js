@@ -85,6 +85,7 @@
   window.addEventListener("resize", () => {
     clearTimeout(resized);
     resized = setTimeout(() => {
+      fitTables();
       for (const element of views.keys()) if (shown(element) && Number(element.dataset.width) !== element.clientWidth) draw(element);
     }, 200);
   });
@@ -138,6 +139,46 @@
     });
   }
 
+  // A table without room for all its columns leaves the minor ones out and names them; a click shows all.
+  const tables = [...document.querySelectorAll(".scroll > table")];
+  const leaveOut = (table, columns) => {
+    const box = table.parentElement;
+    const names = columns.map((column) => table.tHead.rows[0].cells[column].textContent);
+    const note = document.createElement("p");
+    note.className = "left-out soft";
+    note.textContent = `Left out for want of room: ${names.join(", ")}. `;
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = "Show all";
+    button.addEventListener("click", () => {
+      box.dataset.all = "yes";
+      fitColumns(table);
+      box.focus();
+    });
+    note.append(button);
+    box.after(note);
+  };
+  function fitColumns(table) {
+    const box = table.parentElement;
+    if (box.clientWidth === 0) return; // in a flight that is closed
+    if (box.nextElementSibling?.classList.contains("left-out")) box.nextElementSibling.remove();
+    const rows = [...table.rows];
+    for (const row of rows) for (const cell of row.cells) cell.classList.remove("hidden");
+    if (box.dataset.all) return;
+    const heads = [...table.tHead.rows[0].cells];
+    const minor = (table.dataset.minor ?? "").split("|").map((name) => heads.findIndex((head) => head.textContent === name)).filter((column) => column > 0);
+    const others = heads.map((_, column) => column).filter((column) => column > 1 && !minor.includes(column)).reverse();
+    const out = [];
+    for (const column of [...minor, ...others]) {
+      if (box.scrollWidth <= box.clientWidth) break;
+      for (const row of rows) row.cells[column].classList.add("hidden");
+      out.push(column);
+    }
+    if (out.length > 0) leaveOut(table, out.sort((a, b) => a - b));
+  }
+  const fitTables = () => tables.forEach(fitColumns);
+  for (const details of document.querySelectorAll("details")) details.addEventListener("toggle", () => details.open && details.querySelectorAll(".scroll > table").forEach(fitColumns));
+
   // A link to a flight opens it.
   const openTarget = () => {
     const target = location.hash ? document.getElementById(decodeURIComponent(location.hash.slice(1))) : null;
@@ -145,6 +186,7 @@
   };
   window.addEventListener("hashchange", openTarget);
   openTarget();
+  fitTables();
 
   window.flightwatt = { views, draw, figures };
 })();

@@ -164,4 +164,26 @@ FeasibilityLimit farthest_return(const MissionOfExtent& mission_of, double lengt
     return search.limit(*good, std::min(*most_m, *good + apart_m));
 }
 
+Reach longest_reach(const MissionOfReading& mission_of, const std::optional<double>& probability) {
+    const auto mission = mission_of({.may_lack_schedule = true});
+    const auto& cruise = setup_of(mission).cruise_path;
+    if (!cruise) {
+        const auto of_cruise = [&](double cruise_s) {
+            return mission_of({.may_lack_schedule = true, .cruise_s = cruise_s});
+        };
+        return {ReachUnit::cruise_s, longest_cruise(of_cruise, probability)};
+    }
+    const auto& path = cruise->plan->path;
+    if (question_of(path) == PathQuestion::circles) {
+        const auto of_circles = [&](double circles) {
+            return mission_of({.may_lack_schedule = true, .circles = circles});
+        };
+        return {ReachUnit::circles, most_circles(of_circles, probability)};
+    }
+    const auto of_return = [&](double after_m) {
+        return mission_of({.may_lack_schedule = true, .return_after_m = after_m});
+    };
+    return {ReachUnit::return_m, farthest_return(of_return, length_of_legs_m(path), probability)};
+}
+
 }  // namespace flightwatt::mission

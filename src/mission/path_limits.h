@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mission/feasibility_limits.h"
+#include "mission/mission_file.h"
 
 #include <functional>
 #include <optional>
@@ -31,5 +32,24 @@ FeasibilityLimit most_circles(const MissionOfExtent& mission_of,
 /// NoAnswerError if it does not return from anywhere.
 FeasibilityLimit farthest_return(const MissionOfExtent& mission_of, double length_m,
                                  const std::optional<double>& probability = std::nullopt);
+
+/// What the reach of a mission is counted in.
+enum class ReachUnit {
+    cruise_s,  ///< of a mission without a path
+    circles,
+    return_m  ///< along the legs, before it turns back
+};
+
+/// How far a mission can go and still land with its reserve.
+struct Reach {
+    ReachUnit unit = ReachUnit::cruise_s;
+    FeasibilityLimit limit;
+};
+
+/// The mission's file, read as it says.
+using MissionOfReading = std::function<AnyMission(const MissionReading&)>;
+
+/// longest_cruise, or of a mission with a path most_circles or farthest_return; throws as they do.
+Reach longest_reach(const MissionOfReading& mission_of, const std::optional<double>& probability = std::nullopt);
 
 }  // namespace flightwatt::mission

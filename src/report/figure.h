@@ -78,6 +78,10 @@ VegaJson power_ramp(std::string_view field, std::string_view title);
 /// Panels beside and below each other, on one line whatever their labels.
 void set_panels(Figure& figure, int columns, int row_gap_px, const VegaJson& panels);
 
+/// The layer of a panel's name above it: a title would stand above the highest label of its own axis, and so on another
+/// line than its neighbour's.
+VegaJson panel_name(std::string_view name);
+
 /// The parameter that zooms and pans the time axis "x" of `views` by dragging and Ctrl + wheel, and the figure's own
 /// notes of it for the keyboard.
 VegaJson add_zoom(Figure& figure, const VegaJson& views);

@@ -1,10 +1,12 @@
 #include "report/flights_section.h"
 
+#include "base/duration_text.h"
 #include "base/units.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 #include "report/figures/flight_figures.h"
+#include "report/flight_facts.h"
 
 #include <algorithm>
 
@@ -53,9 +55,14 @@ std::string closure_percent(const SortieSums& sums) {
 
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
     const auto sums = sums_of(flight::PowerStatistics(flight.series), flight.phases.sorties[sortie]);
-    std::vector<std::string> cells{flight.name,
-                                   flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
-                                   fmt::format("{}", sortie + 1)};
+    const auto facts = facts_of(flight, sortie);
+    // Few flights have several sorties: no column for them.
+    const auto name =
+        flight.phases.sorties.size() > 1 ? fmt::format("{}, sortie {}", flight.name, sortie + 1) : flight.name;
+    std::vector<std::string> cells{
+        name, flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name),
+        facts.date.empty() ? "-" : facts.date, facts.distance_m ? fixed(*facts.distance_m / 1000.0, 2) : "-",
+        fixed(facts.height_m, 0)};
     for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.duration_s[phase], 0));
     for (const auto phase : flight::all_phases) cells.push_back(fixed(sums.mean_w[phase], 1));
     cells.insert(cells.end(), {fixed(sums.energy_wh, 3), fixed(sums.counter_wh, 3), closure_percent(sums),
@@ -68,11 +75,14 @@ std::string flight_id(std::size_t index) { return fmt::format("flight-{}", index
 
 /// One row a sortie of the flights that were not rejected.
 std::string flights_table_html(std::span<const ReportFlight> flights) {
-    TextTable table{
-        {"flight", "aircraft", "sortie", "take-off [s]", "cruise [s]", "landing [s]", "take-off [W]", "cruise [W]",
-         "landing [W]", "energy [Wh]", "counter [Wh]", "closure [%]", "gaps", "warnings", "fitted"},
-        {}};
-    HtmlTableOptions options{"Flights: durations, mean power, energy, closure, gaps and warnings", true, {}};
+    TextTable table{{"flight", "aircraft", "date", "distance [km]", "height [m]", "take\u2011off [s]", "cruise [s]",
+                     "landing [s]", "take\u2011off [W]", "cruise [W]", "landing [W]", "energy [Wh]", "counter [Wh]",
+                     "closure [%]", "gaps", "warnings", "fitted"},
+                    {}};
+    HtmlTableOptions options{"Flights: durations, mean power, energy, closure, gaps and warnings", true};
+    options.minor = {"sortie",      "gaps",          "counter [Wh]",      "closure [%]", "fitted",
+                     "height [m]",  "distance [km]", "take\u2011off [W]", "landing [W]", "take\u2011off [s]",
+                     "landing [s]", "date",          "aircraft",          "warnings"};
     for (std::size_t f = 0; f < flights.size(); ++f) {
         if (!flights[f].rejected.empty()) continue;
         for (std::size_t s = 0; s < flights[f].phases.sorties.size(); ++s) {
@@ -115,19 +125,22 @@ std::string edges_html(const ReportFlight& flight) {
     return table_html(table, {"Where the phases end, and what was seen there", false, {}});
 }
 
-double seconds_in_air(const ReportFlight& flight) {
-    double time_s = 0.0;
-    for (const auto& sortie : flight.phases.sorties)
-        for (const auto& span : sortie.phases) time_s += span.duration_s();
-    return time_s;
+/// "20 Faulty, 2020-07-03 12:17, 23 min 55 s in the air, 19.52 km, up to 118 m".
+std::string summary_of(const ReportFlight& flight) {
+    const auto facts = facts_of(flight);
+    auto text = flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name);
+    if (!facts.date.empty()) text += ", " + facts.date;
+    text += ", " + duration_text(facts.in_air_s) + " in the air";
+    if (facts.distance_m) text += fmt::format(", {:.2f} km", *facts.distance_m / 1000.0);
+    if (facts.height_m) text += fmt::format(", up to {:.0f} m", *facts.height_m);
+    return text;
 }
 
 void add_flight(Section& section, const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
                 std::size_t index, bool is_open) {
     const auto id = flight_id(index);
-    section.html +=
-        fmt::format("<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{:.0f} s in the air</span></summary>\n",
-                    id, is_open ? " open" : "", escaped(flight.name), seconds_in_air(flight));
+    section.html += fmt::format("<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{}</span></summary>\n", id,
+                                is_open ? " open" : "", escaped(flight.name), escaped(summary_of(flight)));
     section.html += paragraph("From " + flight.log, "soft");
     if (!flight.warnings.empty()) section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
     if (power_track(flight.series).empty()) {
@@ -147,12 +160,13 @@ Section flights_section(std::span<const ReportFlight> flights,
     Section section{"flights", "Flights"};
     const auto rejected =
         std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
-    section.html +=
-        paragraph(fmt::format("{} logs, {} of them rejected. Durations, mean power and energy are those of "
-                              "the power samples between lift-off and touchdown; counter is the autopilot's "
-                              "own energy counter over the same time, closure how much the integral lies "
-                              "above it. A click on a column sorts.",
-                              flights.size(), rejected));
+    section.html += paragraph(
+        fmt::format("{} logs, {} of them rejected. Distance is over ground, height above the ground at lift-off, "
+                    "dates are UTC. Durations, mean power and energy are those of "
+                    "the power samples between lift-off and touchdown; counter is the autopilot's "
+                    "own energy counter over the same time, closure how much the integral lies "
+                    "above it. A click on a column sorts.",
+                    flights.size(), rejected));
     section.html += flights_table_html(flights);
     section.html += excluded_html(flights);
     section.html += "<h3>Each flight</h3>\n";

@@ -2,9 +2,11 @@
 
 #include "base/number.h"
 
+#include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::report {
 namespace {
@@ -23,7 +25,22 @@ std::vector<bool> text_columns(const TextTable& table) {
     return is_text;
 }
 
-std::string_view class_of(bool is_text) { return is_text ? " class=\"text\"" : ""; }
+/// The class attribute of each column's cells.
+std::vector<std::string> column_classes(const TextTable& table) {
+    constexpr std::size_t short_text = 18;
+    constexpr std::size_t long_text = 28;
+    const auto is_text = text_columns(table);
+    std::vector<std::string> classes(table.header.size());
+    for (std::size_t c = 0; c < classes.size(); ++c) {
+        if (!is_text[c]) continue;
+        std::size_t longest = 0;
+        for (const auto& row : table.rows) longest = std::max(longest, row[c].size());
+        classes[c] = longest <= short_text ? " class=\"text short\""
+                     : longest > long_text ? " class=\"text long\""
+                                           : " class=\"text\"";
+    }
+    return classes;
+}
 
 }  // namespace
 
@@ -42,13 +59,16 @@ std::string escaped(std::string_view text) {
 }
 
 std::string table_html(const TextTable& table, const HtmlTableOptions& options) {
-    const auto is_text = text_columns(table);
+    const auto classes = column_classes(table);
     auto html = fmt::format(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table{1} "
-        "aria-label=\"{0}\">\n<thead><tr>",
-        escaped(options.caption), options.sortable ? " class=\"sortable\"" : "");
+        "aria-label=\"{0}\"{2}>\n<thead><tr>",
+        escaped(options.caption), options.sortable ? " class=\"sortable\"" : "",
+        options.minor.empty()
+            ? ""
+            : fmt::format(" data-minor=\"{}\"", escaped(fmt::format("{}", fmt::join(options.minor, "|")))));
     for (std::size_t c = 0; c < table.header.size(); ++c) {
-        html += fmt::format("<th scope=\"col\"{}>{}</th>", class_of(is_text[c]), escaped(table.header[c]));
+        html += fmt::format("<th scope=\"col\"{}>{}</th>", classes[c], escaped(table.header[c]));
     }
     html += "</tr></thead>\n<tbody>\n";
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -58,11 +78,14 @@ std::string table_html(const TextTable& table, const HtmlTableOptions& options) 
             if (c == 0 && r < options.links.size() && !options.links[r].empty()) {
                 cell = fmt::format("<a href=\"#{}\">{}</a>", escaped(options.links[r]), cell);
             }
-            html += fmt::format("<td{}>{}</td>", class_of(is_text[c]), cell);
+            html += fmt::format("<td{}>{}</td>", classes[c], cell);
         }
         html += "</tr>\n";
     }
-    return html + "</tbody></table></div>\n";
+    html += "</tbody></table></div>\n";
+    if (options.minor.empty()) return html;
+    return html +
+           paragraph(fmt::format("Left out on a narrow screen: {}.", fmt::join(options.minor, ", ")), "soft narrow");
 }
 
 std::string figure_html(const Figure& figure) {

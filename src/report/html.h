@@ -16,6 +16,8 @@ struct HtmlTableOptions {
     std::string caption;  ///< said to those who do not see the table
     bool sortable = false;
     std::vector<std::string> links = {};  ///< of the rows' first cells; none where empty
+    /// Columns that a screen without room for all leaves out first, in this order, and names; then others from the right.
+    std::vector<std::string> minor = {};
 };
 
 /// A table; columns that are not all numbers (or '-') stand to the left.

@@ -30,11 +30,12 @@ std::vector<const SimulatedMission*> first_of_each(Missions missions, const Same
     return firsts;
 }
 
-std::vector<Section> model_sections(Missions missions, const PublishedFigures& published) {
+std::vector<Section> model_sections(Missions missions, const PublishedFigures& published,
+                                    const std::optional<mechanical::MechanicalModel>& shown) {
     std::vector<Section> sections;
     for (const auto* simulated : first_of_each(missions, have_same_model)) {
         const auto& mechanical = simulated->mission.mechanical;
-        if (!mechanical) continue;
+        if (!mechanical || (shown && to_toml(*mechanical) == to_toml(*shown))) continue;
         ReportModel model{*mechanical, "The missions' model, as their files name it."};
         model.table_one = table_one(*mechanical);
         sections.push_back(model_section(model, published, fmt::format("mission-model-{}", sections.size() + 1)));
@@ -52,21 +53,38 @@ Section profile_section(Missions missions) {
     return section;
 }
 
-/// The ranking with its columns named for people.
+std::optional<double> chance_below_percent(const mission::MissionSummary& summary) {
+    if (!summary.samples) return std::nullopt;
+    return units::percent_of(summary.samples->probability_below_reserve, 1.0);
+}
+
+/// What people look for first stands to the left; columns that no mission has are left out.
 TextTable ranking_of(std::vector<mission::MissionSummary> summaries) {
-    static const std::map<std::string, std::string> words{
-        {"final_soc_percent", "final state of charge [%]"},
-        {"energy_wh", "energy [Wh]"},
-        {"mechanical_energy_wh", "mechanical [Wh]"},
-        {"compute_energy_wh", "computing [Wh]"},
-        {"duration_s", "duration [s]"},
-        {"depleted_at_s", "empty at [s]"},
-        {"cut_off_at_s", "cut off at [s]"},
-        {"utility", "utility"},
-        {"probability_below_reserve", "chance of landing below the reserve"}};
-    auto table = comparison_table(ranked(std::move(summaries)));
-    for (auto& name : table.header)
-        if (const auto word = words.find(name); word != words.end()) name = word->second;
+    const auto sorted = ranked(std::move(summaries));
+    const auto any = [&](const auto& has) { return std::ranges::any_of(sorted, has); };
+    const bool utility = any([](const auto& summary) { return summary.utility.has_value(); });
+    const bool empty = any([](const auto& summary) { return summary.depleted_at_s.has_value(); });
+    const bool cut_off = any([](const auto& summary) { return summary.cut_off_at_s.has_value(); });
+    TextTable table{{"rank", "mission", "final state of charge [%]", "reserve [%]", "chance of landing below [%]"}, {}};
+    if (utility) table.header.emplace_back("utility");
+    for (const auto* name : {"energy [Wh]", "mechanical [Wh]", "computing [Wh]", "duration [s]"})
+        table.header.emplace_back(name);
+    if (empty) table.header.emplace_back("empty at [s]");
+    if (cut_off) table.header.emplace_back("cut off at [s]");
+    for (const auto& summary : sorted) {
+        const auto origin = to_string(summary.schedule);
+        std::vector<std::string> row{std::to_string(table.rows.size() + 1),
+                                     summary.mission + (origin.empty() ? "" : fmt::format(" ({})", origin)),
+                                     fixed(summary.final_soc_percent, 2), fixed(summary.reserve_soc_percent, 2),
+                                     fixed(chance_below_percent(summary), 1)};
+        if (utility) row.push_back(fixed(summary.utility, 3));
+        for (const double energy_wh : {summary.energy_wh, summary.mechanical_energy_wh, summary.compute_energy_wh})
+            row.push_back(fixed(energy_wh, 3));
+        row.push_back(fixed(summary.duration_s, 1));
+        if (empty) row.push_back(fixed(summary.depleted_at_s, 1));
+        if (cut_off) row.push_back(fixed(summary.cut_off_at_s, 1));
+        table.rows.push_back(std::move(row));
+    }
     return table;
 }
 
@@ -85,7 +103,11 @@ Section schedule_section(Missions missions, const PublishedFigures& published) {
         summaries.push_back(std::move(summary));
     }
     section.html +=
-        table_html(ranking_of(std::move(summaries)), {"Missions ranked by final state of charge", true, {}});
+        table_html(ranking_of(std::move(summaries)), {"Missions ranked by final state of charge",
+                                                      true,
+                                                      {},
+                                                      {"mechanical [Wh]", "computing [Wh]", "duration [s]",
+                                                       "cut off at [s]", "empty at [s]", "energy [Wh]", "utility"}});
     section.html += paragraph(
         "Energies are what the whole mission demands, also where the battery is empty before its end. The "
         "chance is that of 1000 flights drawn a mission, from what its models and its [uncertainty] say of "
@@ -94,6 +116,12 @@ Section schedule_section(Missions missions, const PublishedFigures& published) {
     if (!sources.empty()) section.html += "<div class=\"soft\">" + list_html(sources) + "</div>\n";
     if (!failures.empty()) section.html += "<div class=\"warning\">" + list_html(failures) + "</div>\n";
     return section;
+}
+
+std::string titles_of(Missions missions) {
+    std::string titles;
+    for (const auto& simulated : missions) titles += (titles.empty() ? "" : ", ") + simulated.title;
+    return titles;
 }
 
 Section map_section(Missions missions, const PublishedFigures& published) {
@@ -105,7 +133,9 @@ Section map_section(Missions missions, const PublishedFigures& published) {
         std::vector<SimulatedMission> alike;
         std::ranges::copy_if(missions, std::back_inserter(alike),
                              [&](const auto& other) { return have_same_map(mission, other.mission); });
-        section.html += fmt::format("<h3>{}</h3>\n", mission.mechanical ? "Flight and computing" : "Computing alone");
+        section.html +=
+            fmt::format("<h3>{}: {}</h3>\n", mission.mechanical ? "Flight and computing" : "Computing alone",
+                        escaped(titles_of(alike)));
         const bool is_published = !mission.mechanical;  // the paper's Fig. 4 is without the flight
         add_figure(section,
                    qos_map_figure(*map, alike, is_published ? published.soc_cells : std::vector<PublishedCell>{},
@@ -207,8 +237,9 @@ Section plan_section(Missions missions) {
     return section;
 }
 
-std::vector<Section> mission_sections(Missions missions, const PublishedFigures& published) {
-    auto sections = model_sections(missions, published);
+std::vector<Section> mission_sections(Missions missions, const PublishedFigures& published,
+                                      const std::optional<mechanical::MechanicalModel>& shown) {
+    auto sections = model_sections(missions, published, shown);
     for (auto& section : {profile_section(missions), schedule_section(missions, published),
                           map_section(missions, published), plan_section(missions)}) {
         if (!section.figures.empty()) sections.push_back(section);

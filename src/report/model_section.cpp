@@ -36,8 +36,14 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
     return section;
 }
 
-Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights) {
-    Section section{"validation", "Validation against the baselines"};
+Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic) {
+    Section section{"validation",
+                    "Validation against the baselines" + std::string(synthetic ? " (SYNTHETIC flights)" : "")};
+    if (synthetic) {
+        section.html += paragraph(
+            "SYNTHETIC flights differ as their maker's model says: how well they are predicted says nothing of real ones.",
+            "warning");
+    }
     section.html += paragraph(
         "Leave-one-out: the model is fitted to all flights but one and predicts the energy of that one from "
         "its durations alone; beside the constant mean power of each phase, the nearest flight's power, and, "

@@ -27,7 +27,8 @@ ReportModel model_of(const batch::BatchFit& fit, const std::optional<mechanical:
 /// The model as Fig. 2 with Table I. `id` tells several apart.
 Section model_section(const ReportModel& model, const PublishedFigures& published, const std::string& id);
 
-/// How well flights that it has not seen are predicted, beside the baselines. `flights` is not empty.
-Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights);
+/// How well flights that it has not seen are predicted, beside the baselines. `flights` is not empty;
+/// of `synthetic` ones it says so.
+Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic = false);
 
 }  // namespace flightwatt::report

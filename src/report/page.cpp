@@ -64,18 +64,20 @@ std::string contents_html(const std::vector<Section>& sections) {
 }
 
 std::string opening_html(const PageHead& head, const std::vector<Section>& sections) {
-    auto html = fmt::format("<header>\n<h1>{}</h1>\n<dl>\n", escaped(head.title));
-    for (const auto& [name, value] : head.facts) {
-        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(name), escaped(value));
-    }
-    html += "</dl>\n";
-    for (const auto& note : head.notes) html += paragraph(note, "warning");
-    return html + contents_html(sections) +
-           "<p class=\"soft keys\">In figures over time: drag to move, Ctrl and wheel to zoom, double-click for "
-           "all; with the keyboard + and \u2212, arrows, 0, and the tab key for the series. The menu in a "
-           "figure's corner saves it.</p>\n"
+    return fmt::format("<header>\n<h1>{}</h1>\n", escaped(head.title)) + contents_html(sections) +
            "<noscript><p class=\"warning\">The figures need JavaScript; the tables do not.</p></noscript>\n"
            "</header>\n";
+}
+
+std::string closing_html(const PageHead& head) {
+    std::string html = "<footer>\n<h2>About this page</h2>\n<dl>\n";
+    for (const auto& [name, value] : head.facts)
+        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(name), escaped(value));
+    html += "</dl>\n";
+    return html +
+           "<p class=\"soft keys\">In figures over time: drag to move, Ctrl and wheel to zoom, double-click for "
+           "all; with the keyboard + and \u2212, arrows, 0, and the tab key for the series. The menu in a "
+           "figure's corner saves it.</p>\n</footer>\n";
 }
 
 }  // namespace
@@ -105,8 +107,8 @@ std::string page_html(const PageHead& head, const std::vector<Section>& sections
                             section.id, escaped(section.title));
         html += section.html + "</section>\n";
     }
-    html += "</main>\n<script type=\"application/json\" id=\"theme\">" + script_json(VegaJson::parse(web.theme)) +
-            "</script>\n";
+    html += "</main>\n" + closing_html(head) + "<script type=\"application/json\" id=\"theme\">" +
+            script_json(VegaJson::parse(web.theme)) + "</script>\n";
     return html + inline_script(web.libraries) + inline_script(web.script) + "</body>\n</html>\n";
 }
 
@@ -118,7 +120,7 @@ std::string live_page_html(const WebFiles& web) {
         return fmt::format("<section><h2>{0}</h2><ul id=\"{1}\" aria-label=\"{0}\"{2}></ul></section>\n", title, id,
                            std::string_view(id) == "alarms" ? " aria-live=\"assertive\"" : "");
     };
-    auto html = head_html({.title = "flightwatt watch", .facts = {}, .notes = {}}, web);
+    auto html = head_html({.title = "flightwatt watch", .facts = {}}, web);
     boost::replace_first(html, "img-src data: blob:", "img-src data: blob:; connect-src 'self'");
     html +=
         "<body>\n<main id=\"page\">\n<h1 id=\"title\">No aircraft yet</h1>\n"

@@ -25,11 +25,10 @@ std::filesystem::path web_folder();
 /// Throws InputError where a file is missing, saying how to install the libraries.
 WebFiles read_web_files(const std::filesystem::path& folder);
 
-/// What stands at the top of the page.
+/// What stands around the sections.
 struct PageHead {
     std::string title;
-    std::vector<std::pair<std::string, std::string>> facts;  ///< "computed" - "2026-01-01 12:00 UTC", ...
-    std::vector<std::string> notes;                          ///< what is not here, and why
+    std::vector<std::pair<std::string, std::string>> facts;  ///< at the end: "computed" - "2026-01-01 12:00 UTC", ...
 };
 
 /// One HTML file that needs nothing else: styles, scripts, figures and their data are in it, and its policy

@@ -15,6 +15,8 @@ namespace {
 
 /// Flights drawn a mission: the chance of landing below the reserve is then known to 1.6 percent points.
 constexpr std::size_t flights_drawn = 1000;
+/// Of the band over time.
+constexpr std::size_t band_times = 61;
 
 /// Flies a mission, planned first where it is yet to be, or in flight where a policy does; flights are drawn
 /// where something says how they differ. The answer is the same at every run.
@@ -35,7 +37,7 @@ SimulatedMission fly_for_report(const mission::AnyMission& mission, const missio
     simulated.simulation = std::move(flown.simulation);
     if (summary) simulated.simulation.summary = std::move(*summary);
     if (has_spread(prepared.setup))
-        simulated.simulation.summary.samples = sample_flights(prepared, {}, {flights_drawn, 1, 0});
+        simulated.simulation.summary.samples = sample_flights(prepared, {}, {flights_drawn, 1, band_times});
     simulated.mission = {std::move(prepared.setup), std::move(flown.schedule)};
     return simulated;
 }

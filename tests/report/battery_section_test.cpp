@@ -41,7 +41,7 @@ TEST(BatterySection, ShowsVoltagesParametersAndTheCurve) {
     const auto section = battery_section(battery);
     ASSERT_EQ(section.figures.size(), 2U);
     EXPECT_EQ(section.figures[0].spec["concat"].size(), 2U);
-    const auto rows = section.figures[0].spec["concat"][0]["data"]["values"].get<std::string>();
+    const auto rows = section.figures[0].spec["concat"][0]["layer"][0]["data"]["values"].get<std::string>();
     for (const auto* curve : {",measured", ",model"}) EXPECT_THAT(rows, HasSubstr(curve));
     const auto knots = section.figures[1].spec["data"]["values"].get<std::string>();
     EXPECT_EQ(static_cast<std::size_t>(std::count(knots.begin(), knots.end(), '\n')),

@@ -99,7 +99,7 @@ TEST(PlanSection, ShowsThePlanBesideMissionsOfItsKind) {
     EXPECT_EQ(section.figures[0].id, "plan-1-strip");
     EXPECT_EQ(section.figures[1].id, "plan-1-utility");
     EXPECT_THAT(section.html, HasSubstr("proven bound"));
-    EXPECT_THAT(section.html, HasSubstr("<td class=\"text\">optimal</td>"));
+    EXPECT_THAT(section.html, HasSubstr("<td class=\"text short\">optimal</td>"));
     const auto spec = section.figures[1].spec.dump();
     for (const auto* text : {"phased", "reserve", "proven bound"}) EXPECT_THAT(spec, HasSubstr(text));
     EXPECT_THAT(spec, testing::Not(HasSubstr("computing-only"))) << "another flight";

@@ -135,6 +135,25 @@ test("a click on the legend hides a series, another shows it again", async () =>
   await page.context().close();
 });
 
+test("the page answers first: a card a mission, then the aircraft and how far the model is off", async () => {
+  const { page } = await open("six.html");
+  assert.equal(await page.locator("main > section").first().getAttribute("id"), "answers");
+  const { missions, aircraft, prediction } = JSON.parse(readFileSync(path.join(folder, "six.json"), "utf8"));
+  assert.equal(await page.locator("#answers .card").count(), missions.length);
+  for (const [i, mission] of missions.entries()) {
+    const card = page.locator("#answers .card").nth(i);
+    assert.equal(await card.locator("h3").innerText(), mission.mission);
+    const paragraphs = await card.locator("p:not(.verdict)").allInnerTexts();
+    assert.deepEqual(paragraphs, mission.card);
+    if (mission.final_soc_percent > 0) assert.equal(paragraphs[0], `Lands with ${mission.final_soc_percent.toFixed(1)} %`);
+  }
+  const facts = await page.locator("#answers dd").allInnerTexts();
+  assert.ok(facts.includes(aircraft[0]), `${facts}`);
+  assert.match(aircraft[0], /SYNTHETIC.*6 flights/);
+  assert.ok(facts[1].startsWith(prediction), `${facts[1]}`);
+  await page.context().close();
+});
+
 test("the legend's series by keyboard", async () => {
   const { page } = await open("six.html");
   const figure = page.locator('[data-name="schedules-soc"]');
@@ -179,12 +198,25 @@ test("saving a figure gives an SVG that parses, and a PNG", async () => {
 test("the table of flights sorts by any column", async () => {
   const { page } = await open("six.html");
   const table = page.locator("#flights table.sortable");
-  const column = async () => (await table.locator("tbody tr td:nth-child(9)").allInnerTexts()).map(Number);
-  await table.locator("th:nth-child(9) button").click();
+  const column = async () => (await table.locator("tbody tr td:nth-child(11)").allInnerTexts()).map(Number);
+  await table.locator("th:nth-child(11) button").click();
   const rising = await column();
   assert.deepEqual(rising, [...rising].sort((a, b) => a - b));
   await page.keyboard.press("Enter"); // the button has the focus
   assert.deepEqual(await column(), [...rising].reverse());
+  await page.context().close();
+});
+
+test("a phone's tables name the columns that they leave out, and show them when asked", async () => {
+  const { page } = await open("six.html", { viewport: { width: 390, height: 844 } });
+  const note = page.locator("#flights .scroll + .left-out").first();
+  assert.match(await note.innerText(), /Left out for want of room: .*closure \[%\].*\. Show all/);
+  const heads = page.locator("#flights table").first().locator("th:not(.hidden)");
+  const few = await heads.count();
+  assert.equal(await heads.first().innerText(), "flight");
+  await note.locator("button").click();
+  assert.ok((await heads.count()) > few + 5);
+  assert.equal(await page.locator("#flights .scroll").first().evaluate((box) => box.nextElementSibling?.className ?? ""), "");
   await page.context().close();
 });
 
@@ -246,7 +278,7 @@ test("three hundred flights open in less than three times the time of six, in le
   await page.context().close();
 });
 
-const sizes = { phone: { width: 390, height: 844 }, desktop: { width: 1280, height: 900 } };
+const sizes = { phone: { width: 390, height: 844 }, tablet: { width: 1024, height: 768 }, desktop: { width: 1440, height: 900 }, wide: { width: 1920, height: 1080 } };
 for (const colorScheme of ["light", "dark"]) {
   for (const [name, viewport] of Object.entries(sizes)) {
     test(`${name} in ${colorScheme}: nothing stands beside the page`, async () => {
@@ -259,10 +291,13 @@ for (const colorScheme of ["light", "dark"]) {
       await page.waitForTimeout(300);
       const wide = await page.evaluate(() => ({
         page: document.documentElement.scrollWidth - document.documentElement.clientWidth,
+        // What a table has no room for is left out and named: no number is out of sight.
+        tables: [...document.querySelectorAll(".scroll")].filter((box) => box.clientWidth > 0 && box.scrollWidth > box.clientWidth + 1).map((box) => box.getAttribute("aria-label")),
+        cut: [...document.querySelectorAll("td, th, dd, .card, .card p, .card h3, summary")].filter((cell) => cell.clientWidth > 0 && cell.scrollWidth > cell.clientWidth + 1).map((cell) => cell.textContent.slice(0, 60)),
         figures: [...window.flightwatt.figures].filter((figure) => figure.clientWidth > 0 && figure.scrollWidth > figure.clientWidth + 1).map((figure) => figure.dataset.name),
       }));
       await page.screenshot({ path: path.join(screenshots, `${name}-${colorScheme}.png`), fullPage: true });
-      assert.deepEqual(wide, { page: 0, figures: [] });
+      assert.deepEqual(wide, { page: 0, tables: [], cut: [], figures: [] });
       assert.deepEqual(faults, []);
       await page.context().close();
     });

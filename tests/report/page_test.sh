@@ -21,6 +21,7 @@ quiet() { "$@" >/dev/null 2>"$pages/stderr" || { cat "$pages/stderr" >&2 && exit
 
 quiet "$bin/flightwatt-batch" "$source/logs" -o "$pages/six"
 quiet "$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml -o "$pages/six.html"
+"$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml --json >"$pages/six.json" 2>/dev/null
 
 # Names that a page must not believe.
 log=$source/logs/opterra_synthetic_01

@@ -33,12 +33,10 @@ VegaJson voltage_panel(const battery::Battery& battery, const battery::Discharge
                            1.1);  // what is measured stands out behind the model where both are one
     encoding["tooltip"] = {category("curve", "curve"), shown("time_s", "time [s]", ".1f"),
                            shown("voltage_v", "voltage [V]", ".3f")};
-    return {{"title", valid_utf8(record.flight)},
-            {"width", 280},
-            {"height", 150},
-            {"data", data.json()},
-            {"mark", vega(R"({"type": "line", "point": {"opacity": 0, "size": 40, "aria": false}})")},
-            {"encoding", encoding}};
+    const VegaJson curves{{"data", data.json()},
+                          {"mark", vega(R"({"type": "line", "point": {"opacity": 0, "size": 40, "aria": false}})")},
+                          {"encoding", encoding}};
+    return {{"width", 280}, {"height", 150}, {"layer", {curves, panel_name(record.flight)}}};
 }
 
 /// The knots with their 95 % intervals, where those are known.

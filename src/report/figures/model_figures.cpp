@@ -159,7 +159,8 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
         auto layers = band_layers(bands[phase], drawn);
         layers.push_back(model_layer(model.phases[phase], drawn));
         if (!published.power[phase].time_s.empty()) layers.push_back(published_layer(published.power[phase], drawn));
-        panels.push_back({{"title", phase_word(phase)}, {"width", 200}, {"height", 230}, {"layer", layers}});
+        layers.push_back(panel_name(phase_word(phase)));
+        panels.push_back({{"width", 200}, {"height", 230}, {"layer", layers}});
     }
     auto figure = new_figure(id, model_caption(model, published), model_described(model));
     set_panels(figure, 3, 72, panels);

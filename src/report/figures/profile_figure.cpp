@@ -80,8 +80,8 @@ VegaJson panel_of(const compute::Component& component) {
     }
     if (!all_measured(profile)) encoding["tooltip"].push_back(category("origin", "node"));
     layers.push_back(points_layer(profile));
-    return {{"title", valid_utf8(component.name)}, {"width", 280},         {"height", 190},
-            {"data", node_rows(profile).json()},   {"encoding", encoding}, {"layer", layers}};
+    const VegaJson nodes{{"data", node_rows(profile).json()}, {"encoding", encoding}, {"layer", layers}};
+    return {{"width", 280}, {"height", 190}, {"layer", {nodes, panel_name(component.name)}}};
 }
 
 std::string profile_described(const compute::ComputeModel& compute) {

@@ -98,6 +98,46 @@ VegaJson published_layer(Missions missions, const PublishedFigures& published, c
                 shown("soc_percent", schedule_soc_title, ".2f")}}}}};
 }
 
+/// Where 5 to 95 % of the flights that were drawn are.
+VegaJson band_layer(Missions missions, const FigureData& titles) {
+    FigureData data({"time_s", "p05_percent", "p95_percent", "mission_number"});
+    for (std::size_t m = 0; m < missions.size(); ++m) {
+        const auto& samples = missions[m].simulation.summary.samples;
+        if (!samples) continue;
+        for (const auto& band : samples->bands)
+            data.add({band.time_s, band.p05_percent, band.p95_percent, static_cast<double>(m)});
+    }
+    if (data.empty()) return nullptr;
+    auto transform = with_titles(titles);
+    transform.push_back({{"filter", {{"param", "shown"}}}});
+    return {{"data", data.json()},
+            {"transform", transform},
+            {"mark", vega(R"({"type": "area", "fillOpacity": 0.16, "clip": true, "aria": false})")},
+            {"encoding",
+             {{"x", quantity("time_s", schedule_time_title)},
+              {"y", quantity("p05_percent", schedule_soc_title)},
+              {"y2", {{"field", "p95_percent"}}},
+              {"color", mission_channel(missions, "category")}}}};
+}
+
+/// The reserves that the missions ask for, each once.
+VegaJson reserve_layer(Missions missions) {
+    FigureData data({"reserve_percent"});
+    std::vector<double> drawn;
+    for (const auto& simulated : missions) {
+        const double reserve_percent = simulated.simulation.summary.reserve_soc_percent;
+        if (reserve_percent <= 0.0 || std::ranges::count(drawn, reserve_percent) > 0) continue;
+        drawn.push_back(reserve_percent);
+        data.add({reserve_percent});
+    }
+    if (data.empty()) return nullptr;
+    return {{"data", data.json()},
+            {"mark", vega(R"({"type": "rule", "style": "edge", "strokeDash": [5, 4], "aria": false})")},
+            {"encoding",
+             {{"y", quantity("reserve_percent", schedule_soc_title)},
+              {"tooltip", {shown("reserve_percent", "reserve [%]", ".4g")}}}}};
+}
+
 VegaJson phase_layers(Missions missions) {
     const auto& durations_s = missions.front().mission.duration_s;
     const bool all_alike = std::ranges::all_of(
@@ -164,13 +204,22 @@ Figure schedule_figure(Missions missions, const PublishedFigures& published, con
     for (const auto& mission : missions) longest_s = std::max(longest_s, mission.simulation.summary.duration_s);
     const auto titles = title_rows(missions);
     auto layers = phase_layers(missions);
+    if (auto bands = band_layer(missions, titles); !bands.is_null()) {
+        layers.push_back(std::move(bands));
+        figure.caption += " Shaded: 5 to 95 % of the flights drawn.";
+    }
+    if (auto reserves = reserve_layer(missions); !reserves.is_null()) {
+        layers.push_back(std::move(reserves));
+        figure.caption += " Level dashes: the reserve.";
+    }
     layers.push_back(curve_layer(missions, titles));
     if (auto points = published_layer(missions, published, titles); !points.is_null()) {
         layers.push_back(std::move(points));
         figure.caption += " Points: the paper's Fig. 3, digitised.";
     }
     for (auto& part : layers) {
-        part["encoding"]["x"]["scale"] = {{"domain", {0.0, longest_s}}, {"nice", false}};
+        if (part["encoding"].contains("x"))
+            part["encoding"]["x"]["scale"] = {{"domain", {0.0, longest_s}}, {"nice", false}};
         if (part["encoding"].contains("y")) part["encoding"]["y"]["scale"] = vega(R"({"domain": [0.0, 100.0]})");
     }
     figure.spec["params"] = {add_zoom(figure, {"curves"}), legend_parameter("mission", title_list(missions), "curves")};

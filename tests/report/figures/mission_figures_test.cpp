@@ -22,7 +22,7 @@ Figure figure_of(const std::string& csv) {
 TEST(ProfileFigure, ShowsIntervalsAndWhatWasInterpolated) {
     const auto figure =
         figure_of("fps,power_w,standard_error_w,source\n1,2,0.5,measured\n2,4,0.25,interpolated\n3,6,0.5,measured\n");
-    const auto& panel = figure.spec["concat"][0];
+    const auto& panel = figure.spec["concat"][0]["layer"][0];  // beside the panel's name
     EXPECT_EQ(panel["layer"].size(), 3U) << "line, intervals, points";
     const auto rows = panel["data"]["values"].get<std::string>();
     EXPECT_THAT(rows, HasSubstr("2,4,0.25,3.51001,4.48999,,interpolated"));
@@ -33,7 +33,7 @@ TEST(ProfileFigure, ShowsIntervalsAndWhatWasInterpolated) {
 
 TEST(ProfileFigure, DrawsNoIntervalWhereNoneIsKnown) {
     const auto figure = figure_of("fps,power_w\n1,2\n2,4\n");
-    EXPECT_EQ(figure.spec["concat"][0]["layer"].size(), 2U);
+    EXPECT_EQ(figure.spec["concat"][0]["layer"][0]["layer"].size(), 2U);
     EXPECT_THAT(figure.caption, HasSubstr("Points were profiled"));
     EXPECT_THAT(figure.caption, HasSubstr("without standard errors"));
     EXPECT_THAT(figure.caption, Not(HasSubstr("95 %")));

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "mechanical/validation.h"
+#include "report/batch_content.h"
+#include "report/html.h"
+#include "report/mission_answer.h"
+
+#include <span>
+#include <vector>
+
+namespace flightwatt::report {
+
+/// What a page answers first.
+struct PageAnswers {
+    std::vector<SimulatedMission> missions;
+    std::vector<MissionAnswer> answers;                  ///< one a mission
+    std::vector<mechanical::ValidatedFlight> validated;  ///< empty: the model was not validated
+    std::vector<std::string> warnings;                   ///< of the fit
+    std::vector<std::string> notes;                      ///< what is not on the page, and why
+};
+
+/// A card for each mission; the aircraft and its flights in a line each; whether the model predicts flights that it has
+/// not seen; and warnings. `flights` are the batch's, empty without one.
+Section answers_section(const PageAnswers& answers, std::span<const ReportFlight> flights);
+
+/// "20 Faulty: 3 flights, 1 h 6 min in the air, 26.1 Wh" of each aircraft, SYNTHETIC ones so called.
+std::vector<std::string> aircraft_lines(std::span<const ReportFlight> flights);
+
+/// Whether any flight that was not rejected is synthetic.
+bool any_synthetic(std::span<const ReportFlight> flights);
+
+/// How far off the models are of flights that they have not seen, best first; empty where nothing was validated.
+std::string prediction_line(std::span<const mechanical::ValidatedFlight> flights);
+
+}  // namespace flightwatt::report

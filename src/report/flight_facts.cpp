@@ -1,0 +1,89 @@
+#include "report/flight_facts.h"
+
+#include "flight/chosen_track.h"
+#include "flight/phase_statistics.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <regex>
+
+#include <boost/geometry/algorithms/distance.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/strategies/geographic/distance.hpp>
+#include <fmt/chrono.h>
+
+namespace flightwatt::report {
+namespace {
+
+/// Paparazzi's servers name a log by their clock: 20_07_03__12_17_45.
+std::string date_in(const std::string& name) {
+    static const std::regex pattern(R"((?:^|\D)(\d\d)_(\d\d)_(\d\d)__(\d\d)_(\d\d)_\d\d)");
+    std::smatch found;
+    if (!std::regex_search(name, found, pattern)) return "";
+    return fmt::format("20{}-{}-{} {}:{}", found[1].str(), found[2].str(), found[3].str(), found[4].str(),
+                       found[5].str());
+}
+
+std::string date_of(const ReportFlight& flight) {
+    const auto& start_s = flight.series.start_clock_s;
+    if (!start_s || *start_s <= 0.0) return date_in(flight.name);
+    return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(*start_s)));
+}
+
+using Place = boost::geometry::model::point<double, 2, boost::geometry::cs::geographic<boost::geometry::degree>>;
+
+/// Over ground between two times, from the track's metres or else its degrees; none where it has neither.
+std::optional<double> flown_m(const flight::FlightSeries& series, double start_s, double end_s) {
+    const bool in_metres = !chosen_track(series, "east_m").empty();
+    const auto east = chosen_track(series, in_metres ? "east_m" : "longitude_deg");
+    const auto north = chosen_at(series, in_metres ? "north_m" : "latitude_deg", east.time_s);
+    if (north.empty()) return std::nullopt;
+    double length_m = 0.0;
+    for (std::size_t i = 1; i < east.time_s.size(); ++i) {
+        if (east.time_s[i - 1] < start_s || east.time_s[i] > end_s) continue;
+        length_m += in_metres ? std::hypot(east.value[i] - east.value[i - 1], north[i] - north[i - 1])
+                              : boost::geometry::distance(Place(east.value[i - 1], north[i - 1]),
+                                                          Place(east.value[i], north[i]));
+    }
+    return length_m;
+}
+
+std::optional<double> highest_m(const flight::Track& altitude, double start_s, double end_s) {
+    if (altitude.empty()) return std::nullopt;
+    double highest_m = value_at(altitude, start_s);
+    for (std::size_t i = 0; i < altitude.time_s.size(); ++i) {
+        if (altitude.time_s[i] >= start_s && altitude.time_s[i] <= end_s)
+            highest_m = std::max(highest_m, altitude.value[i]);
+    }
+    return highest_m - value_at(altitude, start_s);
+}
+
+/// The sum where both are known.
+void add(std::optional<double>& sum, const std::optional<double>& more) {
+    if (!more) sum.reset();
+    if (sum) *sum += *more;
+}
+
+}  // namespace
+
+FlightFacts facts_of(const ReportFlight& flight, std::optional<std::size_t> sortie) {
+    const auto& series = flight.series;
+    const flight::PowerStatistics power(series);
+    const auto altitude = chosen_track(series, "altitude_m");
+    FlightFacts facts{date_of(flight), 0.0, 0.0, std::nullopt, std::nullopt};
+    if (power.has_power()) facts.energy_wh = 0.0;
+    for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) {
+        if (sortie && s != *sortie) continue;
+        const double start_s = flight.phases.sorties[s].phases.front().start.time_s;
+        const double end_s = flight.phases.sorties[s].phases.back().end.time_s;
+        facts.in_air_s += end_s - start_s;
+        add(facts.distance_m, flown_m(series, start_s, end_s));
+        if (const auto height_m = highest_m(altitude, start_s, end_s))
+            facts.height_m = std::max(*height_m, facts.height_m.value_or(*height_m));
+        if (facts.energy_wh) *facts.energy_wh += power.between(start_s, end_s).energy_wh;
+    }
+    return facts;
+}
+
+}  // namespace flightwatt::report

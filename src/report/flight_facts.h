@@ -1,0 +1,22 @@
+#pragma once
+
+#include "report/batch_content.h"
+
+#include <optional>
+#include <string>
+
+namespace flightwatt::report {
+
+/// What people know a flight by.
+struct FlightFacts {
+    std::string date;  ///< "2020-07-03 12:17" in UTC where the .log has its clock, else as its name has it; or empty
+    double in_air_s = 0.0;
+    std::optional<double> distance_m;  ///< over ground, in the air; of position's samples joined by lines
+    std::optional<double> height_m;    ///< the greatest above the ground at lift-off
+    std::optional<double> energy_wh;   ///< in the air
+};
+
+/// `flight` was not rejected. Only the sortie counted from 0, or all of them.
+FlightFacts facts_of(const ReportFlight& flight, std::optional<std::size_t> sortie = std::nullopt);
+
+}  // namespace flightwatt::report

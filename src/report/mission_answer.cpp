@@ -1,0 +1,177 @@
+#include "report/mission_answer.h"
+
+#include "base/duration_text.h"
+#include "base/error.h"
+#include "base/units.h"
+#include "mission/sampled_flights.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::report {
+namespace {
+
+/// None where the question has no answer; `why` then says why not.
+template <typename Question>
+auto ask(const Question& question, std::string* why = nullptr) -> std::optional<decltype(question())> {
+    try {
+        return question();
+    } catch (const NoAnswerError& error) {
+        if (why != nullptr) *why = error.what();
+    } catch (const InputError& error) {
+        if (why != nullptr) *why = error.what();
+    }
+    return std::nullopt;
+}
+
+std::string in_words(const mission::Reach& reach) {
+    switch (reach.unit) {
+        case mission::ReachUnit::circles:
+            return fmt::format("{:.0f} circles", reach.limit.value);
+        case mission::ReachUnit::return_m:
+            return fmt::format("{:.2f} km out and back", reach.limit.value / 1000.0);
+        case mission::ReachUnit::cruise_s:
+            break;
+    }
+    return duration_text(reach.limit.value) + " of cruise";
+}
+
+std::string landing_line(const SimulatedMission& simulated) {
+    const auto& summary = simulated.simulation.summary;
+    if (!summary.final_soc_percent) return "The battery cannot deliver the power";
+    const auto before_end = [&](double time_s) {
+        return fmt::format("{} in the air, {} before the end", duration_text(time_s),
+                           duration_text(summary.duration_s - time_s));
+    };
+    const double cut_off_s = summary.cut_off_at_s.value_or(summary.duration_s);
+    if (summary.cut_off_at_s && cut_off_s <= summary.depleted_at_s.value_or(summary.duration_s))
+        return fmt::format("Is cut off after {}", before_end(cut_off_s));
+    if (summary.depleted_at_s) return fmt::format("Runs empty after {}", before_end(*summary.depleted_at_s));
+    return fmt::format("Lands with {:.1f} %", *summary.final_soc_percent);
+}
+
+std::string reserve_line(const SimulatedMission& simulated) {
+    const auto& summary = simulated.simulation.summary;
+    const bool asks = summary.reserve_soc_percent > 0.0;  // else it is enough that the battery lasts
+    const auto reserve = fmt::format("its reserve of {:.3g} %", summary.reserve_soc_percent);
+    if (!summary.samples) {
+        const auto modelled = summary.keeps_reserve ? (asks ? "Keeps " + reserve : std::string("The battery lasts"))
+                                                    : (asks ? "Does not keep " + reserve : "The battery does not last");
+        return modelled + " as modelled; nothing says how flights differ, so nobody knows the chance";
+    }
+    const auto& samples = *summary.samples;
+    const auto& below = samples.probability_below_reserve_95;
+    return fmt::format("{} with a chance of {:.1f} % ({} flights drawn: 95 % interval {:.1f} to {:.1f})",
+                       asks ? "Keeps " + reserve : "The battery lasts",
+                       units::percent_of(1.0 - samples.probability_below_reserve, 1.0), samples.samples,
+                       units::percent_of(1.0 - below.high, 1.0), units::percent_of(1.0 - below.low, 1.0));
+}
+
+std::string now_flown(const SimulatedMission& simulated, const mission::Reach& reach) {
+    if (reach.unit != mission::ReachUnit::cruise_s) return "";
+    return fmt::format(" (now {})", duration_text(simulated.mission.duration_s[flight::Phase::cruise]));
+}
+
+std::string reach_line(const SimulatedMission& simulated, const MissionAnswer& answer) {
+    if (!answer.reach) return "How long it could fly has no answer: " + answer.no_reach;
+    auto line = fmt::format("At most {}{} as modelled", in_words(*answer.reach), now_flown(simulated, *answer.reach));
+    if (answer.likely_reach)
+        line += fmt::format(", {} with a chance of {:.0f} %", in_words(*answer.likely_reach),
+                            units::percent_of(likely, 1.0));
+    if (answer.is_unplanned) line += ", with as little software as it may run";
+    return line;
+}
+
+std::string utility_line(const SimulatedMission& simulated) {
+    const auto& summary = simulated.simulation.summary;
+    auto line = fmt::format("Utility {:.4g}", *summary.utility);
+    if (simulated.planned && simulated.planned->feasible)
+        line += fmt::format(", of at most {:.4g} that any schedule could have", simulated.planned->bound);
+    return line;
+}
+
+/// Whether less of what the mission flies would keep the reserve.
+bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reach) {
+    return reach.unit != mission::ReachUnit::cruise_s ||
+           reach.limit.value < simulated.mission.duration_s[flight::Phase::cruise];
+}
+
+/// What would make the mission keep its reserve; empty where nothing is known that would.
+std::string remedy_line(const SimulatedMission& simulated, const MissionAnswer& answer) {
+    const auto& reach = answer.likely_reach ? answer.likely_reach : answer.reach;
+    const double capacity_ah = simulated.mission.battery.capacity_ah;
+    std::vector<std::string> ways;
+    if (simulated.planned && answer.likely_reach) ways.emplace_back("plan it with --probability 0.95");
+    if (reach && shorter_helps(simulated, *reach)) ways.push_back(fmt::format("fly {} at most", in_words(*reach)));
+    if (answer.capacity_ah && *answer.capacity_ah > capacity_ah)
+        ways.push_back(fmt::format("take a battery of {:.2f} Ah (it has {:.4g})", *answer.capacity_ah, capacity_ah));
+    if (ways.empty()) return "";
+    const auto aim = answer.likely_reach ? fmt::format("For a chance of {:.0f} %", units::percent_of(likely, 1.0))
+                                         : std::string("To keep it");
+    return fmt::format("{}: {}", aim, fmt::join(ways, ", or "));
+}
+
+nlohmann::ordered_json to_json(const std::optional<mission::Reach>& reach) {
+    if (!reach) return nullptr;
+    switch (reach->unit) {
+        case mission::ReachUnit::circles:
+            return {{"most_circles", reach->limit.value}};
+        case mission::ReachUnit::return_m:
+            return {{"farthest_return_m", reach->limit.value}};
+        case mission::ReachUnit::cruise_s:
+            break;
+    }
+    return {{"longest_cruise_s", reach->limit.value}};
+}
+
+}  // namespace
+
+MissionAnswer answer_for(const SimulatedMission& simulated, const mission::MissionOfReading& mission_of) {
+    MissionAnswer answer;
+    const auto mission = ask([&] { return mission_of({.may_lack_schedule = true}); }, &answer.no_reach);
+    if (!mission) return answer;
+    answer.is_unplanned = std::holds_alternative<mission::PlanningProblem>(*mission);
+    answer.reach = ask([&] { return longest_reach(mission_of); }, &answer.no_reach);
+    const bool knows_chance = simulated.simulation.summary.samples.has_value();
+    if (answer.reach && knows_chance) answer.likely_reach = ask([&] { return longest_reach(mission_of, likely); });
+    if (verdict_of(simulated) == Verdict::keeps) return answer;
+    const auto chance = answer.likely_reach ? std::optional(likely) : std::nullopt;
+    answer.capacity_ah = ask([&] { return least_capacity_ah(*mission, chance); }).value_or(std::nullopt);
+    return answer;
+}
+
+Verdict verdict_of(const SimulatedMission& simulated) {
+    const auto& summary = simulated.simulation.summary;
+    if (!summary.keeps_reserve) return Verdict::fails;
+    const bool is_likely = !summary.samples || summary.samples->probability_below_reserve <= 1.0 - likely;
+    return is_likely ? Verdict::keeps : Verdict::may_keep;
+}
+
+std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAnswer& answer) {
+    std::vector<std::string> lines{landing_line(simulated), reserve_line(simulated), reach_line(simulated, answer)};
+    if (simulated.simulation.summary.utility) lines.push_back(utility_line(simulated));
+    if (verdict_of(simulated) == Verdict::keeps) return lines;
+    if (auto remedy = remedy_line(simulated, answer); !remedy.empty()) lines.push_back(std::move(remedy));
+    return lines;
+}
+
+nlohmann::ordered_json to_json(const SimulatedMission& simulated, const MissionAnswer& answer) {
+    const auto& summary = simulated.simulation.summary;
+    const auto or_null = [](const auto& value) { return value ? nlohmann::ordered_json(*value) : nullptr; };
+    nlohmann::ordered_json json{{"mission", simulated.title},
+                                {"final_soc_percent", or_null(summary.final_soc_percent)},
+                                {"reserve_soc_percent", summary.reserve_soc_percent},
+                                {"keeps_reserve", summary.keeps_reserve},
+                                {"probability_below_reserve", nullptr},
+                                {"utility", or_null(summary.utility)},
+                                {"reach", to_json(answer.reach)},
+                                {"reach_with_95_percent", to_json(answer.likely_reach)},
+                                {"least_capacity_ah", or_null(answer.capacity_ah)},
+                                {"card", card_lines(simulated, answer)}};
+    if (summary.samples) json["probability_below_reserve"] = summary.samples->probability_below_reserve;
+    return json;
+}
+
+}  // namespace flightwatt::report

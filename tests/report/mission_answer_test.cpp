@@ -1,0 +1,94 @@
+#include "report/mission_answer.h"
+
+#include "base/error.h"
+#include "helpers/paper_missions.h"
+#include "mission/feasibility_limits.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::report {
+namespace {
+
+using testing::AnyOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+mission::MissionOfReading reading_of(const std::string& name) {
+    const auto path = test::paper_mission_path(name);
+    return [path](const mission::MissionReading& reading) { return mission::read_mission(path, reading); };
+}
+
+SimulatedMission flown(const std::string& name) {
+    return simulate_for_report({reading_of(name)({.may_lack_schedule = true})}).front();
+}
+
+TEST(MissionAnswer, IsWhatPlanSaysOfTheLongestCruise) {
+    const auto answer = answer_for(flown("phased"), reading_of("phased"));
+    const auto of_cruise = [&](double cruise_s) {
+        return reading_of("phased")({.may_lack_schedule = true, .cruise_s = cruise_s});
+    };
+    ASSERT_TRUE(answer.reach && answer.likely_reach);
+    EXPECT_EQ(answer.reach->unit, mission::ReachUnit::cruise_s);
+    EXPECT_EQ(answer.reach->limit.value, mission::longest_cruise(of_cruise).value);
+    EXPECT_EQ(answer.likely_reach->limit.value, mission::longest_cruise(of_cruise, likely).value);
+    EXPECT_LT(answer.likely_reach->limit.value, answer.reach->limit.value);
+    EXPECT_FALSE(answer.is_unplanned);
+}
+
+TEST(MissionAnswer, SaysWhatWouldKeepTheReserve) {
+    const auto simulated = flown("invariant-32fps-448bit");
+    EXPECT_EQ(verdict_of(simulated), Verdict::fails);
+    const auto answer = answer_for(simulated, reading_of("invariant-32fps-448bit"));
+    ASSERT_TRUE(answer.capacity_ah);
+    EXPECT_GT(*answer.capacity_ah, simulated.mission.battery.capacity_ah);
+    const auto lines = card_lines(simulated, answer);
+    EXPECT_THAT(lines.front(), StartsWith("Runs empty after 9 min"));
+    EXPECT_THAT(lines.back(), StartsWith("For a chance of 95 %: fly 7 min"));
+    EXPECT_THAT(lines.back(), HasSubstr("or take a battery of"));
+}
+
+TEST(MissionAnswer, KnowsNoChanceWhereNothingSaysHowFlightsDiffer) {
+    const auto simulated = flown("computing-only");
+    const auto answer = answer_for(simulated, reading_of("computing-only"));
+    EXPECT_FALSE(answer.likely_reach);
+    EXPECT_EQ(verdict_of(simulated), Verdict::keeps);
+    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("nobody knows the chance")));
+    EXPECT_TRUE(to_json(simulated, answer)["probability_below_reserve"].is_null());
+}
+
+TEST(MissionAnswer, OffersAPlanWithAMarginToOneThatWasPlannedWithoutAny) {
+    const auto simulated = flown("plan");
+    EXPECT_EQ(verdict_of(simulated), Verdict::may_keep);
+    const auto answer = answer_for(simulated, reading_of("plan"));
+    EXPECT_TRUE(answer.is_unplanned);
+    EXPECT_THAT(card_lines(simulated, answer).back(), HasSubstr("plan it with --probability 0.95"));
+}
+
+TEST(MissionAnswer, CountsCirclesOfAPath) {
+    const auto path = test::source_dir() / "missions/synthetic/survey-path.toml";
+    const mission::MissionOfReading reading = [&](const mission::MissionReading& how) {
+        return mission::read_mission(path, how);
+    };
+    auto simulated = simulate_for_report({reading({.may_lack_schedule = true})}).front();
+    simulated.simulation.summary.samples.reset();  // its chance takes a second
+    const auto answer = answer_for(simulated, reading);
+    ASSERT_TRUE(answer.reach);
+    EXPECT_EQ(answer.reach->unit, mission::ReachUnit::circles);
+    EXPECT_TRUE(to_json(simulated, answer)["reach"].contains("most_circles"));
+    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("circles as modelled")));
+}
+
+TEST(MissionAnswer, SaysWhyThereIsNone) {
+    auto simulated = flown("phased");
+    const auto answer = answer_for(simulated, [](const mission::MissionReading&) -> mission::AnyMission {
+        throw InputError({"gone.toml"}, "it is gone", "look for it");
+    });
+    EXPECT_FALSE(answer.reach);
+    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("it is gone")));
+}
+
+}  // namespace
+}  // namespace flightwatt::report
