@@ -118,7 +118,8 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
     for (const auto& damaged : content.damaged) cli::warn(call, damaged);
     page.head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
     page.sections.push_back(
-        report::flights_section(content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt));
+        report::flights_section(content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt,
+                                predict_each_minute(content, cli::count_option(call, "max-validation-flights"))));
     add_model(page, call, content, figures);
     if (const auto mix = mix_of(content); !mix.empty()) {
         page.answers.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");

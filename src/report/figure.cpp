@@ -126,7 +126,7 @@ void set_panels(Figure& figure, int columns, int row_gap_px, const VegaJson& pan
 }
 
 VegaJson panel_name(std::string_view name) {
-    auto mark = vega(R"({"type": "text", "style": "group-title", "x": 0, "y": -12, "align": "left",
+    auto mark = vega(R"({"type": "text", "style": "panel-name", "x": 0, "y": -12, "align": "left",
                          "baseline": "alphabetic", "limit": 260, "aria": false})");
     mark["text"] = valid_utf8(name);
     return {{"data", {{"values", {VegaJson::object()}}}}, {"mark", mark}};

@@ -136,6 +136,7 @@ std::string summary_of(const ReportFlight& flight) {
     return text;
 }
 
+/// Its part is left open.
 void add_flight(Section& section, const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
                 std::size_t index, bool is_open) {
     const auto id = flight_id(index);
@@ -144,19 +145,18 @@ void add_flight(Section& section, const ReportFlight& flight, const std::optiona
     section.html += paragraph("From " + flight.log, "soft");
     if (!flight.warnings.empty()) section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
     if (power_track(flight.series).empty()) {
-        section.html += edges_html(flight) + "</details>\n";
+        section.html += edges_html(flight);
         return;
     }
     add_figure(section, flight_figure(flight, model, id + "-power"));
     section.html += edges_html(flight);
     if (auto track = track_figure(flight, id + "-track")) add_figure(section, std::move(*track));
-    section.html += "</details>\n";
 }
 
 }  // namespace
 
-Section flights_section(std::span<const ReportFlight> flights,
-                        const std::optional<mechanical::MechanicalModel>& model) {
+Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model,
+                        const std::map<std::string, PredictedFlight>& predicted) {
     Section section{"flights", "Flights"};
     const auto rejected =
         std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
@@ -173,6 +173,10 @@ Section flights_section(std::span<const ReportFlight> flights,
     for (std::size_t f = 0; f < flights.size(); ++f) {
         if (!flights[f].rejected.empty()) continue;
         add_flight(section, flights[f], model, f, section.figures.empty());
+        const auto found = predicted.find(flights[f].name);
+        if (found != predicted.end())
+            add_figure(section, in_flight_figure(flights[f].name, found->second, flight_id(f) + "-predicted"));
+        section.html += "</details>\n";
     }
     return section;
 }

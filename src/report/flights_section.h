@@ -3,14 +3,19 @@
 #include "mechanical/mechanical_model.h"
 #include "report/batch_content.h"
 #include "report/html.h"
+#include "report/in_flight.h"
 
+#include <map>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace flightwatt::report {
 
 /// All flights as a table (durations, power, energy, closure of integral and counter, gaps, warnings), those
-/// that are excluded with their reasons, and a part a flight that is drawn when it is opened.
-Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model);
+/// that are excluded with their reasons, and a part a flight that is drawn when it is opened, with what would have
+/// been predicted in flight where that is known.
+Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model,
+                        const std::map<std::string, PredictedFlight>& predicted = {});
 
 }  // namespace flightwatt::report

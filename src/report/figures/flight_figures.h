@@ -7,6 +7,7 @@
 #include "report/batch_content.h"
 #include "report/figure.h"
 #include "report/figures/published_figures.h"
+#include "report/in_flight.h"
 
 #include <optional>
 #include <span>
@@ -36,6 +37,10 @@ Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical:
 /// The ground track of a flight from above, coloured by phase, metres east and north on equal scales;
 /// std::nullopt where the log has no position.
 std::optional<Figure> track_figure(const ReportFlight& flight, const std::string& id);
+
+/// What would have been predicted while the flight cruised, with its 95 % intervals, over time, and what was measured.
+/// `flight` has moments.
+Figure in_flight_figure(const std::string& name, const PredictedFlight& flight, const std::string& id);
 
 /// The mechanical model as the paper's Fig. 2, a panel a phase: the curve, the envelope of the flights and
 /// the 95 % band of the mean, where they are known (bands of no times: unknown), and the digitised figure's

@@ -3,6 +3,7 @@
 #include "report/figures/flight_figures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -13,7 +14,7 @@
 #include <boost/geometry/algorithms/simplify.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/linestring.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/strategies/cartesian/distance_projected_point.hpp>
 #include <fmt/format.h>
 
@@ -21,7 +22,7 @@ namespace flightwatt::report {
 namespace {
 
 namespace bg = boost::geometry;
-using Point = bg::model::d2::point_xy<double>;
+using Point = bg::model::point<double, 3, bg::cs::cartesian>;  ///< east, north, height
 using Line = bg::model::linestring<Point>;
 
 constexpr int side = 380;  // [px]
@@ -31,11 +32,20 @@ struct GroundTrack {
     std::vector<double> time_s;
     std::vector<double> east_m;
     std::vector<double> north_m;
+    std::vector<double> height_m;  ///< above the ground at the first lift-off; 0 throughout if nobody knows
 };
 
-GroundTrack ground_track(const flight::FlightSeries& series) {
+GroundTrack ground_track(const ReportFlight& flight) {
+    const auto& series = flight.series;
     const auto time_s = power_track(series).time_s;
-    return {time_s, chosen_at(series, "east_m", time_s), chosen_at(series, "north_m", time_s)};
+    const auto altitude = chosen_track(series, "altitude_m");
+    GroundTrack track{time_s, chosen_at(series, "east_m", time_s), chosen_at(series, "north_m", time_s),
+                      std::vector<double>(time_s.size(), 0.0)};
+    if (altitude.empty() || flight.phases.sorties.empty()) return track;
+    track.height_m = resample(altitude, time_s);
+    const double ground_m = value_at(altitude, flight.phases.sorties.front().phases.front().start.time_s);
+    for (auto& height_m : track.height_m) height_m -= ground_m;
+    return track;
 }
 
 /// A square around the track.
@@ -55,14 +65,14 @@ Square square_around(const ReportFlight& flight, const GroundTrack& track) {
                 track.time_s[i] > sortie.phases.back().end.time_s) {
                 continue;
             }
-            bg::expand(box, Point(track.east_m[i], track.north_m[i]));
+            bg::expand(box, Point(track.east_m[i], track.north_m[i], 0.0));
         }
     }
     constexpr double margin = 1.05;
-    const double wide_m = box.max_corner().x() - box.min_corner().x();
-    const double high_m = box.max_corner().y() - box.min_corner().y();
-    return {std::midpoint(box.min_corner().x(), box.max_corner().x()),
-            std::midpoint(box.min_corner().y(), box.max_corner().y()),
+    const double wide_m = bg::get<0>(box.max_corner()) - bg::get<0>(box.min_corner());
+    const double high_m = bg::get<1>(box.max_corner()) - bg::get<1>(box.min_corner());
+    return {std::midpoint(bg::get<0>(box.min_corner()), bg::get<0>(box.max_corner())),
+            std::midpoint(bg::get<1>(box.min_corner()), bg::get<1>(box.max_corner())),
             std::max(1.0, margin * std::max(wide_m, high_m) / 2.0)};
 }
 
@@ -74,7 +84,7 @@ std::vector<Line> pieces(const GroundTrack& track, double start_s, double end_s)
     for (std::size_t i = 0; i < track.time_s.size(); ++i) {
         if (track.time_s[i] < start_s || track.time_s[i] > end_s) continue;
         if (track.time_s[i] - last_s > gap_s) lines.emplace_back();
-        bg::append(lines.back(), Point(track.east_m[i], track.north_m[i]));
+        bg::append(lines.back(), Point(track.east_m[i], track.north_m[i], track.height_m[i]));
         last_s = track.time_s[i];
     }
     return lines;
@@ -82,7 +92,7 @@ std::vector<Line> pieces(const GroundTrack& track, double start_s, double end_s)
 
 /// What of the tracks a screen can show: no point is further than the tolerance from what is kept.
 FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, double tolerance_m) {
-    FigureData data({"east_m", "north_m", "order", "piece"}, {"phase", "word"});
+    FigureData data({"east_m", "north_m", "height_m", "order", "piece"}, {"phase", "word"});
     double piece = 0.0;
     for (const auto& sortie : flight.phases.sorties) {
         for (const auto& span : sortie.phases) {
@@ -92,7 +102,8 @@ FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, doub
                 bg::simplify(line, simple, tolerance_m);
                 double order = 0.0;
                 for (const auto& point : simple) {
-                    data.add({point.x(), point.y(), order++, piece}, {to_string(span.phase), phase_word(span.phase)});
+                    data.add({bg::get<0>(point), bg::get<1>(point), bg::get<2>(point), order++, piece},
+                             {to_string(span.phase), phase_word(span.phase)});
                 }
             }
         }
@@ -100,46 +111,102 @@ FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, doub
     return data;
 }
 
-VegaJson encoding_of(const Square& square) {
-    const auto axis = [&](std::string_view field, std::string_view title, double middle_m) {
-        return quantity(
-            field, title,
-            {{"scale",
-              {{"domain", {middle_m - square.half_m, middle_m + square.half_m}}, {"nice", false}, {"zero", false}}}});
-    };
+VegaJson axis_of(std::string_view field, std::string_view title, double middle_m, double half_m) {
+    return quantity(
+        field, title,
+        {{"scale", {{"domain", {middle_m - half_m, middle_m + half_m}}, {"nice", false}, {"zero", false}}}});
+}
+
+VegaJson east_axis(const Square& square) { return axis_of("east_m", "east [m]", square.east_m, square.half_m); }
+VegaJson north_axis(const Square& square) { return axis_of("north_m", "north [m]", square.north_m, square.half_m); }
+
+VegaJson track_tooltip() {
+    return {category("word", "phase"), shown("east_m", "east [m]", ".0f"), shown("north_m", "north [m]", ".0f"),
+            shown("height_m", "height [m]", ".0f")};
+}
+
+/// The length of 1, 2 or 5 times a power of ten that is nearest below a quarter of the square.
+double scale_bar_m(const Square& square) {
+    const double most_m = square.half_m / 2.0;
+    const double decade_m = std::pow(10.0, std::floor(std::log10(most_m)));
+    for (const double times : {5.0, 2.0}) {
+        if (times * decade_m <= most_m) return times * decade_m;
+    }
+    return decade_m;
+}
+
+/// In the lower left corner.
+VegaJson scale_bar_layers(const Square& square) {
+    constexpr double margin = 0.05;
+    const double length_m = scale_bar_m(square);
+    const double start_m = square.east_m - square.half_m * (1.0 - 2.0 * margin);
+    const double north_m = square.north_m - square.half_m * (1.0 - 2.0 * margin);
+    const VegaJson data{{"values", {{{"east_m", start_m}, {"end_m", start_m + length_m}, {"north_m", north_m}}}}};
+    const VegaJson ends{{"x", east_axis(square)}, {"x2", {{"field", "end_m"}}}, {"y", north_axis(square)}};
+    auto text = vega(R"({"type": "text", "style": "note", "align": "left", "dy": -8, "aria": false})");
+    text["text"] = fmt::format("{:g} m", length_m);
+    return {layer(data, R"({"type": "rule", "style": "edge", "strokeWidth": 3, "aria": false})", ends),
+            {{"data", data}, {"mark", text}, {"encoding", {{"x", east_axis(square)}, {"y", north_axis(square)}}}}};
+}
+
+VegaJson phase_panel(const Square& square) {
     const auto color = vega(R"({"scale": {"domain": ["take-off", "cruise", "landing"], "range": "phases"},
         "legend": {"symbolType": "stroke"}})");
     auto dash = color;
     dash["scale"]["range"] = vega("[[6, 2], [1, 0], [2, 2]]");
-    return {{"x", axis("east_m", "east [m]", square.east_m)},
-            {"y", axis("north_m", "north [m]", square.north_m)},
-            {"order", {{"field", "order"}, {"type", "quantitative"}}},
-            {"detail", {{"field", "piece"}}},
-            {"color", category("word", "", color)},
-            {"strokeDash", category("word", "", dash)},
-            {"tooltip",
-             {category("word", "phase"), shown("east_m", "east [m]", ".0f"), shown("north_m", "north [m]", ".0f")}}};
+    auto layers = scale_bar_layers(square);
+    layers.push_back(layer(R"({"type": "line", "strokeWidth": 1.5, "clip": true,
+                               "point": {"opacity": 0, "size": 50, "aria": false}})",
+                           {{"x", east_axis(square)},
+                            {"y", north_axis(square)},
+                            {"order", {{"field", "order"}, {"type", "quantitative"}}},
+                            {"detail", {{"field", "piece"}}},
+                            {"color", category("word", "", color)},
+                            {"strokeDash", category("word", "", dash)},
+                            {"tooltip", track_tooltip()}}));
+    return {{"width", side}, {"height", side}, {"layer", layers}};
+}
+
+/// A line has one colour: each stretch to the next point is a rule of its own.
+VegaJson height_panel(const Square& square) {
+    auto panel = vega(R"({"transform": [{"window": [{"op": "lead", "field": "east_m", "as": "next_east_m"},
+                                                    {"op": "lead", "field": "north_m", "as": "next_north_m"}],
+                                         "groupby": ["piece"], "sort": [{"field": "order"}]},
+                                        {"filter": "datum.next_east_m !== null"}],
+                          "mark": {"type": "rule", "strokeWidth": 1.5, "clip": true}})");
+    panel["width"] = side;
+    panel["height"] = side;
+    panel["encoding"] = {
+        {"x", east_axis(square)},
+        {"y", north_axis(square)},
+        {"x2", {{"field", "next_east_m"}}},
+        {"y2", {{"field", "next_north_m"}}},
+        {"color", quantity("height_m", "height [m]", vega(R"({"scale": {"scheme": "viridis", "zero": false},
+                                                             "legend": {"orient": "top", "gradientLength": 160}})"))},
+        {"tooltip", track_tooltip()}};
+    return panel;
 }
 
 }  // namespace
 
 std::optional<Figure> track_figure(const ReportFlight& flight, const std::string& id) {
-    const auto track = ground_track(flight.series);
+    const auto track = ground_track(flight);
     if (track.east_m.empty() || track.north_m.empty()) return std::nullopt;
     const auto square = square_around(flight, track);
     const auto data = track_rows(flight, track, square.half_m / side);
     if (data.empty()) return std::nullopt;
     auto figure = new_figure(
-        id, "Ground track from above, coloured by phase; broken where samples are missing.",
-        fmt::format("Ground track of flight {} coloured by phase, within {:.0f} m from west to east and from south to "
-                    "north.",
-                    flight.name, 2.0 * square.half_m));
+        id,
+        "Ground track from above, coloured by phase and by height over the place of lift-off; broken where samples are "
+        "missing.",
+        fmt::format(
+            "Ground track of flight {} coloured by phase and by height, within {:.0f} m from west to east and from "
+            "south to north.",
+            flight.name, 2.0 * square.half_m));
     figure.spec["data"] = data.json();
-    figure.spec["width"] = side;
-    figure.spec["height"] = side;
-    figure.spec["mark"] = vega(R"({"type": "line", "strokeWidth": 1.5, "clip": true,
-        "point": {"opacity": 0, "size": 50, "aria": false}})");
-    figure.spec["encoding"] = encoding_of(square);
+    constexpr int row_gap_px = 60;
+    set_panels(figure, 2, row_gap_px, {phase_panel(square), height_panel(square)});
+    figure.spec["resolve"] = vega(R"({"scale": {"color": "independent", "strokeDash": "independent"}})");
     return figure;
 }
 
