@@ -193,12 +193,19 @@ nlohmann::ordered_json summary_json(const Page& page) {
             {"figures", figures}};
 }
 
+std::optional<double> figure_width_pt(const cli::StageCall& call) {
+    const auto width = call.maybe<std::string>("figure-width");
+    if (!width) return std::nullopt;
+    if (!call.has("figures")) throw UsageError("--figure-width is that of the files of --figures DIR");
+    return report::parse_figure_width_pt(*width);
+}
+
 /// Where figures are wanted as files.
 void write_figure_files(const cli::StageCall& call, const std::vector<report::Section>& sections,
                         const report::WebFiles& web) {
     const auto folder = call.maybe<std::string>("figures");
     if (!folder) return;
-    const auto files = write_figures(sections, web, *folder);
+    const auto files = write_figures(sections, web, *folder, figure_width_pt(call));
     cli::note(call, fmt::format("{} figures in {}: .vl.json{}{}", files.figures, *folder, files.has_svg ? ", .svg" : "",
                                 files.has_pdf ? ", .pdf" : ""));
     if (!files.has_svg) cli::warn(call, "node is not there: no figure was rendered");
@@ -209,6 +216,7 @@ void write_figure_files(const cli::StageCall& call, const std::vector<report::Se
 void refuse_bad_numbers(const cli::StageCall& call) {
     for (const auto* option : {"max-validation-flights", "max-battery-flights"}) cli::count_option(call, option);
     cli::positive_option(call, "capacity", "Ah");
+    figure_width_pt(call);
 }
 
 int write_page(const cli::StageCall& call) {
@@ -252,6 +260,7 @@ Vega-Lite specifications with their data; --figures writes them as files for pap
 and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
     auto add = stage.options.add_options();
     add("figures", cli::output_file("DIR"), "write every figure to DIR");
+    add("figure-width", cli::value("WIDTH"), "of those files: 3.5in, 89mm ...; their type is then set at 8 points");
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
     add("reference-figures", cli::input_file("DIR"),
         "show the paper's figures, digitised, beside ours: fig2_cruise.csv and others");

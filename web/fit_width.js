@@ -28,5 +28,7 @@ function fitWidth(spec, width) {
     }
     return part.width === undefined ? part : { ...part, width: wide };
   };
-  return fit(fitNames(spec), width);
+  const fitted = fit(fitNames(spec), width);
+  if (width >= 2 * legendColumn) return fitted;
+  return { ...fitted, config: { ...fitted.config, legend: { ...fitted.config?.legend, columns: 1 } } };
 }

@@ -1,12 +1,12 @@
-// Renders FOLDER/NAME.vl.json to FOLDER/NAME.svg with Vega, without a browser: node render.mjs FOLDER NAME...
+// Renders FOLDER/NAME.vl.json to FOLDER/NAME.svg with Vega, without a browser: node render.mjs FOLDER WIDTH NAME... (WIDTH in pixels)
 import { readFile, writeFile } from "node:fs/promises";
 import path from "node:path";
 import vm from "node:vm";
 import * as vega from "vega";
 import * as vegaLite from "vega-lite";
 
-const width = 720;
-const [folder, ...names] = process.argv.slice(2);
+const [folder, asked, ...names] = process.argv.slice(2);
+const width = Number(asked);
 const here = path.dirname(new URL(import.meta.url).pathname);
 const fitWidth = vm.runInThisContext(`(${await readFile(path.join(here, "fit_width.js"), "utf8")})`);
 
@@ -18,9 +18,21 @@ function still(part) {
 }
 
 const logger = vega.logger(vega.Error); // warnings are of layers' legends, and of mice that are not here
-for (const name of names) {
-  const spec = still(fitWidth(JSON.parse(await readFile(path.join(folder, `${name}.vl.json`), "utf8")), width));
-  const view = new vega.View(vega.parse(vegaLite.compile(spec, { logger }).spec), { renderer: "none", logger });
-  await writeFile(path.join(folder, `${name}.svg`), await view.toSVG());
+async function render(spec, room) {
+  const view = new vega.View(vega.parse(vegaLite.compile(still(fitWidth(spec, room)), { logger }).spec), { renderer: "none", logger });
+  const svg = await view.toSVG();
   view.finalize();
+  return { svg, wide: Number(svg.match(/<svg[^>]* width="([\d.]+)"/)[1]) };
+}
+
+for (const name of names) {
+  const spec = JSON.parse(await readFile(path.join(folder, `${name}.vl.json`), "utf8"));
+  // What stands beside the panels is known once it is drawn: what is too wide gets less room.
+  let room = width;
+  let drawn = await render(spec, room);
+  for (let trial = 0; trial < 10 && drawn.wide > width; ++trial) {
+    room -= drawn.wide - width;
+    drawn = await render(spec, room);
+  }
+  await writeFile(path.join(folder, `${name}.svg`), drawn.svg);
 }

@@ -3,9 +3,12 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_use.h"
+#include "base/number.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -46,24 +49,42 @@ bool ran(const std::vector<std::string>& command) {
     return true;
 }
 
+/// In CSS pixels of 1/96 inch, which are Vega's.
+constexpr double px_per_pt = 96.0 / 72.0;
+constexpr double default_width_px = 720.0;
+
+/// The theme with all type at 8 points: figures of a column are not scaled any more.
+VegaJson in_type_of_papers(VegaJson theme) {
+    constexpr double type_pt = 8.0;
+    const auto set = [](VegaJson& part, const auto& self) -> void {
+        for (auto& [key, value] : part.items()) {
+            if (value.is_structured()) self(value, self);
+            if (value.is_number() && (key.ends_with("FontSize") || key == "fontSize")) value = type_pt * px_per_pt;
+        }
+    };
+    set(theme, set);
+    return theme;
+}
+
 /// The specification with the light theme in it: a file that any Vega-Lite draws.
-std::string standalone(const Figure& figure, const VegaJson& theme) {
+std::string standalone(const Figure& figure, const VegaJson& light_theme) {
     auto spec = figure.spec;
-    spec["config"] = theme.at("light");
+    spec["config"] = light_theme;
     return spec.dump(1, ' ', false, VegaJson::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
 
 FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& web,
-                          const std::filesystem::path& folder) {
+                          const std::filesystem::path& folder, const std::optional<double>& width_pt) {
     for (const auto& section : sections) {
         for (const auto& figure : section.figures) {
             for (const auto* ending : {".vl.json", ".svg", ".pdf"}) declare_output(folder / (figure.id + ending));
         }
     }
     make_directories(folder);
-    const auto theme = VegaJson::parse(web.theme);
+    auto theme = VegaJson::parse(web.theme).at("light");
+    if (width_pt) theme = in_type_of_papers(std::move(theme));
     FigureFiles files;
     for (const auto& section : sections) {
         for (const auto& figure : section.figures) {
@@ -72,7 +93,9 @@ FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& 
         }
     }
     // These alone: the folder may hold others' figures.
-    std::vector<std::string> render{"node", (web.folder / "render.mjs").string(), folder.string()};
+    const double width_px = width_pt ? *width_pt * px_per_pt : default_width_px;
+    std::vector<std::string> render{"node", (web.folder / "render.mjs").string(), folder.string(),
+                                    fmt::format("{}", width_px)};
     for (const auto& section : sections)
         for (const auto& figure : section.figures) render.push_back(figure.id);
     files.has_svg = ran(render);
@@ -86,6 +109,23 @@ FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& 
         }
     }
     return files;
+}
+
+double parse_figure_width_pt(const std::string& text) {
+    static const std::map<std::string, double> points_of{
+        {"in", 72.0}, {"cm", 72.0 / 2.54}, {"mm", 7.2 / 2.54}, {"pt", 1.0}};
+    constexpr double least_pt = 1.5 * 72.0;
+    constexpr double most_pt = 20.0 * 72.0;
+    const auto unit_at = std::min(text.find_first_not_of("0123456789."), text.size());
+    const auto unit = points_of.find(text.substr(unit_at));
+    const auto number = parse_number(std::string_view(text).substr(0, unit_at));
+    if (!number || unit == points_of.end())
+        throw UsageError(
+            fmt::format("--figure-width {}: expected a width with its unit: 3.5in, 89mm, 9cm or 252pt", text));
+    const double width_pt = *number * unit->second;
+    if (!(width_pt >= least_pt && width_pt <= most_pt))
+        throw UsageError(fmt::format("--figure-width {}: expected 1.5in to 20in", text));
+    return width_pt;
 }
 
 }  // namespace flightwatt::report

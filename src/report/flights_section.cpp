@@ -9,6 +9,7 @@
 #include "report/flight_facts.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -71,10 +72,27 @@ std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie
     return cells;
 }
 
-std::string flight_id(std::size_t index) { return fmt::format("flight-{}", index + 1); }
+/// "flight-20_07_03__12_17_45": what of a flight's name may stand in names of files and in links, each once.
+std::vector<std::string> flight_ids(std::span<const ReportFlight> flights) {
+    constexpr std::size_t longest = 60;
+    std::vector<std::string> ids;
+    std::set<std::string> taken;
+    ids.reserve(flights.size());
+    for (const auto& flight : flights) {
+        std::string id;
+        for (const char c : flight.name.substr(0, longest)) {
+            const bool is_plain =
+                (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+            if (is_plain || (!id.empty() && id.back() != '-')) id += is_plain ? c : '-';
+        }
+        if (id.empty() || !taken.insert(id).second) id += fmt::format("-{}", ids.size() + 1);
+        ids.push_back("flight-" + id);
+    }
+    return ids;
+}
 
 /// One row a sortie of the flights that were not rejected.
-std::string flights_table_html(std::span<const ReportFlight> flights) {
+std::string flights_table_html(std::span<const ReportFlight> flights, const std::vector<std::string>& ids) {
     TextTable table{{"flight", "aircraft", "date", "distance [km]", "height [m]", "take\u2011off [s]", "cruise [s]",
                      "landing [s]", "take\u2011off [W]", "cruise [W]", "landing [W]", "energy [Wh]", "counter [Wh]",
                      "closure [%]", "gaps", "warnings", "fitted"},
@@ -87,7 +105,7 @@ std::string flights_table_html(std::span<const ReportFlight> flights) {
         if (!flights[f].rejected.empty()) continue;
         for (std::size_t s = 0; s < flights[f].phases.sorties.size(); ++s) {
             table.rows.push_back(cells_of(flights[f], s));
-            options.links.push_back(flight_id(f));
+            options.links.push_back(ids[f]);
         }
     }
     return table_html(table, options);
@@ -138,8 +156,7 @@ std::string summary_of(const ReportFlight& flight) {
 
 /// Its part is left open.
 void add_flight(Section& section, const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
-                std::size_t index, bool is_open) {
-    const auto id = flight_id(index);
+                const std::string& id, bool is_open) {
     section.html += fmt::format("<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{}</span></summary>\n", id,
                                 is_open ? " open" : "", escaped(flight.name), escaped(summary_of(flight)));
     section.html += paragraph("From " + flight.log, "soft");
@@ -167,15 +184,16 @@ Section flights_section(std::span<const ReportFlight> flights, const std::option
                     "own energy counter over the same time, closure how much the integral lies "
                     "above it. A click on a column sorts.",
                     flights.size(), rejected));
-    section.html += flights_table_html(flights);
+    const auto ids = flight_ids(flights);
+    section.html += flights_table_html(flights, ids);
     section.html += excluded_html(flights);
     section.html += "<h3>Each flight</h3>\n";
     for (std::size_t f = 0; f < flights.size(); ++f) {
         if (!flights[f].rejected.empty()) continue;
-        add_flight(section, flights[f], model, f, section.figures.empty());
+        add_flight(section, flights[f], model, ids[f], section.figures.empty());
         const auto found = predicted.find(flights[f].name);
         if (found != predicted.end())
-            add_figure(section, in_flight_figure(flights[f].name, found->second, flight_id(f) + "-predicted"));
+            add_figure(section, in_flight_figure(flights[f].name, found->second, ids[f] + "-predicted"));
         section.html += "</details>\n";
     }
     return section;

@@ -82,10 +82,7 @@ std::string table_html(const TextTable& table, const HtmlTableOptions& options) 
         }
         html += "</tr>\n";
     }
-    html += "</tbody></table></div>\n";
-    if (options.minor.empty()) return html;
-    return html +
-           paragraph(fmt::format("Left out on a narrow screen: {}.", fmt::join(options.minor, ", ")), "soft narrow");
+    return html + "</tbody></table></div>\n";
 }
 
 std::string figure_html(const Figure& figure) {

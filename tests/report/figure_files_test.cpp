@@ -46,6 +46,28 @@ TEST(WriteFigures, WritesSpecificationsWithTheLightThemeWithoutNode) {
     EXPECT_EQ(spec["config"]["background"], "white");
 }
 
+TEST(WriteFigures, SetTypeAtEightPointsForAColumn) {
+    const NoPrograms none;
+    WebFiles web;
+    web.theme =
+        R"({"light": {"title": {"fontSize": 13}, "axis": {"labelFontSize": 11, "labelLimit": 90}}, "dark": {}})";
+    const auto folder = test::scratch_dir() / "figures";
+    write_figures({section_with("one")}, web, folder, parse_figure_width_pt("3.5in"));
+    const auto config = VegaJson::parse(read_file(folder / "one.vl.json"))["config"];
+    EXPECT_NEAR(config["title"]["fontSize"].get<double>(), 32.0 / 3.0, 1e-9);
+    EXPECT_NEAR(config["axis"]["labelFontSize"].get<double>(), 32.0 / 3.0, 1e-9);
+    EXPECT_EQ(config["axis"]["labelLimit"], 90);
+}
+
+TEST(FigureWidth, IsReadWithItsUnit) {
+    EXPECT_DOUBLE_EQ(parse_figure_width_pt("3.5in"), 252.0);
+    EXPECT_DOUBLE_EQ(parse_figure_width_pt("252pt"), 252.0);
+    EXPECT_NEAR(parse_figure_width_pt("88.9mm"), 252.0, 1e-9);
+    EXPECT_NEAR(parse_figure_width_pt("8.89cm"), 252.0, 1e-9);
+    for (const auto* wrong : {"", "3.5", "in", "3.5 in", "-3in", "1in", "30in", "3.5inch", "3..5in"})
+        EXPECT_THROW(parse_figure_width_pt(wrong), UsageError) << wrong;
+}
+
 TEST(WriteFigures, FailsWhereTheFolderIsAFile) {
     WebFiles web;
     web.theme = R"({"light": {}, "dark": {}})";

@@ -40,6 +40,22 @@ for spec in specs:
 print(f"{len(specs)} figures")
 PYTHON
 
+# In a column of 3.5 inches nothing is wider, and type is of 8 points, 10.67 pixels.
+"$bin/flightwatt-report" "$scratch/out" "$source/missions/paper/phased.toml" --figures "$scratch/column" --figure-width 3.5in 2>/dev/null
+python3 - "$scratch/column" <<'PYTHON'
+import glob, os, re, sys
+
+drawings = sorted(glob.glob(os.path.join(sys.argv[1], "*.svg")))
+assert len(drawings) >= 8, drawings
+assert os.path.join(sys.argv[1], "flight-opterra_synthetic_01-power.svg") in drawings
+for drawing in drawings:
+    svg = open(drawing, encoding="utf-8").read()
+    width = float(re.search(r'<svg[^>]* width="([\d.]+)"', svg).group(1))
+    assert 200 < width <= 336.5, (drawing, width)
+    sizes = {float(size) for size in re.findall(r'font-size="([\d.]+)px"', svg)}
+    assert sizes and all(abs(size - 32 / 3) < 0.01 for size in sizes), (drawing, sizes)
+PYTHON
+
 # Without node the specifications are written, and it is said.
 tools=$scratch/tools
 mkdir "$tools"

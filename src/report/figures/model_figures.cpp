@@ -179,7 +179,7 @@ Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, c
         layer(vega(R"({"values": [{}]})"), R"({"type": "rule", "style": "edge", "aria": false})",
               vega(R"({"x": {"datum": 0}})")),
         layer(error_rows(flights).json(), R"({"type": "point", "size": 55, "opacity": 0.85})",
-              {{"x", quantity("error_wh", "predicted less measured energy [Wh]")},
+              {{"x", quantity("error_wh", "predicted less measured [Wh]")},
                {"y", category("model", "", {{"sort", nullptr}})},
                {"color", category("model", "", {{"legend", nullptr}})},
                {"tooltip",
