@@ -159,7 +159,7 @@ Track chosen_track(const FlightSeries& series, std::string_view name) {
     return name == "power_w" ? choose_power(series).power_w : choose(series, name).track;
 }
 
-const Track& ChosenTracks::operator[](const std::string& name) const {
+const Track& ChosenTracks::operator[](std::string_view name) const {
     const auto made = made_.find(name);
     return made != made_.end() ? made->second : made_.emplace(name, chosen_track(series_, name)).first->second;
 }
@@ -177,11 +177,11 @@ std::map<std::string, std::string> sources_of(const FlightSeries& series) {
     return sources;
 }
 
-std::optional<double> ground_altitude_m(const FlightSeries& series) {
+std::optional<double> ground_altitude_m(const ChosenTracks& tracks) {
     // A rotorcraft's heights are above the reference on the ground.
-    if (chosen_track(series, "altitude_m").source.starts_with("ROTORCRAFT_FP")) return 0.0;
-    const auto logged = chosen_track(series, "ground_altitude_m");
-    return logged.empty() ? series.planned_ground_altitude_m : logged.value.back();
+    if (tracks["altitude_m"].source.starts_with("ROTORCRAFT_FP")) return 0.0;
+    const auto& logged = tracks["ground_altitude_m"];
+    return logged.empty() ? tracks.series().planned_ground_altitude_m : logged.value.back();
 }
 
 std::vector<std::string> warnings_of(const FlightSeries& series) {

@@ -12,6 +12,7 @@
 #include "mechanical/prediction.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -87,10 +88,10 @@ class LiveFlight::Watch {
         if (schedule_) schedule_->begin_anew();
     }
 
-    void look_at_flight(const flight::FlightSeries& series, LiveState& state);
-    void look_at_battery_of(const flight::FlightSeries& series, LiveState& state,
+    void look_at_flight(const flight::ChosenTracks& tracks, LiveState& state);
+    void look_at_battery_of(const flight::ChosenTracks& tracks, LiveState& state,
                             std::optional<battery::DischargeRecord>& record);
-    void predict(const flight::FlightSeries& series, const std::optional<battery::DischargeRecord>& record,
+    void predict(const flight::ChosenTracks& tracks, const std::optional<battery::DischargeRecord>& record,
                  LiveState& state);
     void look_ahead(LiveState& state) const;
     void decide(LiveState& state);
@@ -123,14 +124,18 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     state.messages = messages_;
     state.restarts = restarts_;
     state.silent_s = silent_s;
-    const auto series = choice_.choose(store_);
+    auto series = choice_.choose(store_);
+    // What is known at the moment of the last power or altitude, as it is cut by predict.
+    if (const double now_s = mechanical::last_time_s(series); std::isfinite(now_s))
+        series = cut_series(std::move(series), now_s);
+    const flight::ChosenTracks tracks(series);
     state.aircraft_id = series.aircraft_id;
     state.aircraft_name = series.aircraft_name;
     state.others = choice_.others();
     std::optional<battery::DischargeRecord> record;
-    look_at_flight(series, state);
-    look_at_battery_of(series, state, record);
-    predict(series, record, state);
+    look_at_flight(tracks, state);
+    look_at_battery_of(tracks, state, record);
+    predict(tracks, record, state);
     try {
         look_ahead(state);
     } catch (const std::exception& error) {
@@ -152,13 +157,12 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     return state;
 }
 
-void LiveFlight::Watch::look_at_flight(const flight::FlightSeries& series, LiveState& state) {
+void LiveFlight::Watch::look_at_flight(const flight::ChosenTracks& tracks, LiveState& state) {
     phases_ = {};
-    const flight::ChosenTracks tracks(series);
     try {
-        if (!tracks["altitude_m"].empty()) phases_ = segment(series, {});
+        if (!tracks["altitude_m"].empty()) phases_ = segment(tracks);
     } catch (const std::exception& error) {
-        state.waits_for = error.what();
+        state.waits_for = without_flight_name(error.what(), tracks.series().flight);
     }
     sorties_kept_ = phases_.sorties.size();
     state.sortie = sorties_before_ + sorties_kept_;
@@ -167,20 +171,20 @@ void LiveFlight::Watch::look_at_flight(const flight::FlightSeries& series, LiveS
     state.current_a = last_of(tracks, "current_a");
     state.altitude_m = last_of(tracks, "altitude_m");
     if (phases_.sorties.empty()) return;
-    set_flight_clock(phases_.sorties.back(), mechanical::last_time_s(series), state);
-    if (!state.power_w) return;
     const auto& sortie = phases_.sorties.back();
-    state.energy_wh =
-        integrated_energy_wh(series, sortie.start_s(), state.landed ? sortie.end_s() : mechanical::last_time_s(series));
+    const double now_s = mechanical::last_time_s(tracks.series());
+    set_flight_clock(sortie, now_s, state);
+    if (!state.power_w) return;
+    state.energy_wh = integrated_energy_wh(tracks["power_w"], sortie.start_s(), state.landed ? sortie.end_s() : now_s);
 }
 
-void LiveFlight::Watch::look_at_battery_of(const flight::FlightSeries& series, LiveState& state,
+void LiveFlight::Watch::look_at_battery_of(const flight::ChosenTracks& tracks, LiveState& state,
                                            std::optional<battery::DischargeRecord>& record) {
     if (!basis_ || !basis_->battery) return;
-    state.battery = look_at_battery(*basis_, carried_percent_, series, record);
+    state.battery = look_at_battery(*basis_, carried_percent_, tracks, record);
 }
 
-void LiveFlight::Watch::predict(const flight::FlightSeries& series,
+void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
                                 const std::optional<battery::DischargeRecord>& record, LiveState& state) {
     if (!basis_) {
         state.waits_for = "a model: give --model or --mission";
@@ -191,15 +195,15 @@ void LiveFlight::Watch::predict(const flight::FlightSeries& series,
         return;
     }
     if (!state.power_w) {
-        const auto why = why_no_power(series);
+        const auto why = why_no_power(tracks.series());
         state.waits_for = why.empty() ? "telemetry that tells of power" : "measured power: " + why;
         return;
     }
+    if (!state.waits_for.empty()) return;  // it cannot be segmented
     Remarks remarks;
     try {
-        const double until_s = mechanical::last_time_s(series);
-        const auto sortie = phases_.sorties.empty() ? 0 : phases_.sorties.size() - 1;
-        const auto flown = mechanical::progress_at(series, until_s, sortie);
+        const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
+        const auto flown = mechanical::progress_in(tracks, sortie, mechanical::last_time_s(tracks.series()));
         auto energy = predict_energy(*basis_, flown, remarks);
         if (record && state.battery && state.battery->soc_percent) {
             energy.battery = BatteryPrediction{};
@@ -211,7 +215,7 @@ void LiveFlight::Watch::predict(const flight::FlightSeries& series,
         state.prediction = std::move(energy);
         state.expected_power_w = power_ahead(*state.prediction).front().power_w;
     } catch (const std::exception& error) {
-        state.waits_for = without_flight_name(error.what(), series.flight);
+        state.waits_for = without_flight_name(error.what(), tracks.series().flight);
     }
     state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
 }

@@ -46,8 +46,8 @@ std::optional<PowerLevels> power_levels(const Track& power, const Track& altitud
 }
 
 /// The throttle on the clock of the power samples, on which it is asked for everywhere, or on its own.
-Track throttle_of(const FlightSeries& series, const Track& power) {
-    auto throttle = chosen_track(series, "throttle_percent");
+Track throttle_of(const ChosenTracks& tracks, const Track& power) {
+    auto throttle = tracks["throttle_percent"];
     if (throttle.empty() || power.empty()) return throttle;
     throttle.value = resample(throttle, power.time_s);
     throttle.time_s = power.time_s;
@@ -74,10 +74,10 @@ std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLe
 
 }  // namespace
 
-MotorRecord motor_record(const FlightSeries& series, const Track& altitude_m) {
+MotorRecord motor_record(const ChosenTracks& tracks, const Track& altitude_m) {
     MotorRecord record;
-    const auto power = power_track(series);
-    auto throttle = throttle_of(series, power);
+    const auto& power = tracks["power_w"];
+    auto throttle = throttle_of(tracks, power);
     const auto levels = altitude_m.empty() ? std::nullopt : power_levels(power, altitude_m);
     const bool stands_still = is_constant(throttle);  // as that of a log which has none
     if (!throttle.empty() && !(stands_still && levels)) {

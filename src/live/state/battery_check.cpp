@@ -41,10 +41,10 @@ void compare_voltage(const battery::Battery& battery, const battery::DischargeRe
 }
 
 /// Of a series without a record: by voltage and current of the last minute, as if nothing had settled yet.
-void look_at_voltage(const battery::Battery& battery, const flight::FlightSeries& series, LiveBattery& result) {
-    const auto voltage = flight::chosen_track(series, "voltage_v");
+void look_at_voltage(const battery::Battery& battery, const flight::ChosenTracks& tracks, LiveBattery& result) {
+    const auto& voltage = tracks["voltage_v"];
     if (!battery.thevenin || voltage.empty()) return;
-    const auto current = flight::chosen_track(series, "current_a");
+    const auto& current = tracks["current_a"];
     std::vector<double> rest_v;
     for (std::size_t i = voltage.time_s.size(); i-- > 0 && voltage.time_s[i] >= voltage.time_s.back() - watched_s;) {
         const double current_a = current.empty() ? 0.0 : value_at(current, voltage.time_s[i]);
@@ -113,11 +113,11 @@ std::optional<double> soc_at(const battery::Battery& battery, const battery::Dis
 }
 
 LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<double>& carried_percent,
-                            const flight::FlightSeries& series, std::optional<battery::DischargeRecord>& record) {
+                            const flight::ChosenTracks& tracks, std::optional<battery::DischargeRecord>& record) {
     const auto& battery = basis.battery.value();
     LiveBattery result;
     try {
-        record = battery::discharge_records(series).records.back();
+        record = battery::discharge_records(tracks).records.back();
         set_initial(basis, carried_percent, *record, result);
         result.drawn_ah = record->charge_ah.back();
         result.state = state_after(battery, *record, result.initial_soc_percent);
@@ -126,7 +126,7 @@ LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<do
         result.soc_percent = result.state->soc_percent;
         compare_voltage(battery, *record, result);
     } catch (const std::exception&) {  // no record yet, or more was drawn than there was
-        look_at_voltage(battery, series, result);
+        look_at_voltage(battery, tracks, result);
     }
     return result;
 }

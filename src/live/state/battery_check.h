@@ -11,7 +11,7 @@ namespace flightwatt::live {
 /// is the state of charge where the series begins, if it is known from what lay before. Where there is no usable record
 /// yet (at rest, or from within a flight) the voltage alone tells it.
 LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<double>& carried_percent,
-                            const flight::FlightSeries& series, std::optional<battery::DischargeRecord>& record);
+                            const flight::ChosenTracks& tracks, std::optional<battery::DischargeRecord>& record);
 
 /// The state of charge at a time of the record.
 std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
