@@ -206,6 +206,41 @@ TEST(LiveFlight, GarbageOtherAircraftAndDamageChangeNothing) {
     EXPECT_EQ(state.restarts, 0U);
 }
 
+/// Its clock is behind, goes in jumps, and begins anew: none of that is the watched aircraft's.
+TEST(LiveFlight, AnotherAircraftsClockChangesNothing) {
+    const auto log = test::sample(2);
+    LiveFlight clean(options_of(log), wing_basis(), nullptr);
+    LiveFlight disturbed(options_of(log), wing_basis(), nullptr);
+    std::size_t i = 0;
+    for (const auto& message : messages_of(log, 350.0)) {
+        clean.receive(message, 0.0);
+        disturbed.receive(message, 0.0);
+        const double step_s = ++i / 50 % 2 == 0 ? 300.0 : 0.0;
+        disturbed.receive({0.01 * static_cast<double>(i % 3000) + step_s, "99 ENERGY 90 9.1 30 270 1 10"}, 0.0);
+    }
+    const auto expected = clean.look();
+    const auto state = disturbed.look();
+    EXPECT_EQ(state.restarts, 0U);
+    EXPECT_NEAR(state.time_s, expected.time_s, 0.1);
+    ASSERT_TRUE(state.prediction && expected.prediction) << state.waits_for;
+    EXPECT_EQ(state.prediction->rest.energy_wh, expected.prediction->rest.energy_wh);
+    EXPECT_EQ(state.prediction->battery->expected.soc_percent, expected.prediction->battery->expected.soc_percent);
+}
+
+TEST(LiveFlight, AnAircraftIsSilentThoughOthersTalk) {
+    const auto log = test::sample(1);
+    LiveFlight flight(options_of(log), wing_basis(), nullptr);
+    receive_all(flight, messages_of(log, 300.0));
+    EXPECT_EQ(flight.look().alarms.size(), 0U);
+    for (int i = 0; i <= 40; ++i) flight.receive({300.0 + i, "ground DATALINK_REPORT 7 0 0 0 0 0 0"}, 0.0);
+    const auto state = flight.look();
+    EXPECT_NEAR(state.time_s, 340.0, 4.5) << "less the five lines that a gap takes to be believed";
+    ASSERT_EQ(state.alarms.size(), 1U);
+    EXPECT_EQ(state.alarms.front().kind, "silence");
+    receive_all(flight, messages_of(log, 350.0, 340.0));
+    EXPECT_EQ(flight.look().alarms.size(), 0U);
+}
+
 TEST(LiveFlight, GapsAndLostMessagesDoNotEndIt) {
     const auto log = test::sample(3);
     LiveFlight flight(options_of(log), wing_basis(), nullptr);
