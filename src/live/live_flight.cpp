@@ -58,6 +58,7 @@ class LiveFlight::Watch {
         std::vector<ClockFilter::Line> believed;
         clocks_.flush(believed);
         take(believed, false);
+        ended_ = true;
     }
 
     std::optional<double> clock_s() const {
@@ -116,6 +117,7 @@ class LiveFlight::Watch {
     std::size_t deciding_for_ = 0;  ///< the sortie that the schedule has seen
     std::optional<double> carried_percent_;
     std::optional<double> judged_s_;
+    bool ended_ = false;
     std::vector<std::string> warnings_;
     flight::FlightPhases phases_;
     std::optional<LiveState> last_predicted_;
@@ -227,7 +229,7 @@ void LiveFlight::Watch::look_ahead(LiveState& state) const {
     if (!state.prediction || !state.battery || !state.battery->state) return;
     const auto& prediction = *state.prediction;
     const auto& now = *state.battery->state;
-    state.battery->chance_below = chance_below_reserve(*basis_, prediction, now);
+    state.battery->chance_below = chance_below_reserve(*basis_, prediction, *state.battery);
     const double cruise_w = prediction.cruise.remaining_mean_w;
     const std::vector<battery::PowerStretch> nothing{{cruise_w, 0.0}};
     state.battery->reserve_in_s =
@@ -263,7 +265,7 @@ void LiveFlight::Watch::decide(LiveState& state) {
 }
 
 void LiveFlight::Watch::judge(const flight::FlightSeries& series, const LiveState& state) {
-    if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed) return;
+    if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed && !ended_) return;
     judged_s_ = state.time_s;
     if (series.tracks.empty()) return;
     flight::LoadOptions options;

@@ -369,5 +369,40 @@ TEST(LiveFlight, TheChanceOfLandingBelowTheReserveFollowsTheInterval) {
     EXPECT_NEAR(state_with(99.0).battery->chance_below.value(), 1.0, 1e-9);
 }
 
+/// Against the sum over capacities of the chances with each.
+TEST(LiveFlight, TheChanceOfLandingBelowTheReserveHoldsTheCapacitysSpread) {
+    const auto messages = messages_of(test::sample(1), 400.0);
+    const auto battery_with = [&](double reserve_percent, double capacity_part, double sd_part) {
+        auto basis = wing_basis();
+        basis.limits.reserve_soc_percent = reserve_percent;
+        const double capacity_ah = basis.battery->capacity_ah;
+        constexpr double half_95 = 1.96;
+        basis.battery->intervals.capacity_ah =
+            battery::Interval{capacity_ah * (1.0 - half_95 * sd_part), capacity_ah * (1.0 + half_95 * sd_part)};
+        if (sd_part == 0.0) basis.battery->intervals.capacity_ah.reset();
+        basis.battery->capacity_ah *= capacity_part;
+        LiveFlight flight(options_of(test::sample(1)), basis, nullptr);
+        receive_all(flight, messages);
+        return flight.look();
+    };
+    const double expected = battery_with(0.0, 1.0, 0.0).prediction->battery->expected.soc_percent;
+    for (const double sd_part : {0.01, 0.06}) {
+        for (const double above_percent : {-6.0, 0.0, 2.0}) {
+            const double reserve_percent = expected + above_percent;
+            double weights = 0.0;
+            double chance = 0.0;
+            for (int i = -9; i <= 9; ++i) {
+                const double z = 0.4 * i;
+                const double weight = std::exp(-0.5 * z * z);
+                const auto state = battery_with(reserve_percent, 1.0 + z * sd_part, 0.0);
+                weights += weight;
+                chance += weight * state.battery->chance_below.value();
+            }
+            const auto state = battery_with(reserve_percent, 1.0, sd_part);
+            EXPECT_NEAR(state.battery->chance_below.value(), chance / weights, 0.02) << sd_part << " " << above_percent;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace flightwatt::live
