@@ -9,6 +9,7 @@
 #include "cli/output/prediction_output.h"
 #include "cli/output/source_options.h"
 #include "cli/output/watch_output.h"
+#include "cli/said_warnings.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "live/page_server.h"
@@ -21,7 +22,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -55,8 +55,10 @@ class Speaker {
         : call_(call), compute_(compute), basis_(basis), plot_(cli::terminal_plot(call, "state of charge, %")) {}
 
     void say(const live::LiveState& state) {
-        for (const auto& warning : state.warnings)
-            if (said_.size() < most_said && said_.insert(kind_of(warning)).second && !plot_) cli::warn(call_, warning);
+        warnings_ = state.warnings;
+        const auto to_say = said_.to_say(warnings_, state.time_s);
+        for (const auto& warning : to_say)
+            if (!plot_) cli::warn(call_, warning);
         if (state.battery && state.battery->state) soc_.add(state.time_s, state.battery->state->soc_percent);
         if (plot_) {
             draw(state);
@@ -71,6 +73,7 @@ class Speaker {
 
     /// The last words.
     void end(const live::LiveFlight& flight, const std::string& why) {
+        for (const auto& warning : said_.last_words(warnings_)) cli::warn(call_, warning);
         const auto& last = flight.last_predicted();
         if (call_.json) {
             nlohmann::ordered_json json{{"ended", why}, {"last_prediction", nullptr}};
@@ -84,14 +87,7 @@ class Speaker {
     }
 
   private:
-    static constexpr std::size_t most_said = 200;
     static constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
-
-    /// The same is said once, whatever numbers come with it: they change as the flight goes on.
-    static std::string kind_of(std::string warning) {
-        std::erase_if(warning, [](char c) { return c >= '0' && c <= '9'; });
-        return warning;
-    }
 
     void draw(const live::LiveState& state) {
         constexpr double often_s = 0.25;
@@ -120,7 +116,8 @@ class Speaker {
     const std::optional<live::PredictionBasis>& basis_;
     std::optional<cli::TerminalPlot> plot_;
     live::CurveHistory soc_;
-    std::set<std::string> said_;
+    cli::SaidWarnings said_;
+    std::vector<std::string> warnings_;  ///< of the latest state
     std::optional<Clock::time_point> drawn_;
     bool is_read_ = true;
 };

@@ -6,8 +6,8 @@
 #include "live/state/aircraft_choice.h"
 #include "live/state/alarms.h"
 #include "live/state/battery_check.h"
-#include "live/state/clock_filter.h"
 #include "live/state/flight_clock.h"
+#include "live/state/sender_clocks.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
 
@@ -44,19 +44,27 @@ class LiveFlight::Watch {
         ++messages_;
         choice_.count(message.text);
         std::vector<ClockFilter::Line> believed;
-        const bool anew =
-            clock_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed);
-        if (anew) restart();
-        take(believed, anew);
+        const auto anew =
+            clocks_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed);
+        const bool is_restart = anew == SenderClocks::Anew::all ||
+                                (anew == SenderClocks::Anew::sender && clocks_.is_followed(sender_of(message.text)));
+        if (anew != SenderClocks::Anew::none) store_pending();
+        if (anew == SenderClocks::Anew::sender) store_.drop(std::string(sender_of(message.text)));
+        if (anew == SenderClocks::Anew::all) store_.clear();
+        if (is_restart) restart();
+        take(believed, is_restart);
     }
 
     void end() {
         std::vector<ClockFilter::Line> believed;
-        clock_.flush(believed);
+        clocks_.flush(believed);
         take(believed, false);
+        ended_ = true;
     }
 
-    std::optional<double> clock_s() const { return clock_.started() ? std::optional(clock_.latest_s()) : std::nullopt; }
+    std::optional<double> clock_s() const {
+        return clocks_.started() ? std::optional(clocks_.latest_s()) : std::nullopt;
+    }
 
     LiveState look(double silent_s);
     const std::optional<LiveState>& last_predicted() const { return last_predicted_; }
@@ -77,8 +85,6 @@ class LiveFlight::Watch {
     }
 
     void restart() {
-        store_pending();
-        store_.clear();
         ++restarts_;
         sorties_before_ += sorties_kept_;
         sorties_kept_ = 0;
@@ -102,7 +108,7 @@ class LiveFlight::Watch {
     std::optional<PredictionBasis> basis_;
     std::unique_ptr<LiveSchedule> schedule_;
     TelemetryStore store_;
-    ClockFilter clock_;
+    SenderClocks clocks_;
     AircraftChoice choice_;
     std::string pending_;
     std::size_t messages_ = 0;
@@ -112,6 +118,7 @@ class LiveFlight::Watch {
     std::size_t deciding_for_ = 0;  ///< the sortie that the schedule has seen
     std::optional<double> carried_percent_;
     std::optional<double> judged_s_;
+    bool ended_ = false;
     std::vector<std::string> warnings_;
     flight::FlightPhases phases_;
     std::optional<LiveState> last_predicted_;
@@ -120,11 +127,12 @@ class LiveFlight::Watch {
 LiveState LiveFlight::Watch::look(double silent_s) {
     store_pending();
     LiveState state;
-    state.time_s = clock_.latest_s();
     state.messages = messages_;
     state.restarts = restarts_;
-    state.silent_s = silent_s;
     auto series = choice_.choose(store_);
+    clocks_.follow(series.aircraft_id);
+    state.time_s = clocks_.latest_s();
+    state.silent_s = silent_s + clocks_.silent_s();
     // What is known at the moment of the last power or altitude, as it is cut by predict.
     if (const double now_s = mechanical::last_time_s(series); std::isfinite(now_s))
         series = cut_series(std::move(series), now_s);
@@ -145,9 +153,10 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     judge(series, state);
     state.warnings.insert(state.warnings.begin(), warnings_.begin(), warnings_.end());
     state.unusable.insert(store_.skipped().begin(), store_.skipped().end());
-    if (clock_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clock_.unconfirmed();
-    if (clock_.steps_back() > 0)
-        state.warnings.push_back(fmt::format("the clock of the telemetry went back {} times", clock_.steps_back()));
+    if (clocks_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clocks_.unconfirmed();
+    if (const auto steps = clocks_.steps_back(); steps > 0)
+        state.warnings.push_back(
+            fmt::format("the clock of the telemetry went back {} time{}", steps, steps == 1 ? "" : "s"));
     for (const auto& [message, stride] : store_.thinned())
         state.warnings.push_back(fmt::format("of {} every {}th row is kept", message, stride));
     state.alarms = alarms_of(state, basis_, options_.silence_s);
@@ -224,7 +233,7 @@ void LiveFlight::Watch::look_ahead(LiveState& state) const {
     if (!state.prediction || !state.battery || !state.battery->state) return;
     const auto& prediction = *state.prediction;
     const auto& now = *state.battery->state;
-    state.battery->chance_below = chance_below_reserve(*basis_, prediction, now);
+    state.battery->chance_below = chance_below_reserve(*basis_, prediction, *state.battery);
     const double cruise_w = prediction.cruise.remaining_mean_w;
     const std::vector<battery::PowerStretch> nothing{{cruise_w, 0.0}};
     state.battery->reserve_in_s =
@@ -260,7 +269,7 @@ void LiveFlight::Watch::decide(LiveState& state) {
 }
 
 void LiveFlight::Watch::judge(const flight::FlightSeries& series, const LiveState& state) {
-    if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed) return;
+    if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed && !ended_) return;
     judged_s_ = state.time_s;
     if (series.tracks.empty()) return;
     flight::LoadOptions options;

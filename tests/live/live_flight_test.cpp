@@ -206,6 +206,41 @@ TEST(LiveFlight, GarbageOtherAircraftAndDamageChangeNothing) {
     EXPECT_EQ(state.restarts, 0U);
 }
 
+/// Its clock is behind, goes in jumps, and begins anew: none of that is the watched aircraft's.
+TEST(LiveFlight, AnotherAircraftsClockChangesNothing) {
+    const auto log = test::sample(2);
+    LiveFlight clean(options_of(log), wing_basis(), nullptr);
+    LiveFlight disturbed(options_of(log), wing_basis(), nullptr);
+    std::size_t i = 0;
+    for (const auto& message : messages_of(log, 350.0)) {
+        clean.receive(message, 0.0);
+        disturbed.receive(message, 0.0);
+        const double step_s = ++i / 50 % 2 == 0 ? 300.0 : 0.0;
+        disturbed.receive({0.01 * static_cast<double>(i % 3000) + step_s, "99 ENERGY 90 9.1 30 270 1 10"}, 0.0);
+    }
+    const auto expected = clean.look();
+    const auto state = disturbed.look();
+    EXPECT_EQ(state.restarts, 0U);
+    EXPECT_NEAR(state.time_s, expected.time_s, 0.1);
+    ASSERT_TRUE(state.prediction && expected.prediction) << state.waits_for;
+    EXPECT_EQ(state.prediction->rest.energy_wh, expected.prediction->rest.energy_wh);
+    EXPECT_EQ(state.prediction->battery->expected.soc_percent, expected.prediction->battery->expected.soc_percent);
+}
+
+TEST(LiveFlight, AnAircraftIsSilentThoughOthersTalk) {
+    const auto log = test::sample(1);
+    LiveFlight flight(options_of(log), wing_basis(), nullptr);
+    receive_all(flight, messages_of(log, 300.0));
+    EXPECT_EQ(flight.look().alarms.size(), 0U);
+    for (int i = 0; i <= 40; ++i) flight.receive({300.0 + i, "ground DATALINK_REPORT 7 0 0 0 0 0 0"}, 0.0);
+    const auto state = flight.look();
+    EXPECT_NEAR(state.time_s, 340.0, 4.5) << "less the five lines that a gap takes to be believed";
+    ASSERT_EQ(state.alarms.size(), 1U);
+    EXPECT_EQ(state.alarms.front().kind, "silence");
+    receive_all(flight, messages_of(log, 350.0, 340.0));
+    EXPECT_EQ(flight.look().alarms.size(), 0U);
+}
+
 TEST(LiveFlight, GapsAndLostMessagesDoNotEndIt) {
     const auto log = test::sample(3);
     LiveFlight flight(options_of(log), wing_basis(), nullptr);
@@ -332,6 +367,41 @@ TEST(LiveFlight, TheChanceOfLandingBelowTheReserveFollowsTheInterval) {
                 0.006)
         << "of the interval's high end, where the battery's capacity has no interval";
     EXPECT_NEAR(state_with(99.0).battery->chance_below.value(), 1.0, 1e-9);
+}
+
+/// Against the sum over capacities of the chances with each.
+TEST(LiveFlight, TheChanceOfLandingBelowTheReserveHoldsTheCapacitysSpread) {
+    const auto messages = messages_of(test::sample(1), 400.0);
+    const auto battery_with = [&](double reserve_percent, double capacity_part, double sd_part) {
+        auto basis = wing_basis();
+        basis.limits.reserve_soc_percent = reserve_percent;
+        const double capacity_ah = basis.battery->capacity_ah;
+        constexpr double half_95 = 1.96;
+        basis.battery->intervals.capacity_ah =
+            battery::Interval{capacity_ah * (1.0 - half_95 * sd_part), capacity_ah * (1.0 + half_95 * sd_part)};
+        if (sd_part == 0.0) basis.battery->intervals.capacity_ah.reset();
+        basis.battery->capacity_ah *= capacity_part;
+        LiveFlight flight(options_of(test::sample(1)), basis, nullptr);
+        receive_all(flight, messages);
+        return flight.look();
+    };
+    const double expected = battery_with(0.0, 1.0, 0.0).prediction->battery->expected.soc_percent;
+    for (const double sd_part : {0.01, 0.06}) {
+        for (const double above_percent : {-6.0, 0.0, 2.0}) {
+            const double reserve_percent = expected + above_percent;
+            double weights = 0.0;
+            double chance = 0.0;
+            for (int i = -9; i <= 9; ++i) {
+                const double z = 0.4 * i;
+                const double weight = std::exp(-0.5 * z * z);
+                const auto state = battery_with(reserve_percent, 1.0 + z * sd_part, 0.0);
+                weights += weight;
+                chance += weight * state.battery->chance_below.value();
+            }
+            const auto state = battery_with(reserve_percent, 1.0, sd_part);
+            EXPECT_NEAR(state.battery->chance_below.value(), chance / weights, 0.02) << sd_part << " " << above_percent;
+        }
+    }
 }
 
 }  // namespace

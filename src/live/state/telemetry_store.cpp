@@ -153,6 +153,11 @@ void TelemetryStore::drop_before(double time_s) {
         std::erase_if(sender.tables, [](const telemetry::MessageTable& table) { return table.empty(); });
 }
 
+void TelemetryStore::drop(const std::string& sender) {
+    std::erase_if(log_.senders, [&](const telemetry::SenderLog& log) { return log.id == sender; });
+    std::erase_if(thinning_, [&](const auto& of) { return of.first.first == sender; });
+}
+
 void TelemetryStore::keep_only(const std::string& sender) {
     only_ = sender;
     std::erase_if(log_.senders, [&](const telemetry::SenderLog& log) { return log.id != sender; });

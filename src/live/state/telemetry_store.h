@@ -28,6 +28,8 @@ class TelemetryStore {
     /// What was received; how lines are read stays.
     void clear();
     void drop_before(double time_s);
+    /// What was received of one sender.
+    void drop(const std::string& sender);
     void keep_only(const std::string& sender);
     /// Keeps every second row of the message that has most, and of what comes of it: of each device.
     void thin();
