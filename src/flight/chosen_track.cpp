@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,7 +36,7 @@ Choice sound_choice(const FlightSeries& series, const Track& candidate) {
     if (!sound.left_out.empty()) choice.said.push_back(std::move(sound.left_out));
     // Where the message contradicts itself is said of its power.
     if (candidate.name == "voltage_v" || is_current)
-        choice.track = without_times(choice.track, contradicted_times(series, candidate.source));
+        choice.track = without_times(std::move(choice.track), contradicted_times(series, candidate.source));
     return choice;
 }
 

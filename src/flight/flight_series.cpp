@@ -44,7 +44,8 @@ Track make_track(const std::vector<double>& time_s, const std::vector<double>& v
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < values.size(); ++i)
         if (std::isfinite(values[i])) order.push_back(i);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
+    const auto is_earlier = [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; };
+    if (!std::ranges::is_sorted(order, is_earlier)) std::stable_sort(order.begin(), order.end(), is_earlier);
     std::size_t merged = 0;  // how many rows the last point is made of
     for (const auto i : order) {
         if (!track.empty() && track.time_s.back() == time_s[i]) {

@@ -315,6 +315,9 @@ struct PredictorMaker {
 PredictorOrError make_predictor(const PredictorSetup& setup) noexcept {
     try {
         return {PredictorMaker::make(setup), ""};
+    } catch (const InputError& error) {
+        const auto hint = error.hint().empty() ? std::string() : "; " + error.hint();
+        return {nullptr, fmt::format("{}: {}{}", to_string(error.where()), error.what(), hint)};
     } catch (const std::exception& error) {
         return {nullptr, error.what()};
     }

@@ -209,15 +209,16 @@ std::vector<double> changes_said(const FlightGrid& grid, const Track& track, dou
     std::vector<double> changes_m;
     const auto steps = grid.steps(window_s);
     const double most_m = physical_bounds("altitude_m").value().high;
+    std::vector<double> middles_s(track.name == "altitude_m" ? 0 : grid.size());
+    for (std::size_t i = 0; i < middles_s.size(); ++i) middles_s[i] = grid.time_s(i) + 0.5 * grid.step_s;
+    const auto climb_m_per_s = resample(track, middles_s);
     for (const auto& piece : grid.pieces) {
         for (auto i = piece.begin; i + steps < piece.end; i += steps) {
             double change_m = 0.0;
             if (track.name == "altitude_m") {
                 change_m = value_at(track, grid.time_s(i + steps)) - value_at(track, grid.time_s(i));
             } else {
-                for (std::size_t k = 0; k < steps; ++k) {
-                    change_m += grid.step_s * value_at(track, grid.time_s(i + k) + 0.5 * grid.step_s);
-                }
+                for (std::size_t k = 0; k < steps; ++k) change_m += grid.step_s * climb_m_per_s[i + k];
             }
             changes_m.push_back(std::abs(change_m) <= most_m ? change_m : 0.0);
         }
