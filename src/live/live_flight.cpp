@@ -37,7 +37,8 @@ class LiveFlight::Watch {
         : options_(std::move(options)),
           basis_(std::move(basis)),
           schedule_(std::move(schedule)),
-          store_(options_.flight, std::move(options_.configuration), basis_ && (basis_->path || basis_->motion)),
+          store_(options_.flight, std::move(options_.configuration),
+                 {.bank = basis_ && (basis_->path || basis_->motion), .places = basis_ && basis_->path}),
           choice_(options_.aircraft_id) {}
 
     void receive(const IncomingMessage& message, double arrival_s) {
@@ -213,7 +214,7 @@ void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
     try {
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
         const auto flown = mechanical::progress_in(tracks, sortie, mechanical::last_time_s(tracks.series()));
-        auto energy = predict_energy(*basis_, flown, remarks);
+        auto energy = predict_energy(*basis_, flown, sighting_of(*basis_, flown, tracks.series()), remarks);
         if (record && state.battery && state.battery->soc_percent) {
             energy.battery = BatteryPrediction{};
             energy.battery->limits = basis_->limits;
@@ -250,7 +251,7 @@ void LiveFlight::Watch::look_ahead(LiveState& state) const {
     }
     for (const auto& stretch : budget.cruise_ahead) expected_j += stretch.power_w * stretch.duration_s;
     if (planned_j > 0.0) budget.power_factor = expected_j / planned_j;
-    state.turn_home = latest_turn_home(*basis_->path, prediction.flown.cruise_s(), budget);
+    state.turn_home = latest_turn_home(*basis_->path, prediction.on_path_s.value(), budget);
 }
 
 void LiveFlight::Watch::decide(LiveState& state) {

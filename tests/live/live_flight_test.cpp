@@ -1,11 +1,15 @@
 #include "live/live_flight.h"
 
 #include "base/atomic_file.h"
+#include "flight/chosen_track.h"
 #include "flight/load_flight.h"
+#include "helpers/path_missions.h"
 #include "helpers/sample_logs.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <random>
 #include <sstream>
 #include <string>
@@ -92,6 +96,43 @@ TEST(LiveFlight, SaysWhatPredictSaysOfTheLogAtThatMoment) {
         expect_same(*state.prediction, predicted(log, state.prediction->flown.until_s, basis));
         EXPECT_GT(state.battery->reserve_in_s.value(), 0.0);
     }
+}
+
+/// A path of legs where the flight was every 10 s.
+std::shared_ptr<const mission::PathForecast> path_of(const std::filesystem::path& log, double from_s, double to_s) {
+    const auto series = flight::read_flight(log);
+    const auto east = chosen_track(series, "east_m");
+    const auto north = chosen_track(series, "north_m");
+    mission::FlightPath path;
+    constexpr double leg_s = 10.0;
+    for (double time_s = from_s; time_s < to_s; time_s += leg_s) {
+        const double east_m = value_at(east, time_s + leg_s) - value_at(east, time_s);
+        const double north_m = value_at(north, time_s + leg_s) - value_at(north, time_s);
+        const double course_deg = std::atan2(east_m, north_m) * 180.0 / 3.14159265358979;
+        path.elements.push_back(test::path_element(mission::Leg{std::hypot(east_m, north_m), course_deg}, 10.0));
+    }
+    return std::make_shared<const mission::PathForecast>(mission::PathPlan{path, {}, test::made_up_wing()});
+}
+
+TEST(LiveFlight, SaysWhatPredictSaysAlongAPath) {
+    const auto log = test::sample(1);
+    auto basis = wing_basis();
+    basis.remaining_s.reset();
+    basis.model.physical = test::made_up_wing();
+    const auto cruise_s = mechanical::progress_at(flight::read_flight(log), 300.0).cruise_start_s;
+    basis.path = path_of(log, cruise_s, cruise_s + 400.0);
+    LiveFlight flight(options_of(log), basis, nullptr);
+    receive_all(flight, messages_of(log, 300.0));
+    const auto state = flight.look();
+    ASSERT_TRUE(state.prediction) << state.waits_for;
+    const auto expected = predicted(log, state.prediction->flown.until_s, basis);
+    expect_same(*state.prediction, expected);
+    EXPECT_TRUE(expected.is_sighted);
+    EXPECT_EQ(state.prediction->on_path_s, expected.on_path_s);
+    double planned_s = 0.0;
+    for (int leg = 0; leg < static_cast<int>((300.0 - cruise_s) / 10.0); ++leg)
+        planned_s += basis.path->flown().element_s[static_cast<std::size_t>(leg)];
+    EXPECT_NEAR(expected.on_path_s.value(), planned_s, 12.0) << "though it is flown faster than planned";
 }
 
 TEST(LiveFlight, SaysWhatPredictSaysOfRealFlights) {

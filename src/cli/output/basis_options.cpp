@@ -101,7 +101,7 @@ void add_basis_options(boost::program_options::options_description& options, Pat
     auto add = options.add_options();
     add("remaining", value<double>("S"),
         "seconds from the moment until landing begins; with --mission only where the flight is not as far along the "
-        "path as the time since its cruise began");
+        "path as its positions say, or, without any, the time since its cruise began");
     add("level", value("HOW")->default_value("auto"),
         "what is expected of the cruise before its own power is looked at: the model's curve, the curve's mean "
         "(constant), the power that the airspeed so far and the other flights' later one stand for (airspeed), or that "
