@@ -212,6 +212,12 @@ TEST(Predictor, SaysWhatIsWrongInsteadOfThrowing) {
     EXPECT_EQ(make_predictor(setup).predictor, nullptr);
 }
 
+TEST(Predictor, IncludesTheStandardLibraryAlone) {
+    std::istringstream header(read_file(test::source_dir() / "src/live/predictor.h"));
+    for (std::string line; std::getline(header, line);)
+        if (line.starts_with("#include")) EXPECT_THAT(line, HasSubstr("<"));
+}
+
 TEST(Predictor, CountsWhatItDoesNotTake) {
     auto setup = wing_setup();
     setup.most_waiting_bytes = 200;
