@@ -1,5 +1,6 @@
 #include "live/live_flight.h"
 
+#include "base/units.h"
 #include "flight/chosen_track.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
@@ -119,6 +120,7 @@ class LiveFlight::Watch {
     std::size_t deciding_for_ = 0;  ///< the sortie that the schedule has seen
     std::optional<double> carried_percent_;
     std::optional<double> judged_s_;
+    std::optional<double> looked_s_;
     bool ended_ = false;
     std::vector<std::string> warnings_;
     flight::FlightPhases phases_;
@@ -204,6 +206,11 @@ void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
         state.waits_for = basis_->cannot_predict;
         return;
     }
+    const double now_s = mechanical::last_time_s(tracks.series());
+    if (state.landed) {
+        state.waits_for = fmt::format("at {:.1f} s of the log the aircraft has landed", now_s);
+        return;
+    }
     if (!state.power_w) {
         const auto why = why_no_power(tracks.series());
         state.waits_for = why.empty() ? "telemetry that tells of power" : "measured power: " + why;
@@ -213,7 +220,8 @@ void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
     Remarks remarks;
     try {
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
-        const auto flown = mechanical::progress_in(tracks, sortie, mechanical::last_time_s(tracks.series()));
+        const auto flown = mechanical::progress_in(tracks, sortie, now_s);
+        state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
         auto energy = predict_energy(*basis_, flown, sighting_of(*basis_, flown, tracks.series()), remarks);
         if (record && state.battery && state.battery->soc_percent) {
             energy.battery = BatteryPrediction{};
@@ -231,14 +239,17 @@ void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
 }
 
 void LiveFlight::Watch::look_ahead(LiveState& state) const {
-    if (!state.prediction || !state.battery || !state.battery->state) return;
-    const auto& prediction = *state.prediction;
+    if (!state.expected_power_w || !state.battery || !state.battery->state) return;
     const auto& now = *state.battery->state;
-    state.battery->chance_below = chance_below_reserve(*basis_, prediction, *state.battery);
-    const double cruise_w = prediction.cruise.remaining_mean_w;
+    // Where nobody knows for how long the cruise goes on, it does so as it was.
+    const double cruise_w =
+        state.prediction ? state.prediction->cruise.remaining_mean_w : state.expected_power_w.value();
     const std::vector<battery::PowerStretch> nothing{{cruise_w, 0.0}};
     state.battery->reserve_in_s =
         forecast_landing(*basis_->battery, now, nothing, cruise_w, basis_->limits).seconds_left;
+    if (!state.prediction) return;
+    const auto& prediction = *state.prediction;
+    state.battery->chance_below = chance_below_reserve(*basis_, prediction, *state.battery);
     if (!basis_->path || basis_->remaining_s || state.phase != flight::Phase::cruise) return;
     const double part = prediction.rest.energy_wh > 0.0 ? prediction.interval.high_wh / prediction.rest.energy_wh : 1.0;
     TurnBudget budget{*basis_->battery, now, basis_->limits, power_ahead(prediction, part), {}, 1.0};
@@ -270,6 +281,9 @@ void LiveFlight::Watch::decide(LiveState& state) {
 }
 
 void LiveFlight::Watch::judge(const flight::FlightSeries& series, const LiveState& state) {
+    constexpr double gap_s = 10.0;  // what was written across it is in doubt at once
+    if (looked_s_ && std::abs(state.time_s - *looked_s_) > gap_s) judged_s_.reset();
+    looked_s_ = state.time_s;
     if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed && !ended_) return;
     judged_s_ = state.time_s;
     if (series.tracks.empty()) return;

@@ -139,8 +139,13 @@ mechanical::RestPrediction predict_cruise(const PredictionBasis& basis, const Fl
     if (prediction.by_motion && !flown.motion.lacks.empty())
         remarks.warnings.push_back(fmt::format("this flight's own level is not known: {}", flown.motion.lacks));
     if (basis.path) return predict_along(basis, flown, sighting, prediction, remarks);
-    prediction.remaining_s =
-        basis.remaining_s ? *basis.remaining_s : std::max(0.0, basis.cruise_s.value() - flown.cruise_s());
+    prediction.remaining_s = basis.remaining_s ? *basis.remaining_s : basis.cruise_s.value() - flown.cruise_s();
+    if (prediction.remaining_s < 0.0) {
+        throw NoAnswerError(
+            fmt::format("the cruise takes {:.0f} s longer than the mission's {:.0f} s: how long it goes on "
+                        "is not known (--remaining says it)",
+                        -prediction.remaining_s, *basis.cruise_s));
+    }
     if (!basis.motion) return predict_level(basis, flown, prediction.remaining_s, remarks);
     const auto& model = basis.model.physical.value();
     warn_of_motion(model, *basis.motion, remarks);

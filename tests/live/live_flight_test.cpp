@@ -177,6 +177,23 @@ TEST(LiveFlight, KnowsPhasesAndSaysWhatItWaitsFor) {
     EXPECT_TRUE(flight.last_predicted().has_value());
 }
 
+TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedHasNoEndThatIsKnown) {
+    const auto log = test::sample(1);
+    auto basis = wing_basis();
+    basis.remaining_s.reset();
+    basis.cruise_s = 150.0;
+    LiveFlight flight(options_of(log), basis, nullptr);
+    receive_all(flight, messages_of(log, 200.0));
+    ASSERT_TRUE(flight.look().prediction);
+    receive_all(flight, messages_of(log, 400.0, 200.001));
+    const auto state = flight.look();
+    EXPECT_FALSE(state.prediction);
+    EXPECT_THAT(state.waits_for, testing::HasSubstr("longer than the mission's 150 s"));
+    EXPECT_GT(state.battery->reserve_in_s.value(), 100.0);
+    EXPECT_FALSE(state.battery->chance_below);
+    EXPECT_GT(state.expected_power_w.value(), 10.0);
+}
+
 TEST(LiveFlight, AStartInMidFlightSaysWhatItDoesNotKnow) {
     const auto log = test::sample(1);
     auto basis = wing_basis();
