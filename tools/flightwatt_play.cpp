@@ -6,9 +6,12 @@
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 #include "live/playback.h"
+#include "telemetry/binary_log.h"
+#include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,7 +22,8 @@ namespace {
 
 using namespace flightwatt;
 
-/// The definitions that frames are made with: those of --messages, or of the log's own .log.
+/// The definitions that frames are made with and a binary log is read with: those of --messages, or of the log's own
+/// .log.
 telemetry::MessageDictionary read_definitions(const cli::StageCall& call) {
     if (const auto file = call.maybe<std::string>("messages")) return telemetry::read_message_dictionary(*file);
     const auto& log = call.inputs.front();
@@ -33,16 +37,26 @@ telemetry::LinkVersion link_version(const cli::StageCall& call) {
 }
 
 live::PlaybackTargetSetup target_setup(const cli::StageCall& call, const std::string& to) {
-    const bool to_udp = to.starts_with("udp:");
-    if (!to_udp && (call.has("messages") || !call.options["link-version"].defaulted()))
-        throw UsageError("--messages and --link-version are of frames: they go with --to udp:ADDRESS:PORT");
+    const bool to_frames = to.starts_with("udp:") || to.starts_with("serial:");
+    if (!to_frames && !call.options["link-version"].defaulted())
+        throw UsageError("--link-version is of frames: it goes with --to udp:ADDRESS:PORT and serial:DEVICE:BAUD");
     if (!to.starts_with("ivy:") && call.has("as-aircraft"))
         throw UsageError("--as-aircraft goes with --to ivy:ADDRESS:PORT");
     live::PlaybackTargetSetup setup;
     setup.version = link_version(call);
     setup.as_aircraft = call.has("as-aircraft");
-    if (to_udp) setup.definitions = read_definitions(call);
+    if (to_frames) setup.definitions = read_definitions(call);
     return setup;
+}
+
+/// Those of a binary log; none of a text.
+std::optional<telemetry::MessageDictionary> log_definitions(const cli::StageCall& call,
+                                                            const live::PlaybackTargetSetup& setup) {
+    const bool is_binary = telemetry::binary_framing(telemetry::DataFile(call.inputs.front()).text()).has_value();
+    if (!is_binary && !setup.definitions && call.has("messages"))
+        throw UsageError("--messages is of frames and of binary logs: this is a text, to a target that takes text");
+    if (!is_binary) return std::nullopt;
+    return setup.definitions ? setup.definitions : read_definitions(call);
 }
 
 /// Lines to the standard output, each at once.
@@ -83,17 +97,19 @@ void tell(const cli::StageCall& call, const live::PlaybackReport& report) {
 int play(const cli::StageCall& call) {
     constexpr double fastest = 100'000.0;
     if (!call.has("to"))
-        throw UsageError("nowhere to play to: expected --to udp:ADDRESS:PORT, ivy:ADDRESS:PORT, file:NAME.data or -");
+        throw UsageError(
+            "nowhere to play to: expected --to udp:ADDRESS:PORT, serial:DEVICE:BAUD, ivy:ADDRESS:PORT, file:NAME.data or -");
     const auto to = call.get<std::string>("to");
     if (to == "-" && call.json) throw UsageError("--json would stand among the lines of --to -");
     const double speed = cli::positive_option(call, "speed", "times as fast", fastest).value_or(1.0);
     const SignalWatch signals;
     const auto stop = [&] { return signals.caught().has_value(); };
     const auto setup = target_setup(call, to);
+    const auto definitions = log_definitions(call, setup);
     if (to == "-") {
         OutputTarget output;
         const auto stop_output = [&] { return stop() || !output.has_reader(); };
-        tell(call, live::play(call.inputs.front(), speed, output, stop_output));
+        tell(call, live::play(call.inputs.front(), speed, output, stop_output, definitions));
         return cli::ok;
     }
     const auto target = live::open_playback_target(to, setup);
@@ -101,7 +117,7 @@ int play(const cli::StageCall& call) {
     if (!target->is_heard(longest_wait)) {
         throw NoAnswerError(fmt::format("{}: no other agent came within {} s", to, longest_wait.count()));
     }
-    tell(call, live::play(call.inputs.front(), speed, *target, stop));
+    tell(call, live::play(call.inputs.front(), speed, *target, stop, definitions));
     return cli::ok;
 }
 
@@ -111,17 +127,18 @@ int main(int argc, char** argv) {
     cli::StageDefinition stage{
         "play", "LOG --to TARGET",
         R"(Plays a log once more as it came in, in its own time or faster, over a link that flightwatt watch listens to:
-a test bench for what is to run while an aircraft flies. Targets: udp:ADDRESS:PORT (Paparazzi's link frames, a
-datagram each), ivy:ADDRESS:PORT (a replay on an Ivy bus, as Paparazzi's log player says it), file:NAME.data (a
-file that grows), - (the standard output).)"};
+a test bench for what is to run while an aircraft flies. The log is text or binary. Targets: udp:ADDRESS:PORT
+(Paparazzi's link frames, a datagram each), serial:DEVICE:BAUD (the same on a serial line), ivy:ADDRESS:PORT (a
+replay on an Ivy bus, as Paparazzi's log player says it), file:NAME.data (a file that grows), - (the standard
+output).)"};
     stage.max_inputs = 1;
     stage.output_help = "write how it was played to FILE instead of the standard output";
     auto add = stage.options.add_options();
     add("to", cli::value("TARGET"), "where to");
     add("speed", cli::value<double>("X"), "so many times as fast (1)");
     add("messages", cli::input_file("FILE"),
-        "definitions of the messages, for udp: a messages.xml, or a .log (the one beside the log)");
-    add("link-version", cli::value("N")->default_value("2"), "of pprzlink, for udp: 1 or 2");
+        "definitions of the messages, for udp, serial and binary logs: a messages.xml, or a .log (the one beside the log)");
+    add("link-version", cli::value("N")->default_value("2"), "of pprzlink, for udp and serial: 1 or 2");
     add("as-aircraft", "for ivy: messages as the aircraft itself would say them, without their time");
     return cli::run_stage(argc, argv, stage, play);
 }

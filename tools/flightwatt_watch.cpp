@@ -9,6 +9,7 @@
 #include "cli/output/prediction_output.h"
 #include "cli/output/source_options.h"
 #include "cli/output/watch_output.h"
+#include "cli/said_warnings.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "live/page_server.h"
@@ -21,7 +22,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -55,8 +55,10 @@ class Speaker {
         : call_(call), compute_(compute), basis_(basis), plot_(cli::terminal_plot(call, "state of charge, %")) {}
 
     void say(const live::LiveState& state) {
-        for (const auto& warning : state.warnings)
-            if (said_.size() < most_said && said_.insert(kind_of(warning)).second && !plot_) cli::warn(call_, warning);
+        warnings_ = state.warnings;
+        const auto to_say = said_.to_say(warnings_, state.time_s);
+        for (const auto& warning : to_say)
+            if (!plot_) cli::warn(call_, warning);
         if (state.battery && state.battery->state) soc_.add(state.time_s, state.battery->state->soc_percent);
         if (plot_) {
             draw(state);
@@ -71,6 +73,7 @@ class Speaker {
 
     /// The last words.
     void end(const live::LiveFlight& flight, const std::string& why) {
+        for (const auto& warning : said_.last_words(warnings_)) cli::warn(call_, warning);
         const auto& last = flight.last_predicted();
         if (call_.json) {
             nlohmann::ordered_json json{{"ended", why}, {"last_prediction", nullptr}};
@@ -84,14 +87,7 @@ class Speaker {
     }
 
   private:
-    static constexpr std::size_t most_said = 200;
     static constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
-
-    /// The same is said once, whatever numbers come with it: they change as the flight goes on.
-    static std::string kind_of(std::string warning) {
-        std::erase_if(warning, [](char c) { return c >= '0' && c <= '9'; });
-        return warning;
-    }
 
     void draw(const live::LiveState& state) {
         constexpr double often_s = 0.25;
@@ -120,7 +116,8 @@ class Speaker {
     const std::optional<live::PredictionBasis>& basis_;
     std::optional<cli::TerminalPlot> plot_;
     live::CurveHistory soc_;
-    std::set<std::string> said_;
+    cli::SaidWarnings said_;
+    std::vector<std::string> warnings_;  ///< of the latest state
     std::optional<Clock::time_point> drawn_;
     bool is_read_ = true;
 };
@@ -198,7 +195,7 @@ Watched read_watched(const cli::StageCall& call) {
     if (needs_mission && !call.has("mission")) throw UsageError("--decide and --on-decision go with --mission");
     if (call.has("mission") || call.has("model"))
         watched.basis = cli::read_basis(call, cli::PathNeed::optional, &watched.mission);
-    else if (call.has("battery") || call.has("remaining"))
+    else if (call.has("battery") || call.has("remaining") || call.has("initial-soc"))
         throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
     if (watched.mission) watched.compute = setup_of(*watched.mission).compute;
     return watched;
@@ -212,6 +209,18 @@ std::unique_ptr<live::LiveSchedule> schedule_of(const cli::StageCall& call, cons
 
 /// Looks at the flight after every second of it, or of silence.
 using Look = std::function<std::string(double silent_s)>;
+
+/// What was received and not looked at yet is recorded, and in the last words.
+void take_what_waits(live::MessageSource& source, live::LiveFlight& flight, double now_s) {
+    constexpr double longest_s = 10.0;
+    const auto start = Clock::now();
+    std::vector<live::IncomingMessage> messages;
+    do {
+        messages.clear();
+        source.receive(std::chrono::milliseconds(0), messages);
+        for (const auto& message : messages) flight.receive(message, now_s);
+    } while (!messages.empty() && seconds_since(start) < longest_s);
+}
 
 /// Until the source ends, a signal comes, or `look` says why to end; returns that.
 std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, const Look& look) {
@@ -236,7 +245,10 @@ std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, 
             looked = Clock::now();
         }
         if (!messages.empty()) heard = Clock::now();
-        if (const auto signal = signals.caught()) return "ended by " + signal_name(*signal);
+        if (const auto signal = signals.caught()) {
+            take_what_waits(source, flight, seconds_since(start));
+            return "ended by " + signal_name(*signal);
+        }
         if (source.at_end()) return "the telemetry ends";
         if (seconds_since(looked) < silence_said_s) continue;
         if (auto why = look(seconds_since(heard)); !why.empty()) return why;
@@ -266,7 +278,8 @@ int watch(const cli::StageCall& call) {
     DecisionHook hook(call, watched.compute);
     Page page(call, watched.compute, watched.basis);
     const auto look = [&](double silent_s) -> std::string {
-        const auto state = flight.look(silent_s);
+        auto state = flight.look(silent_s);
+        for (const auto& [reason, count] : source->report().unusable) state.unusable[reason] += count;
         speaker.say(state);
         page.say(state);
         hook.look(state);
@@ -278,6 +291,8 @@ int watch(const cli::StageCall& call) {
     look(0.0);
     hook.end();
     for (const auto& [reason, count] : source->report().unusable) cli::warn(call, fmt::format("{}: {}", reason, count));
+    if (recorder && !recorder->lacks_definitions().empty())
+        cli::warn(call, "recorded without its .log: " + recorder->lacks_definitions());
     if (recorder && !recorder->failure().empty()) cli::warn(call, "the recording ended early: " + recorder->failure());
     speaker.end(flight, why);
     return flight.last_predicted() || !watched.basis || !watched.basis->cannot_predict.empty() ? cli::ok

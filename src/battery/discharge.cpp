@@ -16,10 +16,31 @@ namespace {
 constexpr double time_tolerance_s = 1e-10;
 constexpr double full_percent = units::percent_per_whole;
 
+/// The power at the times of a step, which its checks and Runge-Kutta's stages ask for again and again.
+class RememberedPower {
+  public:
+    explicit RememberedPower(const std::function<double(double)>& power_w) : power_w_(power_w) { time_s_.fill(NAN); }
+
+    double at(double time_s) {
+        for (std::size_t i = 0; i < time_s_.size(); ++i)
+            if (time_s_[i] == time_s) return at_time_w_[i];
+        next_ = (next_ + 1) % time_s_.size();
+        time_s_[next_] = time_s;
+        return at_time_w_[next_] = power_w_(time_s);
+    }
+
+  private:
+    static constexpr std::size_t times_of_a_step = 4;  // its start, quarter, middle and end
+    const std::function<double(double)>& power_w_;
+    std::array<double, times_of_a_step> time_s_{};
+    std::array<double, times_of_a_step> at_time_w_{};
+    std::size_t next_ = 0;
+};
+
 /// One step from `time_s` on.
 struct Step {
     const Battery& battery;
-    const Load& load;
+    RememberedPower& power_w;
     double time_s;
     BatteryState from;
 };
@@ -31,7 +52,7 @@ BatteryState after(const Step& step, double elapsed_s) {
     const auto rate = [&](const State& x, State& per_s, double time) {
         const BatteryState state{x[0], x[1]};
         // The limit is looked for at the step's samples: what lies beyond it is only taken away.
-        const double current_a = delivered_current_a(battery, step.load.power_w(time), state);
+        const double current_a = delivered_current_a(battery, step.power_w.at(time), state);
         per_s[0] = -units::percent_of(current_a, units::coulomb_from_ah(battery.capacity_ah));
         per_s[1] = 0.0;
         if (!battery.thevenin) return;
@@ -103,14 +124,14 @@ std::optional<Onset> first_excess(StepStates& states) {
     if (!limited) return std::nullopt;
     return first_onset(states.length_s(), [&](double elapsed_s) {
         const auto state = step.battery.thevenin ? states.at(elapsed_s) : step.from;
-        return step.load.power_w(step.time_s + elapsed_s) > power_limit_w(step.battery, state);
+        return step.power_w.at(step.time_s + elapsed_s) > power_limit_w(step.battery, state);
     });
 }
 
 bool is_below_cutoff(StepStates& states, double elapsed_s, double cutoff_v) {
     const auto& step = states.step();
     const auto state = states.at(elapsed_s);
-    const double current_a = delivered_current_a(step.battery, step.load.power_w(step.time_s + elapsed_s), state);
+    const double current_a = delivered_current_a(step.battery, step.power_w.at(step.time_s + elapsed_s), state);
     return terminal_voltage_v(step.battery, state, current_a) < cutoff_v;
 }
 
@@ -120,7 +141,7 @@ Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
     StepStates states(step, length_s);
     if (const auto excess = first_excess(states)) {
         const double beyond_s = step.time_s + excess->first_s;
-        undeliverable = Undeliverable{beyond_s, step.load.power_w(beyond_s),
+        undeliverable = Undeliverable{beyond_s, step.power_w.at(beyond_s),
                                       power_limit_w(step.battery, states.at(excess->first_s))};
         // At once: nothing else comes before it.
         if (excess->first_s == 0.0) return {step.from, std::nullopt, std::nullopt, undeliverable};
@@ -139,27 +160,6 @@ Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
     return {state, std::nullopt, std::nullopt, undeliverable};
 }
 
-/// The power at the times of a step, which its checks and Runge-Kutta's stages ask for again and again.
-class RememberedPower {
-  public:
-    explicit RememberedPower(const std::function<double(double)>& power_w) : power_w_(power_w) { time_s_.fill(NAN); }
-
-    double operator()(double time_s) {
-        for (std::size_t i = 0; i < time_s_.size(); ++i)
-            if (time_s_[i] == time_s) return at_time_w_[i];
-        next_ = (next_ + 1) % time_s_.size();
-        time_s_[next_] = time_s;
-        return at_time_w_[next_] = power_w_(time_s);
-    }
-
-  private:
-    static constexpr std::size_t times_of_a_step = 4;  // its start, quarter, middle and end
-    const std::function<double(double)>& power_w_;
-    std::array<double, times_of_a_step> time_s_{};
-    std::array<double, times_of_a_step> at_time_w_{};
-    std::size_t next_ = 0;
-};
-
 }  // namespace
 
 Discharge discharge(const Battery& battery, const Load& load, const BatteryState& state,
@@ -177,12 +177,11 @@ Discharge discharge(const Battery& battery, const Load& load, const BatteryState
     const auto steps = static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_step_s * (1.0 - 1e-12))));
     Discharge result{state};
     RememberedPower power_w(load.power_w);
-    const Load remembered{std::ref(power_w), load.start_s, load.end_s};
     double time_s = load.start_s;
     for (std::uint64_t k = 1; k <= steps; ++k) {
         const double part = static_cast<double>(k) / static_cast<double>(steps);
         const double next_s = k == steps ? load.end_s : load.start_s + length_s * part;
-        result = guarded_step({battery, remembered, time_s, result}, next_s - time_s, options.cutoff_voltage_v);
+        result = guarded_step({battery, power_w, time_s, result}, next_s - time_s, options.cutoff_voltage_v);
         if (result.ended_at_s() || result.undeliverable) return result;
         time_s = next_s;
     }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,7 +36,7 @@ Choice sound_choice(const FlightSeries& series, const Track& candidate) {
     if (!sound.left_out.empty()) choice.said.push_back(std::move(sound.left_out));
     // Where the message contradicts itself is said of its power.
     if (candidate.name == "voltage_v" || is_current)
-        choice.track = without_times(choice.track, contradicted_times(series, candidate.source));
+        choice.track = without_times(std::move(choice.track), contradicted_times(series, candidate.source));
     return choice;
 }
 
@@ -159,7 +160,7 @@ Track chosen_track(const FlightSeries& series, std::string_view name) {
     return name == "power_w" ? choose_power(series).power_w : choose(series, name).track;
 }
 
-const Track& ChosenTracks::operator[](const std::string& name) const {
+const Track& ChosenTracks::operator[](std::string_view name) const {
     const auto made = made_.find(name);
     return made != made_.end() ? made->second : made_.emplace(name, chosen_track(series_, name)).first->second;
 }
@@ -177,11 +178,11 @@ std::map<std::string, std::string> sources_of(const FlightSeries& series) {
     return sources;
 }
 
-std::optional<double> ground_altitude_m(const FlightSeries& series) {
+std::optional<double> ground_altitude_m(const ChosenTracks& tracks) {
     // A rotorcraft's heights are above the reference on the ground.
-    if (chosen_track(series, "altitude_m").source.starts_with("ROTORCRAFT_FP")) return 0.0;
-    const auto logged = chosen_track(series, "ground_altitude_m");
-    return logged.empty() ? series.planned_ground_altitude_m : logged.value.back();
+    if (tracks["altitude_m"].source.starts_with("ROTORCRAFT_FP")) return 0.0;
+    const auto& logged = tracks["ground_altitude_m"];
+    return logged.empty() ? tracks.series().planned_ground_altitude_m : logged.value.back();
 }
 
 std::vector<std::string> warnings_of(const FlightSeries& series) {

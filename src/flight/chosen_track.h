@@ -2,6 +2,7 @@
 
 #include "flight/flight_series.h"
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,11 +31,11 @@ class ChosenTracks {
     explicit ChosenTracks(const FlightSeries& series) : series_(series) {}
 
     const FlightSeries& series() const { return series_; }
-    const Track& operator[](const std::string& name) const;
+    const Track& operator[](std::string_view name) const;
 
   private:
     const FlightSeries& series_;
-    mutable std::map<std::string, Track> made_;
+    mutable std::map<std::string, Track, std::less<>> made_;
 };
 
 /// The power samples, whose clock most programs compute on.
@@ -44,7 +45,7 @@ inline Track power_track(const FlightSeries& series) { return chosen_track(serie
 std::map<std::string, std::string> sources_of(const FlightSeries& series);
 
 /// Above sea level, from the log's NAVIGATION_REF, else as planned; 0 where altitudes are above the ground.
-std::optional<double> ground_altitude_m(const FlightSeries& series);
+std::optional<double> ground_altitude_m(const ChosenTracks& tracks);
 
 /// What a user should know: assumed layouts, sources passed over, samples left out, skipped lines.
 std::vector<std::string> warnings_of(const FlightSeries& series);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flightwatt::flight {
 namespace {
@@ -20,17 +21,6 @@ bool is_track(const std::vector<double>& time_s, const std::vector<double>& valu
         if (!std::isfinite(values[i]) || (i > 0 && time_s[i] <= time_s[i - 1])) return false;
     }
     return true;
-}
-
-Track cut_track(const Track& track, double until_s) {
-    const auto end = std::upper_bound(track.time_s.begin(), track.time_s.end(), until_s);
-    const auto count = end - track.time_s.begin();
-    return {track.name,
-            track.source,
-            track.device,
-            track.since_s,
-            {track.time_s.begin(), end},
-            {track.value.begin(), track.value.begin() + count}};
 }
 
 void cut_skipped(std::vector<telemetry::SkippedLines>& skipped, double until_s) {
@@ -54,7 +44,8 @@ Track make_track(const std::vector<double>& time_s, const std::vector<double>& v
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < values.size(); ++i)
         if (std::isfinite(values[i])) order.push_back(i);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
+    const auto is_earlier = [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; };
+    if (!std::ranges::is_sorted(order, is_earlier)) std::stable_sort(order.begin(), order.end(), is_earlier);
     std::size_t merged = 0;  // how many rows the last point is made of
     for (const auto i : order) {
         if (!track.empty() && track.time_s.back() == time_s[i]) {
@@ -135,10 +126,16 @@ void replace_track(FlightSeries& series, Track track) {
 }
 
 FlightSeries cut_series(const FlightSeries& series, double until_s) {
-    FlightSeries cut = series;
-    cut.tracks.clear();
-    for (const auto& track : series.tracks) {
-        if (track.since_s <= until_s) cut.tracks.push_back(cut_track(track, until_s));
+    return cut_series(FlightSeries(series), until_s);
+}
+
+FlightSeries cut_series(FlightSeries&& series, double until_s) {
+    FlightSeries cut = std::move(series);
+    std::erase_if(cut.tracks, [&](const Track& track) { return track.since_s > until_s; });
+    for (auto& track : cut.tracks) {
+        const auto kept = std::ranges::upper_bound(track.time_s, until_s) - track.time_s.begin();
+        track.time_s.resize(static_cast<std::size_t>(kept));
+        track.value.resize(static_cast<std::size_t>(kept));
     }
     std::erase_if(cut.assumed_definitions, [&](const auto& definition) { return definition.since_s > until_s; });
     cut_skipped(cut.skipped, until_s);

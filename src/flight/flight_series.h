@@ -93,5 +93,7 @@ void replace_track(FlightSeries& series, Track track);
 /// The series as it would have been read from a log that ends at `until_s` (the log's own seconds), in every
 /// field: nothing later is left. What is known before a flight stays.
 FlightSeries cut_series(const FlightSeries& series, double until_s);
+/// In place.
+FlightSeries cut_series(FlightSeries&& series, double until_s);
 
 }  // namespace flightwatt::flight

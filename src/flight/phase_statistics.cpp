@@ -38,8 +38,11 @@ double integrated(const std::vector<double>& time_s, const std::vector<double>& 
 }
 
 double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s) {
-    const auto power = power_track(series);
-    return units::wh_from_joule(integrated(power.time_s, power.value, start_s, end_s));
+    return integrated_energy_wh(power_track(series), start_s, end_s);
+}
+
+double integrated_energy_wh(const Track& power_w, double start_s, double end_s) {
+    return units::wh_from_joule(integrated(power_w.time_s, power_w.value, start_s, end_s));
 }
 
 std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, double start_s, double end_s) {

@@ -38,6 +38,8 @@ PhaseStatistics phase_statistics(const FlightSeries& series, double start_s, dou
 
 /// Energy [Wh] of the series' power between two times: trapezoids, the ends interpolated.
 double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s);
+/// The same of its power track.
+double integrated_energy_wh(const Track& power_w, double start_s, double end_s);
 
 /// Integral of any channel over time between two times, linear between samples [channel * s].
 double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s, double end_s);

@@ -1,7 +1,6 @@
 #include "flight/segmentation.h"
 
 #include "base/error.h"
-#include "flight/chosen_track.h"
 #include "flight/segmentation/activity.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/segmentation/no_flight.h"
@@ -97,20 +96,23 @@ void validate(const SegmentationOptions& options) {
 }
 
 FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options) {
+    return segment(ChosenTracks(series), options);
+}
+
+FlightPhases segment(const ChosenTracks& tracks, const SegmentationOptions& options) {
     validate(options);
-    const auto grid = make_grid(series);
+    const auto grid = make_grid(tracks);
     FlightPhases phases;
     phases.motor_evidence = grid.motor_evidence;
-    auto why_not = why_ground_vehicle(series);
+    auto why_not = why_ground_vehicle(tracks);
     if (why_not.empty()) why_not = grid.unusable;
     if (!why_not.empty()) {
         phases.ground_events.push_back({grid.time_s(0), grid.time_s(grid.size() - 1), std::move(why_not)});
         return phases;
     }
     phases.warnings = grid.warnings;
-    if (auto doubt = unit_doubt(series, grid); !doubt.empty()) phases.warnings.push_back(std::move(doubt));
-    const ChosenTracks tracks(series);
-    const auto ground_m = ground_altitude_m(series);
+    if (auto doubt = unit_doubt(tracks, grid); !doubt.empty()) phases.warnings.push_back(std::move(doubt));
+    const auto ground_m = ground_altitude_m(tracks);
     for (const auto& activity : find_activities(grid, find_rests(grid, options), options)) {
         const auto grounds = grounds_of(grid, activity, ground_m);
         const auto heights = heights_of(grid, activity, grounds);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
 
@@ -15,6 +16,8 @@ void validate(const SegmentationOptions& options);
 /// where it reaches, and landing begins where it leaves, the height that it holds after and before. TAKEOFF, mode and
 /// block are noted as witnesses and decide nothing. Throws InputError where the series has no altitude.
 FlightPhases segment(const FlightSeries& series, const SegmentationOptions& options = {});
+/// The same of tracks that are asked for more.
+FlightPhases segment(const ChosenTracks& tracks, const SegmentationOptions& options = {});
 
 /// Throws InputError saying what the log shows instead, if there is no sortie. `file` is named in it.
 void require_sortie(const FlightSeries& series, const FlightPhases& phases, const std::string& file);

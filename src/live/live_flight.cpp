@@ -1,17 +1,19 @@
 #include "live/live_flight.h"
 
+#include "base/units.h"
 #include "flight/chosen_track.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "live/state/aircraft_choice.h"
 #include "live/state/alarms.h"
 #include "live/state/battery_check.h"
-#include "live/state/clock_filter.h"
 #include "live/state/flight_clock.h"
+#include "live/state/sender_clocks.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -36,26 +38,35 @@ class LiveFlight::Watch {
         : options_(std::move(options)),
           basis_(std::move(basis)),
           schedule_(std::move(schedule)),
-          store_(options_.flight, std::move(options_.configuration), basis_ && (basis_->path || basis_->motion)),
+          store_(options_.flight, std::move(options_.configuration),
+                 {.bank = basis_ && (basis_->path || basis_->motion), .places = basis_ && basis_->path}),
           choice_(options_.aircraft_id) {}
 
     void receive(const IncomingMessage& message, double arrival_s) {
         ++messages_;
         choice_.count(message.text);
         std::vector<ClockFilter::Line> believed;
-        const bool anew =
-            clock_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed);
-        if (anew) restart();
-        take(believed, anew);
+        const auto anew =
+            clocks_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed);
+        const bool is_restart = anew == SenderClocks::Anew::all ||
+                                (anew == SenderClocks::Anew::sender && clocks_.is_followed(sender_of(message.text)));
+        if (anew != SenderClocks::Anew::none) store_pending();
+        if (anew == SenderClocks::Anew::sender) store_.drop(std::string(sender_of(message.text)));
+        if (anew == SenderClocks::Anew::all) store_.clear();
+        if (is_restart) restart();
+        take(believed, is_restart);
     }
 
     void end() {
         std::vector<ClockFilter::Line> believed;
-        clock_.flush(believed);
+        clocks_.flush(believed);
         take(believed, false);
+        ended_ = true;
     }
 
-    std::optional<double> clock_s() const { return clock_.started() ? std::optional(clock_.latest_s()) : std::nullopt; }
+    std::optional<double> clock_s() const {
+        return clocks_.started() ? std::optional(clocks_.latest_s()) : std::nullopt;
+    }
 
     LiveState look(double silent_s);
     const std::optional<LiveState>& last_predicted() const { return last_predicted_; }
@@ -76,8 +87,6 @@ class LiveFlight::Watch {
     }
 
     void restart() {
-        store_pending();
-        store_.clear();
         ++restarts_;
         sorties_before_ += sorties_kept_;
         sorties_kept_ = 0;
@@ -87,10 +96,10 @@ class LiveFlight::Watch {
         if (schedule_) schedule_->begin_anew();
     }
 
-    void look_at_flight(const flight::FlightSeries& series, LiveState& state);
-    void look_at_battery_of(const flight::FlightSeries& series, LiveState& state,
+    void look_at_flight(const flight::ChosenTracks& tracks, LiveState& state);
+    void look_at_battery_of(const flight::ChosenTracks& tracks, LiveState& state,
                             std::optional<battery::DischargeRecord>& record);
-    void predict(const flight::FlightSeries& series, const std::optional<battery::DischargeRecord>& record,
+    void predict(const flight::ChosenTracks& tracks, const std::optional<battery::DischargeRecord>& record,
                  LiveState& state);
     void look_ahead(LiveState& state) const;
     void decide(LiveState& state);
@@ -101,7 +110,7 @@ class LiveFlight::Watch {
     std::optional<PredictionBasis> basis_;
     std::unique_ptr<LiveSchedule> schedule_;
     TelemetryStore store_;
-    ClockFilter clock_;
+    SenderClocks clocks_;
     AircraftChoice choice_;
     std::string pending_;
     std::size_t messages_ = 0;
@@ -111,6 +120,8 @@ class LiveFlight::Watch {
     std::size_t deciding_for_ = 0;  ///< the sortie that the schedule has seen
     std::optional<double> carried_percent_;
     std::optional<double> judged_s_;
+    std::optional<double> looked_s_;
+    bool ended_ = false;
     std::vector<std::string> warnings_;
     flight::FlightPhases phases_;
     std::optional<LiveState> last_predicted_;
@@ -119,18 +130,23 @@ class LiveFlight::Watch {
 LiveState LiveFlight::Watch::look(double silent_s) {
     store_pending();
     LiveState state;
-    state.time_s = clock_.latest_s();
     state.messages = messages_;
     state.restarts = restarts_;
-    state.silent_s = silent_s;
-    const auto series = choice_.choose(store_);
+    auto series = choice_.choose(store_);
+    clocks_.follow(series.aircraft_id);
+    state.time_s = clocks_.latest_s();
+    state.silent_s = silent_s + clocks_.silent_s();
+    // What is known at the moment of the last power or altitude, as it is cut by predict.
+    if (const double now_s = mechanical::last_time_s(series); std::isfinite(now_s))
+        series = cut_series(std::move(series), now_s);
+    const flight::ChosenTracks tracks(series);
     state.aircraft_id = series.aircraft_id;
     state.aircraft_name = series.aircraft_name;
     state.others = choice_.others();
     std::optional<battery::DischargeRecord> record;
-    look_at_flight(series, state);
-    look_at_battery_of(series, state, record);
-    predict(series, record, state);
+    look_at_flight(tracks, state);
+    look_at_battery_of(tracks, state, record);
+    predict(tracks, record, state);
     try {
         look_ahead(state);
     } catch (const std::exception& error) {
@@ -140,9 +156,10 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     judge(series, state);
     state.warnings.insert(state.warnings.begin(), warnings_.begin(), warnings_.end());
     state.unusable.insert(store_.skipped().begin(), store_.skipped().end());
-    if (clock_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clock_.unconfirmed();
-    if (clock_.steps_back() > 0)
-        state.warnings.push_back(fmt::format("the clock of the telemetry went back {} times", clock_.steps_back()));
+    if (clocks_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clocks_.unconfirmed();
+    if (const auto steps = clocks_.steps_back(); steps > 0)
+        state.warnings.push_back(
+            fmt::format("the clock of the telemetry went back {} time{}", steps, steps == 1 ? "" : "s"));
     for (const auto& [message, stride] : store_.thinned())
         state.warnings.push_back(fmt::format("of {} every {}th row is kept", message, stride));
     state.alarms = alarms_of(state, basis_, options_.silence_s);
@@ -152,13 +169,12 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     return state;
 }
 
-void LiveFlight::Watch::look_at_flight(const flight::FlightSeries& series, LiveState& state) {
+void LiveFlight::Watch::look_at_flight(const flight::ChosenTracks& tracks, LiveState& state) {
     phases_ = {};
-    const flight::ChosenTracks tracks(series);
     try {
-        if (!tracks["altitude_m"].empty()) phases_ = segment(series, {});
+        if (!tracks["altitude_m"].empty()) phases_ = segment(tracks);
     } catch (const std::exception& error) {
-        state.waits_for = error.what();
+        state.waits_for = without_flight_name(error.what(), tracks.series().flight);
     }
     sorties_kept_ = phases_.sorties.size();
     state.sortie = sorties_before_ + sorties_kept_;
@@ -167,20 +183,20 @@ void LiveFlight::Watch::look_at_flight(const flight::FlightSeries& series, LiveS
     state.current_a = last_of(tracks, "current_a");
     state.altitude_m = last_of(tracks, "altitude_m");
     if (phases_.sorties.empty()) return;
-    set_flight_clock(phases_.sorties.back(), mechanical::last_time_s(series), state);
-    if (!state.power_w) return;
     const auto& sortie = phases_.sorties.back();
-    state.energy_wh =
-        integrated_energy_wh(series, sortie.start_s(), state.landed ? sortie.end_s() : mechanical::last_time_s(series));
+    const double now_s = mechanical::last_time_s(tracks.series());
+    set_flight_clock(sortie, now_s, state);
+    if (!state.power_w) return;
+    state.energy_wh = integrated_energy_wh(tracks["power_w"], sortie.start_s(), state.landed ? sortie.end_s() : now_s);
 }
 
-void LiveFlight::Watch::look_at_battery_of(const flight::FlightSeries& series, LiveState& state,
+void LiveFlight::Watch::look_at_battery_of(const flight::ChosenTracks& tracks, LiveState& state,
                                            std::optional<battery::DischargeRecord>& record) {
     if (!basis_ || !basis_->battery) return;
-    state.battery = look_at_battery(*basis_, carried_percent_, series, record);
+    state.battery = look_at_battery(*basis_, carried_percent_, tracks, record);
 }
 
-void LiveFlight::Watch::predict(const flight::FlightSeries& series,
+void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
                                 const std::optional<battery::DischargeRecord>& record, LiveState& state) {
     if (!basis_) {
         state.waits_for = "a model: give --model or --mission";
@@ -190,17 +206,23 @@ void LiveFlight::Watch::predict(const flight::FlightSeries& series,
         state.waits_for = basis_->cannot_predict;
         return;
     }
+    const double now_s = mechanical::last_time_s(tracks.series());
+    if (state.landed) {
+        state.waits_for = fmt::format("at {:.1f} s of the log the aircraft has landed", now_s);
+        return;
+    }
     if (!state.power_w) {
-        const auto why = why_no_power(series);
+        const auto why = why_no_power(tracks.series());
         state.waits_for = why.empty() ? "telemetry that tells of power" : "measured power: " + why;
         return;
     }
+    if (!state.waits_for.empty()) return;  // it cannot be segmented
     Remarks remarks;
     try {
-        const double until_s = mechanical::last_time_s(series);
-        const auto sortie = phases_.sorties.empty() ? 0 : phases_.sorties.size() - 1;
-        const auto flown = mechanical::progress_at(series, until_s, sortie);
-        auto energy = predict_energy(*basis_, flown, remarks);
+        const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
+        const auto flown = mechanical::progress_in(tracks, sortie, now_s);
+        state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
+        auto energy = predict_energy(*basis_, flown, sighting_of(*basis_, flown, tracks.series()), remarks);
         if (record && state.battery && state.battery->soc_percent) {
             energy.battery = BatteryPrediction{};
             energy.battery->limits = basis_->limits;
@@ -211,20 +233,23 @@ void LiveFlight::Watch::predict(const flight::FlightSeries& series,
         state.prediction = std::move(energy);
         state.expected_power_w = power_ahead(*state.prediction).front().power_w;
     } catch (const std::exception& error) {
-        state.waits_for = without_flight_name(error.what(), series.flight);
+        state.waits_for = without_flight_name(error.what(), tracks.series().flight);
     }
     state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
 }
 
 void LiveFlight::Watch::look_ahead(LiveState& state) const {
-    if (!state.prediction || !state.battery || !state.battery->state) return;
-    const auto& prediction = *state.prediction;
+    if (!state.expected_power_w || !state.battery || !state.battery->state) return;
     const auto& now = *state.battery->state;
-    state.battery->chance_below = chance_below_reserve(*basis_, prediction, now);
-    const double cruise_w = prediction.cruise.remaining_mean_w;
+    // Where nobody knows for how long the cruise goes on, it does so as it was.
+    const double cruise_w =
+        state.prediction ? state.prediction->cruise.remaining_mean_w : state.expected_power_w.value();
     const std::vector<battery::PowerStretch> nothing{{cruise_w, 0.0}};
     state.battery->reserve_in_s =
         forecast_landing(*basis_->battery, now, nothing, cruise_w, basis_->limits).seconds_left;
+    if (!state.prediction) return;
+    const auto& prediction = *state.prediction;
+    state.battery->chance_below = chance_below_reserve(*basis_, prediction, *state.battery);
     if (!basis_->path || basis_->remaining_s || state.phase != flight::Phase::cruise) return;
     const double part = prediction.rest.energy_wh > 0.0 ? prediction.interval.high_wh / prediction.rest.energy_wh : 1.0;
     TurnBudget budget{*basis_->battery, now, basis_->limits, power_ahead(prediction, part), {}, 1.0};
@@ -237,7 +262,7 @@ void LiveFlight::Watch::look_ahead(LiveState& state) const {
     }
     for (const auto& stretch : budget.cruise_ahead) expected_j += stretch.power_w * stretch.duration_s;
     if (planned_j > 0.0) budget.power_factor = expected_j / planned_j;
-    state.turn_home = latest_turn_home(*basis_->path, prediction.flown.cruise_s(), budget);
+    state.turn_home = latest_turn_home(*basis_->path, prediction.on_path_s.value(), budget);
 }
 
 void LiveFlight::Watch::decide(LiveState& state) {
@@ -256,7 +281,10 @@ void LiveFlight::Watch::decide(LiveState& state) {
 }
 
 void LiveFlight::Watch::judge(const flight::FlightSeries& series, const LiveState& state) {
-    if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed) return;
+    constexpr double gap_s = 10.0;  // what was written across it is in doubt at once
+    if (looked_s_ && std::abs(state.time_s - *looked_s_) > gap_s) judged_s_.reset();
+    looked_s_ = state.time_s;
+    if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed && !ended_) return;
     judged_s_ = state.time_s;
     if (series.tracks.empty()) return;
     flight::LoadOptions options;

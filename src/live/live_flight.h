@@ -67,7 +67,7 @@ struct LiveState {
     std::optional<double> voltage_v;
     std::optional<double> current_a;
     std::optional<double> altitude_m;
-    std::optional<double> expected_power_w;  ///< of what comes next, as predicted
+    std::optional<double> expected_power_w;  ///< of what comes next, as predicted; else the cruise's so far
 
     std::optional<LiveBattery> battery;
     std::optional<Prediction> prediction;

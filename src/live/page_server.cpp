@@ -56,6 +56,10 @@ class PageServer::Server {
     Server(const tcp::endpoint& at, std::string page) : acceptor_(context_), timer_(context_) {
         contents_.page = std::move(page);
         contents_.first_events = [this] { return first_events(); };
+        contents_.has_room = [this] {
+            const auto listeners = std::ranges::count_if(sessions_, [](const auto& of) { return of->is_listener(); });
+            return listeners < static_cast<std::ptrdiff_t>(most_connections);
+        };
         listen(at);
         accept();
         thread_ = start_without_signals([this] { context_.run(); });
@@ -105,7 +109,7 @@ class PageServer::Server {
                 return;
             }
             close_on_exec(socket);
-            if (sessions_.size() >= most_connections) sessions_.front()->close();  // the oldest
+            if (sessions_.size() >= 2 * most_connections) close_oldest_asker();
             const auto on_end = [this](const PageSession& ended) {
                 sessions_.remove_if([&](const auto& session) { return session.get() == &ended; });
             };
@@ -114,6 +118,14 @@ class PageServer::Server {
             session->start();
             accept();
         });
+    }
+
+    /// Of those that are no pages: they have been answered, or never asked.
+    void close_oldest_asker() {
+        const auto asker = std::ranges::find_if(sessions_, [](const auto& of) { return !of->is_listener(); });
+        if (asker == sessions_.end()) return;
+        const auto closed = *asker;  // it takes itself off the list
+        closed->close();
     }
 
     /// Which run of the program this is, so that a page that comes back knows, and what was until now.

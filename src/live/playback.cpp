@@ -2,10 +2,13 @@
 
 #include "base/error.h"
 #include "live/source.h"
+#include "live/sources/link_tally.h"
+#include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 namespace flightwatt::live {
 namespace {
@@ -14,7 +17,6 @@ using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr std::chrono::milliseconds longest_wait{50};  // until somebody asks whether to stop
-constexpr char card_frame = '\x99';
 
 /// Waits in short steps; false: it was stopped.
 bool wait_for(Clock::time_point then, PlaybackTarget& target, const std::function<bool()>& stop) {
@@ -42,13 +44,76 @@ class LogClock {
     std::optional<double> last_s_;
 };
 
-void send(PlaybackTarget& target, const IncomingMessage& message, PlaybackReport& report) {
-    const auto why_not = target.send(*message.time_s, message.text);
-    if (why_not.empty()) {
-        ++report.messages;
-    } else {
-        ++report.left_out[std::string(why_not)];
+/// One log on its way to a target.
+class Player {
+  public:
+    Player(double speed, PlaybackTarget& target, const std::function<bool()>& stop)
+        : speed_(speed), target_(target), stop_(stop) {}
+
+    bool is_stopped() const { return report_.stopped; }
+    void leave_out(const char* reason, std::size_t times) {
+        if (times > 0) report_.left_out[reason] += times;
     }
+    /// Waits until the message is due, and sends it.
+    void play(double time_s, std::string_view text) {
+        if (report_.stopped) return;
+        const auto due =
+            begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(clock_.advance_to(time_s, report_) / speed_));
+        report_.stopped = !wait_for(due, target_, stop_);
+        if (report_.stopped) return;
+        report_.latest_s = std::max(report_.latest_s, Seconds(Clock::now() - due).count());
+        const auto why_not = target_.send(time_s, text);
+        if (why_not.empty()) {
+            ++report_.messages;
+        } else {
+            ++report_.left_out[std::string(why_not)];
+        }
+    }
+    PlaybackReport end() {
+        report_.played_s = Seconds(Clock::now() - begin_).count();
+        return std::move(report_);
+    }
+
+  private:
+    double speed_;
+    PlaybackTarget& target_;
+    const std::function<bool()>& stop_;
+    PlaybackReport report_;
+    LogClock clock_;
+    Clock::time_point begin_ = Clock::now();
+};
+
+void play_text(std::string_view text, Player& player) {
+    for (auto rest = text; !rest.empty() && !player.is_stopped();) {
+        auto line = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        if (const auto message = message_of_line(line)) {
+            player.play(*message->time_s, message->text);
+        } else {
+            player.leave_out("they are no messages with a time", 1);
+        }
+    }
+}
+
+/// Throws InputError where its messages have other lengths than they are defined with.
+void play_binary(const telemetry::BinaryLog& log, Player& player) {
+    telemetry::LinkDecoder decoder(*log.messages, log.framing, link_version(log));
+    const auto sink = [&](const telemetry::LinkMessage& message) {
+        if (message.class_id != telemetry::MessageDictionary::telemetry_class) return player.leave_out(other_class, 1);
+        if (!message.time_s) return player.leave_out("they are no messages with a time", 1);
+        player.play(*message.time_s, message.text);
+    };
+    constexpr std::size_t piece = 4096;
+    for (auto rest = log.bytes; !rest.empty() && !player.is_stopped();
+         rest.remove_prefix(std::min(piece, rest.size()))) {
+        decoder.push(rest.substr(0, piece), sink);
+    }
+    if (player.is_stopped()) return;
+    decoder.flush(sink);
+    require_fitting(decoder.counts(), log);
+    tell_unusable(decoder.counts(), {},
+                  [&](const char* reason, std::size_t times) { player.leave_out(reason, times); });
 }
 
 /// What was sent gets out, if it is fetched.
@@ -63,35 +128,22 @@ void drain(PlaybackTarget& target, const std::function<bool()>& stop) {
 void PlaybackTarget::wait_until(Clock::time_point then) { std::this_thread::sleep_until(then); }
 
 PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarget& target,
-                    const std::function<bool()>& stop) {
+                    const std::function<bool()>& stop, const std::optional<telemetry::MessageDictionary>& definitions) {
     const telemetry::DataFile file(log);
-    if (file.text().starts_with(card_frame)) {
-        throw InputError({log.string()}, "it is a binary log, and text is played",
-                         "flightwatt convert " + log.string() + " -o NAME.data writes the text");
+    const auto framing = telemetry::binary_framing(file.text());
+    if (framing && !definitions) {
+        throw InputError({log.string()}, "is a binary log, and no .log beside it defines its messages",
+                         "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
     }
-    PlaybackReport report;
-    LogClock clock;
-    const auto begin = Clock::now();
-    for (auto rest = file.text(); !rest.empty() && !report.stopped;) {
-        auto line = rest.substr(0, rest.find('\n'));
-        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-        if (line.ends_with('\r')) line.remove_suffix(1);
-        const auto message = message_of_line(line);
-        if (!message) {
-            ++report.left_out["they are no messages with a time"];
-            continue;
-        }
-        const auto due = begin + std::chrono::duration_cast<Clock::duration>(
-                                     Seconds(clock.advance_to(*message->time_s, report) / speed));
-        report.stopped = !wait_for(due, target, stop);
-        if (report.stopped) break;
-        report.latest_s = std::max(report.latest_s, Seconds(Clock::now() - due).count());
-        send(target, *message, report);
+    Player player(speed, target, stop);
+    if (framing) {
+        play_binary({file.text(), *framing, log, log, &*definitions}, player);
+    } else {
+        play_text(file.text(), player);
     }
     file.require_unchanged();
     drain(target, stop);
-    report.played_s = Seconds(Clock::now() - begin).count();
-    return report;
+    return player.end();
 }
 
 }  // namespace flightwatt::live

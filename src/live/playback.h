@@ -35,15 +35,17 @@ class PlaybackTarget {
 
 /// What a target needs beside its name.
 struct PlaybackTargetSetup {
-    /// Of udp: alone.
+    /// Of udp: and serial: alone.
     std::optional<telemetry::MessageDictionary> definitions = {};
     telemetry::LinkVersion version = telemetry::LinkVersion::v2;
     /// Of ivy: alone: messages as the aircraft itself would say them, without their time.
     bool as_aircraft = false;
 };
 
-/// "udp:127.0.0.1:4242" (link frames, a datagram each), "ivy:127.255.255.255:2010" (as Paparazzi's log player says
-/// them), "file:NAME.data" (a file that grows; none that is there). Throws UsageError for another name, InputError for a bus that cannot be joined, OutputError for a file that cannot be made.
+/// "udp:127.0.0.1:4242" (link frames, a datagram each), "serial:/dev/ttyUSB0:57600" (link frames),
+/// "ivy:127.255.255.255:2010" (as Paparazzi's log player says them), "file:NAME.data" (a file that grows; none that is
+/// there). Throws UsageError for another name, InputError for a bus or a device that cannot be used, OutputError for a
+/// file that cannot be made.
 std::unique_ptr<PlaybackTarget> open_playback_target(std::string_view to, PlaybackTargetSetup setup);
 
 /// How a log was played.
@@ -60,9 +62,11 @@ struct PlaybackReport {
 /// Gaps of a log that are longer are played as so long: nobody waits for the clock that was set between them.
 inline constexpr double longest_played_gap_s = 600.0;
 
-/// Plays the lines of a text log (compressed or not) in their own time, `speed` times as fast, until its end or until
-/// `stop` says so. Where the log's clock goes back it goes on at once. Throws InputError for a log that cannot be read.
+/// Plays the messages of a log, text or binary (compressed or not), in their own time, `speed` times as fast, until its
+/// end or until `stop` says so. Where the log's clock goes back it goes on at once. `definitions`: of a binary log's
+/// messages. Throws InputError for a log that cannot be read.
 PlaybackReport play(const std::filesystem::path& log, double speed, PlaybackTarget& target,
-                    const std::function<bool()>& stop);
+                    const std::function<bool()>& stop,
+                    const std::optional<telemetry::MessageDictionary>& definitions = {});
 
 }  // namespace flightwatt::live

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "live/state/path_place.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,27 +58,59 @@ void warn_of_level(const mechanical::PhysicalModel& model, double level, Remarks
         units::percent_of(level, 1.0), units::percent_of(sd, 1.0)));
 }
 
-/// Where on the path the flight is: after as long as it has cruised, or the remaining time before its end.
-mission::PathPlace place_on_path(const mission::FlownPath& path, const FlightProgress& flown,
-                                 const std::optional<double>& remaining_s) {
-    if (remaining_s && *remaining_s > path.duration_s) {
-        throw UsageError(
-            fmt::format("--remaining {:g}: the mission's path takes only {:.1f} s", *remaining_s, path.duration_s));
+/// Where on the path the flight is: where it was seen, after as long as it has cruised, or the remaining time before its
+/// end.
+double seconds_on_path(const PredictionBasis& basis, const FlightProgress& flown,
+                       const std::optional<PathSighting>& sighting) {
+    const auto& path = basis.path->flown();
+    if (basis.remaining_s) {
+        if (*basis.remaining_s <= path.duration_s) return path.duration_s - *basis.remaining_s;
+        throw UsageError(fmt::format("--remaining {:g}: the mission's path takes only {:.1f} s", *basis.remaining_s,
+                                     path.duration_s));
     }
-    if (!remaining_s && flown.cruise_s() > path.duration_s) {
+    const bool is_sighted = sighting && sighting->on_path_s;
+    if (is_sighted && *sighting->on_path_s < path.duration_s) return *sighting->on_path_s;
+    if (is_sighted) {
         throw NoAnswerError(
-            fmt::format("the flight has cruised for {:.1f} s and the mission's path takes {:.1f} s: say "
-                        "with --remaining how much of it is left",
-                        flown.cruise_s(), path.duration_s));
+            "the flight has flown the mission's path to its end: say with --remaining how long it "
+            "flies on");
     }
-    return place_at(path, remaining_s ? path.duration_s - *remaining_s : flown.cruise_s());
+    if (flown.cruise_s() <= path.duration_s) return flown.cruise_s();
+    throw NoAnswerError(
+        fmt::format("the flight has cruised for {:.1f} s and the mission's path takes {:.1f} s: say "
+                    "with --remaining how much of it is left",
+                    flown.cruise_s(), path.duration_s));
+}
+
+void remark_on(const std::optional<PathSighting>& sighting, double cruise_s, Remarks& remarks) {
+    if (!sighting) return;
+    if (!sighting->on_path_s) {
+        remarks.warnings.emplace_back(
+            "the positions of this flight are not on the mission's path: it is taken to be as far along it as the time "
+            "since its cruise began");
+        return;
+    }
+    if (!sighting->is_on_path) {
+        remarks.warnings.push_back(
+            fmt::format("the flight has left the mission's path, and is {:.0f} m from where it did: expected to go on "
+                        "from there, without the way back",
+                        sighting->off_m));
+    }
+    constexpr double much_s = 30.0;
+    const double ahead_s = *sighting->on_path_s - cruise_s;
+    if (std::abs(ahead_s) < much_s) return;
+    remarks.notes.push_back(fmt::format("by its position the flight is {:.0f} s {} the mission's plan",
+                                        std::abs(ahead_s), ahead_s > 0.0 ? "ahead of" : "behind"));
 }
 
 /// The cruise along what is left of the path.
 mechanical::RestPrediction predict_along(const PredictionBasis& basis, const FlightProgress& flown,
-                                         Prediction& prediction, Remarks& remarks) {
-    const auto place = place_on_path(basis.path->flown(), flown, basis.remaining_s);
-    auto rest = basis.path->predict(flown, place);
+                                         const std::optional<PathSighting>& sighting, Prediction& prediction,
+                                         Remarks& remarks) {
+    prediction.on_path_s = seconds_on_path(basis, flown, sighting);
+    prediction.is_sighted = sighting && sighting->on_path_s;
+    remark_on(sighting, flown.cruise_s(), remarks);
+    auto rest = basis.path->predict(flown, place_at(basis.path->flown(), *prediction.on_path_s));
     if (rest.forbidden_part > 0.0) {
         remarks.warnings.push_back(
             fmt::format("{:.0f} % of the winds that [wind] makes likely forbid what is left of the path: they are not "
@@ -100,13 +133,19 @@ mechanical::RestPrediction predict_level(const PredictionBasis& basis, const Fli
 }
 
 mechanical::RestPrediction predict_cruise(const PredictionBasis& basis, const FlightProgress& flown,
-                                          Prediction& prediction, Remarks& remarks) {
+                                          const std::optional<PathSighting>& sighting, Prediction& prediction,
+                                          Remarks& remarks) {
     prediction.by_motion = basis.path || basis.motion;
     if (prediction.by_motion && !flown.motion.lacks.empty())
         remarks.warnings.push_back(fmt::format("this flight's own level is not known: {}", flown.motion.lacks));
-    if (basis.path) return predict_along(basis, flown, prediction, remarks);
-    prediction.remaining_s =
-        basis.remaining_s ? *basis.remaining_s : std::max(0.0, basis.cruise_s.value() - flown.cruise_s());
+    if (basis.path) return predict_along(basis, flown, sighting, prediction, remarks);
+    prediction.remaining_s = basis.remaining_s ? *basis.remaining_s : basis.cruise_s.value() - flown.cruise_s();
+    if (prediction.remaining_s < 0.0) {
+        throw NoAnswerError(
+            fmt::format("the cruise takes {:.0f} s longer than the mission's {:.0f} s: how long it goes on "
+                        "is not known (--remaining says it)",
+                        -prediction.remaining_s, *basis.cruise_s));
+    }
     if (!basis.motion) return predict_level(basis, flown, prediction.remaining_s, remarks);
     const auto& model = basis.model.physical.value();
     warn_of_motion(model, *basis.motion, remarks);
@@ -159,15 +198,22 @@ double initial_soc_percent(const PredictionBasis& basis, const battery::Discharg
 
 Prediction predict_flight(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
                           const flight::FlightSeries& series, Remarks& remarks) {
-    auto prediction = predict_energy(basis, flown, remarks);
+    auto prediction = predict_energy(basis, flown, sighting_of(basis, flown, series), remarks);
     prediction.battery = predict_battery(basis, series, prediction, remarks);
     return prediction;
 }
 
-Prediction predict_energy(const PredictionBasis& basis, const mechanical::FlightProgress& flown, Remarks& remarks) {
+std::optional<PathSighting> sighting_of(const PredictionBasis& basis, const FlightProgress& flown,
+                                        const flight::FlightSeries& series) {
+    if (!basis.path || basis.remaining_s) return std::nullopt;
+    return sighted_on_path(*basis.path, series, flown.cruise_start_s, flown.until_s);
+}
+
+Prediction predict_energy(const PredictionBasis& basis, const FlightProgress& flown,
+                          const std::optional<PathSighting>& sighting, Remarks& remarks) {
     Prediction prediction;
     prediction.flown = flown;
-    prediction.cruise = predict_cruise(basis, flown, prediction, remarks);
+    prediction.cruise = predict_cruise(basis, flown, sighting, prediction, remarks);
     if (prediction.by_motion) warn_of_level(basis.model.physical.value(), prediction.cruise.gain, remarks);
     prediction.landing_s = basis.landing_s;
     if (basis.landing_s > 0.0) {

@@ -38,8 +38,17 @@ struct BatteryPrediction {
     bool initial_is_measured = false;  ///< by the resting voltage
 };
 
+/// Where a flight is on its path, by its positions.
+struct PathSighting {
+    std::optional<double> on_path_s = {};  ///< in the path's planned time; none: they do not lie on the path
+    bool is_on_path = true;                ///< else it has left it, and was there last
+    double off_m = 0.0;                    ///< so far from there now
+};
+
 struct Prediction {
     mechanical::FlightProgress flown;
+    std::optional<double> on_path_s = {};  ///< where on its path the flight is, in the path's planned time
+    bool is_sighted = false;               ///< there, by its positions; else by the time
     double remaining_s = 0.0;
     bool by_motion = false;  ///< the cruise, by airspeed and climb; else by the curve or a law
     mechanical::RestPrediction cruise;
@@ -75,8 +84,14 @@ double initial_soc_percent(const PredictionBasis& basis, const battery::Discharg
 Prediction predict_flight(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
                           const flight::FlightSeries& series, Remarks& remarks);
 
-/// The same without the battery.
-Prediction predict_energy(const PredictionBasis& basis, const mechanical::FlightProgress& flown, Remarks& remarks);
+/// The same without the battery. `sighting`: where the path is to go on from; none: after as long as it has cruised.
+Prediction predict_energy(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
+                          const std::optional<PathSighting>& sighting, Remarks& remarks);
+
+/// Where the positions see the flight on the path that is to be flown on; none where there is no path, where the time
+/// that is left is stated, or without positions.
+std::optional<PathSighting> sighting_of(const PredictionBasis& basis, const mechanical::FlightProgress& flown,
+                                        const flight::FlightSeries& series);
 
 /// The stretches of power ahead, cruise and landing, as expected times `part`.
 std::vector<battery::PowerStretch> power_ahead(const Prediction& prediction, double part = 1.0);

@@ -25,9 +25,12 @@ class Recorder {
     const std::filesystem::path& file() const { return file_; }
     /// Why no more is written; empty while it is.
     const std::string& failure() const { return failure_; }
+    /// Why a .log could not be written; the .data goes on without it.
+    const std::string& lacks_definitions() const { return lacks_definitions_; }
 
   private:
     void open_next();
+    void write_definitions();
 
     std::filesystem::path folder_;
     std::string name_;
@@ -36,6 +39,7 @@ class Recorder {
     std::filesystem::path file_;
     std::ofstream out_;
     std::string failure_;
+    std::string lacks_definitions_;
 };
 
 /// "26_11_22__14_05_09": as Paparazzi names its logs, of a Unix time, in UTC.

@@ -19,6 +19,8 @@ void add(Displacement& at, double length_m, double course_deg) {
 void add_part(Displacement& at, const mission::PathElement& element, double part) {
     if (const auto* leg = std::get_if<mission::Leg>(&element.shape)) {
         add(at, leg->length_m * part, leg->course_deg);
+    } else if (const auto* hold = std::get_if<mission::Hold>(&element.shape); hold != nullptr && hold->over_ground) {
+        add(at, hold->over_ground->length_m * part, hold->over_ground->course_deg);
     } else if (const auto* circles = std::get_if<mission::Circles>(&element.shape)) {
         constexpr double quarter_deg = 90.0;
         constexpr double turn_deg = 360.0;

@@ -15,7 +15,8 @@ struct Displacement {
     double north_m = 0.0;
 };
 
-/// Where a place of a path lies; a hold moves nothing, as the path goes on from where it was planned to.
+/// Where a place of a path lies. A hold moves nothing, as the path goes on from where it was planned to, but where it
+/// stands for a leg whose time was measured.
 Displacement displacement_at(const mission::FlightPath& path, const mission::PathPlace& place);
 
 /// What a flight along a path has: its battery now, and the powers ahead.

@@ -5,8 +5,8 @@
 // slot plans.
 
 #include "live/live_flight.h"
+#include "live/prediction_basis.h"
 #include "mission/mission_file.h"
-#include "mission/remaining_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,18 +120,8 @@ int main(int argc, char** argv) {
     reading.may_lack_schedule = true;
     const auto mission = mission::read_mission(argv[1], reading);
     const auto& setup = setup_of(mission);
-    live::PredictionBasis basis{setup.mechanical.value()};
-    basis.landing_s = setup.duration_s[flight::Phase::landing];
-    basis.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
-    basis.battery = setup.battery;
-    if (setup.cruise_path) {
-        basis.path = std::make_shared<const mission::PathForecast>(*setup.cruise_path->plan);
-        basis.model.physical = basis.path->plan().power;
-    } else {
-        basis.cruise_s = setup.duration_s[flight::Phase::cruise];
-        if (!basis.model.phases[flight::Phase::cruise].level_spread) basis.cannot_predict = "the model has no spread";
-    }
-    live::LiveFlight flight({}, basis, std::make_unique<live::LiveSchedule>(mission, decides));
+    live::LiveFlight flight({}, live::mission_basis(setup, argv[1]),
+                            std::make_unique<live::LiveSchedule>(mission, decides));
     MadeUpDay day;
     Times predicting;
     Times others;

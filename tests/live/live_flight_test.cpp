@@ -1,11 +1,15 @@
 #include "live/live_flight.h"
 
 #include "base/atomic_file.h"
+#include "flight/chosen_track.h"
 #include "flight/load_flight.h"
+#include "helpers/path_missions.h"
 #include "helpers/sample_logs.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <random>
 #include <sstream>
 #include <string>
@@ -94,6 +98,43 @@ TEST(LiveFlight, SaysWhatPredictSaysOfTheLogAtThatMoment) {
     }
 }
 
+/// A path of legs where the flight was every 10 s.
+std::shared_ptr<const mission::PathForecast> path_of(const std::filesystem::path& log, double from_s, double to_s) {
+    const auto series = flight::read_flight(log);
+    const auto east = chosen_track(series, "east_m");
+    const auto north = chosen_track(series, "north_m");
+    mission::FlightPath path;
+    constexpr double leg_s = 10.0;
+    for (double time_s = from_s; time_s < to_s; time_s += leg_s) {
+        const double east_m = value_at(east, time_s + leg_s) - value_at(east, time_s);
+        const double north_m = value_at(north, time_s + leg_s) - value_at(north, time_s);
+        const double course_deg = std::atan2(east_m, north_m) * 180.0 / 3.14159265358979;
+        path.elements.push_back(test::path_element(mission::Leg{std::hypot(east_m, north_m), course_deg}, 10.0));
+    }
+    return std::make_shared<const mission::PathForecast>(mission::PathPlan{path, {}, test::made_up_wing()});
+}
+
+TEST(LiveFlight, SaysWhatPredictSaysAlongAPath) {
+    const auto log = test::sample(1);
+    auto basis = wing_basis();
+    basis.remaining_s.reset();
+    basis.model.physical = test::made_up_wing();
+    const auto cruise_s = mechanical::progress_at(flight::read_flight(log), 300.0).cruise_start_s;
+    basis.path = path_of(log, cruise_s, cruise_s + 400.0);
+    LiveFlight flight(options_of(log), basis, nullptr);
+    receive_all(flight, messages_of(log, 300.0));
+    const auto state = flight.look();
+    ASSERT_TRUE(state.prediction) << state.waits_for;
+    const auto expected = predicted(log, state.prediction->flown.until_s, basis);
+    expect_same(*state.prediction, expected);
+    EXPECT_TRUE(expected.is_sighted);
+    EXPECT_EQ(state.prediction->on_path_s, expected.on_path_s);
+    double planned_s = 0.0;
+    for (int leg = 0; leg < static_cast<int>((300.0 - cruise_s) / 10.0); ++leg)
+        planned_s += basis.path->flown().element_s[static_cast<std::size_t>(leg)];
+    EXPECT_NEAR(expected.on_path_s.value(), planned_s, 12.0) << "though it is flown faster than planned";
+}
+
 TEST(LiveFlight, SaysWhatPredictSaysOfRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
@@ -134,6 +175,23 @@ TEST(LiveFlight, KnowsPhasesAndSaysWhatItWaitsFor) {
     EXPECT_EQ(state.sortie, 1U);
     EXPECT_THAT(state.waits_for, testing::HasSubstr("has landed"));
     EXPECT_TRUE(flight.last_predicted().has_value());
+}
+
+TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedHasNoEndThatIsKnown) {
+    const auto log = test::sample(1);
+    auto basis = wing_basis();
+    basis.remaining_s.reset();
+    basis.cruise_s = 150.0;
+    LiveFlight flight(options_of(log), basis, nullptr);
+    receive_all(flight, messages_of(log, 200.0));
+    ASSERT_TRUE(flight.look().prediction);
+    receive_all(flight, messages_of(log, 400.0, 200.001));
+    const auto state = flight.look();
+    EXPECT_FALSE(state.prediction);
+    EXPECT_THAT(state.waits_for, testing::HasSubstr("longer than the mission's 150 s"));
+    EXPECT_GT(state.battery->reserve_in_s.value(), 100.0);
+    EXPECT_FALSE(state.battery->chance_below);
+    EXPECT_GT(state.expected_power_w.value(), 10.0);
 }
 
 TEST(LiveFlight, AStartInMidFlightSaysWhatItDoesNotKnow) {
@@ -204,6 +262,41 @@ TEST(LiveFlight, GarbageOtherAircraftAndDamageChangeNothing) {
     EXPECT_GT(state.others.at("99"), 0U);
     EXPECT_FALSE(state.unusable.empty());
     EXPECT_EQ(state.restarts, 0U);
+}
+
+/// Its clock is behind, goes in jumps, and begins anew: none of that is the watched aircraft's.
+TEST(LiveFlight, AnotherAircraftsClockChangesNothing) {
+    const auto log = test::sample(2);
+    LiveFlight clean(options_of(log), wing_basis(), nullptr);
+    LiveFlight disturbed(options_of(log), wing_basis(), nullptr);
+    std::size_t i = 0;
+    for (const auto& message : messages_of(log, 350.0)) {
+        clean.receive(message, 0.0);
+        disturbed.receive(message, 0.0);
+        const double step_s = ++i / 50 % 2 == 0 ? 300.0 : 0.0;
+        disturbed.receive({0.01 * static_cast<double>(i % 3000) + step_s, "99 ENERGY 90 9.1 30 270 1 10"}, 0.0);
+    }
+    const auto expected = clean.look();
+    const auto state = disturbed.look();
+    EXPECT_EQ(state.restarts, 0U);
+    EXPECT_NEAR(state.time_s, expected.time_s, 0.1);
+    ASSERT_TRUE(state.prediction && expected.prediction) << state.waits_for;
+    EXPECT_EQ(state.prediction->rest.energy_wh, expected.prediction->rest.energy_wh);
+    EXPECT_EQ(state.prediction->battery->expected.soc_percent, expected.prediction->battery->expected.soc_percent);
+}
+
+TEST(LiveFlight, AnAircraftIsSilentThoughOthersTalk) {
+    const auto log = test::sample(1);
+    LiveFlight flight(options_of(log), wing_basis(), nullptr);
+    receive_all(flight, messages_of(log, 300.0));
+    EXPECT_EQ(flight.look().alarms.size(), 0U);
+    for (int i = 0; i <= 40; ++i) flight.receive({300.0 + i, "ground DATALINK_REPORT 7 0 0 0 0 0 0"}, 0.0);
+    const auto state = flight.look();
+    EXPECT_NEAR(state.time_s, 340.0, 4.5) << "less the five lines that a gap takes to be believed";
+    ASSERT_EQ(state.alarms.size(), 1U);
+    EXPECT_EQ(state.alarms.front().kind, "silence");
+    receive_all(flight, messages_of(log, 350.0, 340.0));
+    EXPECT_EQ(flight.look().alarms.size(), 0U);
 }
 
 TEST(LiveFlight, GapsAndLostMessagesDoNotEndIt) {
@@ -332,6 +425,41 @@ TEST(LiveFlight, TheChanceOfLandingBelowTheReserveFollowsTheInterval) {
                 0.006)
         << "of the interval's high end, where the battery's capacity has no interval";
     EXPECT_NEAR(state_with(99.0).battery->chance_below.value(), 1.0, 1e-9);
+}
+
+/// Against the sum over capacities of the chances with each.
+TEST(LiveFlight, TheChanceOfLandingBelowTheReserveHoldsTheCapacitysSpread) {
+    const auto messages = messages_of(test::sample(1), 400.0);
+    const auto battery_with = [&](double reserve_percent, double capacity_part, double sd_part) {
+        auto basis = wing_basis();
+        basis.limits.reserve_soc_percent = reserve_percent;
+        const double capacity_ah = basis.battery->capacity_ah;
+        constexpr double half_95 = 1.96;
+        basis.battery->intervals.capacity_ah =
+            battery::Interval{capacity_ah * (1.0 - half_95 * sd_part), capacity_ah * (1.0 + half_95 * sd_part)};
+        if (sd_part == 0.0) basis.battery->intervals.capacity_ah.reset();
+        basis.battery->capacity_ah *= capacity_part;
+        LiveFlight flight(options_of(test::sample(1)), basis, nullptr);
+        receive_all(flight, messages);
+        return flight.look();
+    };
+    const double expected = battery_with(0.0, 1.0, 0.0).prediction->battery->expected.soc_percent;
+    for (const double sd_part : {0.01, 0.06}) {
+        for (const double above_percent : {-6.0, 0.0, 2.0}) {
+            const double reserve_percent = expected + above_percent;
+            double weights = 0.0;
+            double chance = 0.0;
+            for (int i = -9; i <= 9; ++i) {
+                const double z = 0.4 * i;
+                const double weight = std::exp(-0.5 * z * z);
+                const auto state = battery_with(reserve_percent, 1.0 + z * sd_part, 0.0);
+                weights += weight;
+                chance += weight * state.battery->chance_below.value();
+            }
+            const auto state = battery_with(reserve_percent, 1.0, sd_part);
+            EXPECT_NEAR(state.battery->chance_below.value(), chance / weights, 0.02) << sd_part << " " << above_percent;
+        }
+    }
 }
 
 }  // namespace

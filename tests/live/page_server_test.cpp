@@ -131,8 +131,17 @@ TEST_F(PageServerTest, BoundsItsConnectionsAndLosesThoseThatTakeNothing) {
         many.push_back(std::make_unique<Visitor>(port));
         many.back()->ask("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
     }
-    EXPECT_THAT(many.back()->hear_until("event: state"), HasSubstr("200 OK"));
-    many.front()->hear_all();  // it was closed, or the test would wait here for a minute
+    const auto refused = many.back()->hear_all();
+    EXPECT_THAT(refused, StartsWith("HTTP/1.1 503 Service Unavailable\r\n"));
+    EXPECT_THAT(refused, HasSubstr("Retry-After: "));
+    EXPECT_THAT(many[PageServer::most_connections - 1]->hear_until("event: state"), HasSubstr("200 OK"));
+    server.publish("{\"t\":1}", "");
+    EXPECT_THAT(many.front()->hear_until("{\"t\":1}"), HasSubstr("200 OK")) << "those that are open stay";
+    EXPECT_THAT(answer_to("GET /state"), testing::EndsWith("{\"t\":1}\n"));
+    std::vector<std::unique_ptr<Visitor>> silent;  // who never ask do not keep others out
+    for (std::size_t i = 0; i < 2 * PageServer::most_connections; ++i)
+        silent.push_back(std::make_unique<Visitor>(port));
+    EXPECT_THAT(answer_to("GET /"), StartsWith("HTTP/1.1 200"));
     // Nobody reads: what waits is bounded, and the last page is answered all the same.
     const std::string large(100'000, 'x');
     for (int i = 0; i < 300; ++i) server.publish('"' + large + '"', "");

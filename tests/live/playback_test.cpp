@@ -2,8 +2,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "helpers/binary_frames.h"
 #include "helpers/free_port.h"
 #include "helpers/link_lines.h"
+#include "helpers/pseudo_terminal.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 #include "live/sources.h"
@@ -79,10 +81,50 @@ TEST(Playback, TakesAsLongAsItShouldAndEndsWhenItIsStopped) {
     EXPECT_EQ(stopped.lines.size(), 1U);
 }
 
-TEST(Playback, RefusesBinaryLogsAndTargetsThatAreNone) {
+/// A card's log of messages with their own times.
+std::filesystem::path write_card_log(const std::vector<std::string>& lines) {
+    const auto path = test::scratch_dir() / "a.LOG";
+    write_file_atomically(
+        path, test::card_log(log_of(lines), test::small_dictionary(), test::LinkVersion::v2) + "damage at its end");
+    return path;
+}
+
+TEST(Playback, PlaysBinaryLogsAsTheirText) {
+    const auto lines = test::energy_lines(50);
+    const auto log = write_card_log(lines);
     KeepingTarget target;
-    EXPECT_THROW(play(write_log("\x99\x05 binary"), 1.0, target, never), InputError);
-    for (const auto* wrong : {"", "udp", "udp:", "tcp:127.0.0.1:1", "file:", "ivy"}) {
+    const auto report = play(log, 1e5, target, never, test::small_dictionary());
+    ASSERT_EQ(target.lines.size(), lines.size());
+    EXPECT_EQ(target.lines.front(), "100 " + lines.front());
+    EXPECT_EQ(target.lines.back(), "104.9 " + lines.back());
+    EXPECT_NEAR(report.log_s, 4.9, 1e-9);
+    EXPECT_EQ(report.left_out.at("bytes between frames"), 17U);
+    int asked = 0;
+    KeepingTarget stopped;
+    EXPECT_TRUE(play(
+                    log, 1.0, stopped, [&] { return ++asked > 2; }, test::small_dictionary())
+                    .stopped);
+    EXPECT_EQ(stopped.lines.size(), 1U);
+    EXPECT_THROW(play(log, 1.0, target, never), InputError) << "nothing defines its messages";
+}
+
+TEST(Playback, ASerialLineThatNobodyReadsEndsNothing) {
+    const auto folder = test::scratch_dir();
+    const test::PseudoTerminal line(folder / "line");
+    const auto target =
+        open_playback_target("serial:" + (folder / "line").string(), {.definitions = test::small_dictionary()});
+    const auto text = test::energy_lines(1).front();
+    std::string_view why_not;
+    for (int i = 0; i < 50'000 && why_not.empty(); ++i) why_not = target->send(0.0, text);
+    EXPECT_THAT(std::string(why_not), testing::HasSubstr("slower than what is played"));
+    EXPECT_FALSE(target->is_idle());
+    const auto begin = std::chrono::steady_clock::now();
+    target->wait_until(begin + milliseconds(20));
+    EXPECT_GE(std::chrono::steady_clock::now(), begin + milliseconds(20));
+}
+
+TEST(Playback, RefusesTargetsThatAreNone) {
+    for (const auto* wrong : {"", "udp", "udp:", "tcp:127.0.0.1:1", "file:", "ivy", "serial", "serial::9600"}) {
         EXPECT_THROW(open_playback_target(wrong, {.definitions = test::small_dictionary()}), UsageError) << wrong;
     }
     EXPECT_THROW(open_playback_target("udp:host:1", {.definitions = test::small_dictionary()}), UsageError);
@@ -133,6 +175,19 @@ TEST(Playback, BringsAllToAUdpSourceAtTheirTimes) {
         EXPECT_EQ(texts_of(messages), lines);
         EXPECT_GE(*messages.back().time_s - *messages.front().time_s, 15.0);  // of 19.9 s, less the first that wait
     }
+}
+
+TEST(Playback, BringsAllOverASerialLine) {
+    const auto lines = test::energy_lines(300);
+    const auto folder = test::scratch_dir();
+    const test::NullModem modem(folder / "here", folder / "there");
+    const auto source = open_serial((folder / "there").string() + ":57600", test::small_dictionary(), 100.0);
+    const auto target = open_playback_target("serial:" + (folder / "here").string() + ":57600",
+                                             {.definitions = test::small_dictionary()});
+    const auto messages = played(*source, write_log(log_of(lines)), 100.0, *target, lines.size());
+    EXPECT_EQ(texts_of(messages), lines);
+    EXPECT_THROW(open_playback_target("serial:/dev/never:57600", {.definitions = test::small_dictionary()}),
+                 InputError);
 }
 
 TEST(Playback, BringsAllOverAnIvyBusWithTheirTimes) {

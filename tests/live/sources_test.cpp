@@ -4,25 +4,22 @@
 #include "base/error.h"
 #include "helpers/free_port.h"
 #include "helpers/link_lines.h"
+#include "helpers/pseudo_terminal.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/udp.hpp>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace flightwatt::live {
 namespace {
@@ -120,34 +117,9 @@ TEST(UdpSource, IsRefusedWhereThePortIsTaken) {
     }
 }
 
-/// A serial line with somebody at its other end.
-class PseudoTerminal {
-  public:
-    /// `link` becomes its name.
-    explicit PseudoTerminal(const std::filesystem::path& link) : file_(::posix_openpt(O_RDWR | O_NOCTTY)) {
-        if (file_ < 0 || ::grantpt(file_) != 0 || ::unlockpt(file_) != 0)
-            throw std::runtime_error("no pseudo-terminal");
-        std::string name(100, '\0');
-        if (::ptsname_r(file_, name.data(), name.size()) != 0) throw std::runtime_error("no name");
-        std::filesystem::remove(link);
-        std::filesystem::create_symlink(name.c_str(), link);
-    }
-    ~PseudoTerminal() { ::close(file_); }
-    PseudoTerminal(const PseudoTerminal&) = delete;
-    PseudoTerminal& operator=(const PseudoTerminal&) = delete;
-
-    void send(std::string_view bytes) {
-        for (; !bytes.empty(); bytes.remove_prefix(std::min<std::size_t>(bytes.size(), 100)))
-            ASSERT_GT(::write(file_, bytes.data(), std::min<std::size_t>(bytes.size(), 100)), 0);
-    }
-
-  private:
-    int file_;
-};
-
 TEST(SerialSource, ReadsBytesAsTheyAreAndOpensADeviceThatIsBack) {
     const auto device = test::scratch_dir() / "ttyUSB0";
-    auto modem = std::make_unique<PseudoTerminal>(device);
+    auto modem = std::make_unique<test::PseudoTerminal>(device);
     const auto source = open_serial(device.string() + ":115200", test::small_dictionary());
     EXPECT_EQ(source->description(), device.string() + " at 115200 baud");
     // Bytes that a line discipline would eat: \r, \n, ^C, ^D, ^Z, XON, XOFF.
@@ -159,7 +131,7 @@ TEST(SerialSource, ReadsBytesAsTheyAreAndOpensADeviceThatIsBack) {
     std::vector<IncomingMessage> none;
     source->receive(milliseconds(50), none);
     EXPECT_TRUE(none.empty());
-    modem = std::make_unique<PseudoTerminal>(device);
+    modem = std::make_unique<test::PseudoTerminal>(device);
     ASSERT_TRUE(test::wait_until([&] {
         source->receive(milliseconds(10), none);
         return source->report().restarts == 1;

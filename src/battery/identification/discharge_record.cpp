@@ -4,7 +4,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "battery/identification/pack_changes.h"
-#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 
 #include <algorithm>
@@ -24,6 +23,11 @@ constexpr double fine_counter_a = 0.05;  // error of a mean current by the count
 constexpr std::size_t least_samples = 50;
 
 constexpr auto needed = "a battery is identified from measured voltage and current";
+
+std::vector<double> chosen_on(const flight::ChosenTracks& tracks, const char* name, const std::vector<double>& time_s) {
+    const auto& track = tracks[name];
+    return track.empty() ? std::vector<double>{} : resample(track, time_s);
+}
 
 void require_samples(const flight::FlightSeries& series, std::size_t samples) {
     if (samples >= least_samples) return;
@@ -126,7 +130,8 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     record.resting_current_a = median_of(std::move(currents_a));
 }
 
-void fill_record(const flight::FlightSeries& series, const PackRecord& part, DischargeRecord& record) {
+void fill_record(const flight::ChosenTracks& tracks, const PackRecord& part, DischargeRecord& record) {
+    const auto& series = tracks.series();
     require_samples(series, part.time_s.size());
     record.time_s = part.time_s;
     record.voltage_v = part.voltage_v;
@@ -137,20 +142,25 @@ void fill_record(const flight::FlightSeries& series, const PackRecord& part, Dis
     record.resolution_v = least_difference(record.voltage_v);
     if (series.start_clock_s) record.start_clock_s = *series.start_clock_s + record.time_s.front();
     if (!part.counter_ah.empty()) record.counter_ah = Interval{part.counter_ah.front(), part.counter_ah.back()};
-    const auto temperature_c = chosen_at(series, "air_temperature_c", record.time_s);
+    const auto temperature_c = chosen_on(tracks, "air_temperature_c", record.time_s);
     if (!temperature_c.empty()) record.air_temperature_c = mean(temperature_c);
 }
 
 }  // namespace
 
 DischargeRecords discharge_records(const flight::FlightSeries& series) {
+    return discharge_records(flight::ChosenTracks(series));
+}
+
+DischargeRecords discharge_records(const flight::ChosenTracks& tracks) {
+    const auto& series = tracks.series();
     PackRecord whole;
-    whole.time_s = power_track(series).time_s;
-    whole.voltage_v = chosen_at(series, "voltage_v", whole.time_s);
-    whole.current_a = chosen_at(series, "current_a", whole.time_s);
+    whole.time_s = tracks["power_w"].time_s;
+    whole.voltage_v = chosen_on(tracks, "voltage_v", whole.time_s);
+    whole.current_a = chosen_on(tracks, "current_a", whole.time_s);
     require_channels(series, whole);
-    whole.counter_ah = chosen_at(series, "charge_ah", whole.time_s);
-    whole.throttle_percent = chosen_at(series, "throttle_percent", whole.time_s);
+    whole.counter_ah = chosen_on(tracks, "charge_ah", whole.time_s);
+    whole.throttle_percent = chosen_on(tracks, "throttle_percent", whole.time_s);
     DischargeRecords found;
     const auto parts = split_at_pack_changes(std::move(whole), found.notes);
     for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -158,7 +168,7 @@ DischargeRecords discharge_records(const flight::FlightSeries& series) {
         record.flight = p == 0 ? series.flight : fmt::format("{}#{}", series.flight, p + 1);
         record.is_other_pack = p > 0;
         try {
-            fill_record(series, parts[p], record);
+            fill_record(tracks, parts[p], record);
             found.records.push_back(std::move(record));
         } catch (const InputError& error) {
             if (parts.size() == 1) throw;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "battery/battery.h"
+#include "flight/chosen_track.h"
 #include "flight/flight_series.h"
 
 #include <cstddef>
@@ -44,6 +45,8 @@ struct DischargeRecords {
 /// flight, where voltage or current is missing or constant, where the current was computed from throttle, and where no
 /// record begins at rest.
 DischargeRecords discharge_records(const flight::FlightSeries& series);
+/// The same of tracks that are asked for more.
+DischargeRecords discharge_records(const flight::ChosenTracks& tracks);
 
 std::ptrdiff_t used_samples(const DischargeRecord& record);
 

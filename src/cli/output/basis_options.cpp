@@ -4,11 +4,11 @@
 #include "base/units.h"
 #include "cli/numeric_options.h"
 #include "cli/output/mission_output.h"
+#include "live/prediction_basis.h"
 #include "mechanical/model_check.h"
 #include "mission/mission_file.h"
 
 #include <map>
-#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,11 +19,10 @@ namespace {
 using live::PredictionBasis;
 
 /// The model that --model names.
-mechanical::MechanicalModel read_spread_model(const StageCall& call) {
+mechanical::MechanicalModel read_model(const StageCall& call) {
     const auto file = call.get<std::string>("model");
     auto model = mechanical::read_mechanical_model(file);
     for (const auto& warning : model_warnings(model)) warn(call, fmt::format("{}: {}", file, warning));
-    for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) live::require_spread(model, phase, file);
     return model;
 }
 
@@ -61,40 +60,6 @@ std::optional<double> remaining_option(const StageCall& call) {
     return number_option(call, "remaining", 0.0, longest_s);
 }
 
-/// Throws InputError where the model does not allow a prediction.
-void require_predicting(const PredictionBasis& basis, const std::string& file) {
-    if (basis.path)
-        live::require_physical(basis.model, file, "--mission");
-    else
-        live::require_spread(basis.model, flight::Phase::cruise, file);
-    if (basis.landing_s > 0.0) live::require_spread(basis.model, flight::Phase::landing, file);
-}
-
-/// Model and path, or time, of a mission.
-PredictionBasis basis_of(const mission::MissionSetup& setup) {
-    PredictionBasis basis{setup.mechanical.value(), {}, setup.duration_s[flight::Phase::landing]};
-    basis.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
-    if (setup.cruise_path) {
-        basis.path = std::make_shared<const mission::PathForecast>(*setup.cruise_path->plan);
-        basis.model.physical = basis.path->plan().power;  // where the model has but a law of airspeed, that
-    } else {
-        basis.cruise_s = setup.duration_s[flight::Phase::cruise];
-    }
-    return basis;
-}
-
-/// The mission's own battery; and where a schedule is all that the mission can tell, that and why.
-void add_mission_battery(const mission::MissionSetup& setup, const std::string& file, PredictionBasis& basis) {
-    basis.battery = setup.battery;
-    basis.battery_file = file;
-    if (!setup.battery.thevenin) basis.initial_soc_percent = setup.initial_soc_percent;
-    try {
-        require_predicting(basis, file);
-    } catch (const InputError& error) {
-        basis.cannot_predict = error.what();
-    }
-}
-
 PredictionBasis read_mission_basis(const StageCall& call, PathNeed need, std::optional<mission::AnyMission>* kept) {
     if (call.has("model")) throw UsageError("--mission names its model: leave --model out");
     if (call.has("airspeed") || call.has("climb") || !call.options["level"].defaulted())
@@ -112,12 +77,8 @@ PredictionBasis read_mission_basis(const StageCall& call, PathNeed need, std::op
     if (!setup.mechanical)
         throw InputError({file}, "the mission has no mechanical model", "name one: mechanical = FILE");
     warn_of_setup(call, setup);
-    auto basis = basis_of(setup);
+    auto basis = need == PathNeed::required ? live::path_basis(setup, file) : live::mission_basis(setup, file);
     basis.remaining_s = remaining_s;
-    if (need == PathNeed::required)
-        require_predicting(basis, file);
-    else
-        add_mission_battery(setup, file, basis);
     if (kept != nullptr) *kept = std::move(mission);
     return basis;
 }
@@ -125,12 +86,11 @@ PredictionBasis read_mission_basis(const StageCall& call, PathNeed need, std::op
 PredictionBasis read_model_basis(const StageCall& call) {
     if (!call.has("model")) throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
     if (!call.has("remaining")) throw UsageError("no time left given: expected --remaining SECONDS");
-    PredictionBasis basis;
-    basis.remaining_s = remaining_option(call);
-    basis.motion = motion_ahead(call);
-    basis.model = read_spread_model(call);
+    const auto remaining_s = remaining_option(call);
+    const auto motion = motion_ahead(call);
+    auto basis = live::model_basis(read_model(call), call.get<std::string>("model"), remaining_s.value());
+    basis.motion = motion;
     basis.level = level_option(call);
-    basis.landing_s = basis.model.phases[flight::Phase::landing].duration_s;
     if (basis.motion) live::require_physical(basis.model, call.get<std::string>("model"), "--airspeed");
     return basis;
 }
@@ -141,7 +101,7 @@ void add_basis_options(boost::program_options::options_description& options, Pat
     auto add = options.add_options();
     add("remaining", value<double>("S"),
         "seconds from the moment until landing begins; with --mission only where the flight is not as far along the "
-        "path as the time since its cruise began");
+        "path as its positions say, or, without any, the time since its cruise began");
     add("level", value("HOW")->default_value("auto"),
         "what is expected of the cruise before its own power is looked at: the model's curve, the curve's mean "
         "(constant), the power that the airspeed so far and the other flights' later one stand for (airspeed), or that "

@@ -63,8 +63,8 @@ nlohmann::ordered_json json_of(const battery::LandingForecast& forecast) {
 }  // namespace
 
 std::string text_of(const Prediction& prediction) {
-    const auto& [flown, remaining_s, by_motion, cruise, power_ahead, landing, landing_s, rest, interval, battery] =
-        prediction;
+    const auto& [flown, on_path_s, is_sighted, remaining_s, by_motion, cruise, power_ahead, landing, landing_s, rest,
+                 interval, battery] = prediction;
     return fmt::format(
                "flown      {:.3f} Wh from lift-off at {:.1f} s to {:.1f} s of the log ({:.1f} s)\n"
                "cruise     {:.3f} Wh in {:.0f} s more: {:.2f} W; so far {:.2f} W, {}\n"
@@ -79,8 +79,8 @@ std::string text_of(const Prediction& prediction) {
 }
 
 nlohmann::ordered_json json_of(const Prediction& prediction) {
-    const auto& [flown, remaining_s, by_motion, cruise, power_ahead, landing, landing_s, rest, interval, battery] =
-        prediction;
+    const auto& [flown, on_path_s, is_sighted, remaining_s, by_motion, cruise, power_ahead, landing, landing_s, rest,
+                 interval, battery] = prediction;
     const auto expected_w = is_expected(prediction) ? std::optional(cruise.expected_w) : std::nullopt;
     const auto gain = is_expected(prediction) ? std::optional(cruise.gain) : std::nullopt;
     nlohmann::ordered_json json{{"flown_energy_wh", flown.energy_wh},
@@ -97,6 +97,7 @@ nlohmann::ordered_json json_of(const Prediction& prediction) {
                                   {"remaining_mean_w", cruise.remaining_mean_w},
                                   {by_motion ? "own_level" : "gain", optional_json(gain)}}},
                                 {"landing", {{"duration_s", landing_s}, {"energy_wh", landing.energy_wh}}}};
+    if (on_path_s) json["cruise"]["path"] = {{"at_s", *on_path_s}, {"by_position", is_sighted}};
     if (battery) {
         json["battery"] = {{"initial_soc_percent", battery->initial_soc_percent},
                            {"soc_now_percent", battery->expected.soc_now_percent},

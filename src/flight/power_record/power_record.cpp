@@ -43,7 +43,7 @@ std::vector<std::size_t> resting_samples(const FlightSeries& series, const Power
         return std::ranges::none_of(record.flown,
                                     [&](const SampleRange& flown) { return i >= flown.first && i < flown.last; });
     };
-    const auto grid = make_grid(series);
+    const auto grid = make_grid(ChosenTracks(series));
     const auto rests = find_rests(grid, options);
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
         const auto at = static_cast<std::size_t>((record.time_s[i] - grid.start_s) / grid.step_s);

@@ -100,11 +100,12 @@ void refuse_without_altitude(const FlightSeries& series, const Track& altitude) 
 
 }  // namespace
 
-FlightGrid make_grid(const FlightSeries& series) {
-    const auto raw = chosen_track(series, "altitude_m");
+FlightGrid make_grid(const ChosenTracks& tracks) {
+    const auto& series = tracks.series();
+    const auto& raw = tracks["altitude_m"];
     refuse_without_altitude(series, raw);
     FlightGrid grid;
-    const auto power = power_track(series);
+    const auto& power = tracks["power_w"];
     const auto& clock = power.empty() ? raw : power;
     grid.start_s = clock.time_s.front();
     const auto time_s = grid_times(series, grid, clock.time_s.back());
@@ -117,14 +118,14 @@ FlightGrid make_grid(const FlightSeries& series) {
     } else {
         add_altitude(grid, altitude, time_s);
     }
-    auto motor = motor_record(series, altitude.altitude);
+    auto motor = motor_record(tracks, altitude.altitude);
     grid.motor_sign = motor.sign;
     grid.motor_evidence = std::move(motor.evidence);
     grid.warnings.insert(grid.warnings.end(), motor.warnings.begin(), motor.warnings.end());
     if (!motor.percent.empty()) grid.motor_percent = resample(motor.percent, time_s);
     if (motor.sign == MotorSign::throttle) grid.throttle_percent = grid.motor_percent;
-    const auto speed = chosen_at(series, "ground_speed_m_per_s", time_s);
-    if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes<5>(speed);
+    const auto& speed = tracks["ground_speed_m_per_s"];
+    if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes<5>(resample(speed, time_s));
     return grid;
 }
 

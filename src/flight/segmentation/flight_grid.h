@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
 #include "flight/segmentation/motor_record.h"
@@ -38,7 +39,7 @@ struct FlightGrid {
 
 /// On the time of the power samples, or where there are none of the altitude. Throws InputError where the series has
 /// no altitude.
-FlightGrid make_grid(const FlightSeries& series);
+FlightGrid make_grid(const ChosenTracks& tracks);
 
 /// The spans in which the aircraft is at rest: see SegmentationOptions.
 std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptions& options);

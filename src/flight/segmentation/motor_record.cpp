@@ -16,6 +16,16 @@ namespace {
 
 constexpr double glitch_s = 10.0;  // throttle without power for less than this is a fault of the record
 
+/// quantile of what is not sorted.
+double quantile_of(std::vector<double>& values, double probability) {
+    const auto below = static_cast<std::ptrdiff_t>(static_cast<double>(values.size() - 1) * probability);
+    const auto at = values.begin() + below;
+    std::nth_element(values.begin(), at, values.end());
+    if (at + 1 == values.end()) return *at;
+    const double place = static_cast<double>(values.size() - 1) * probability;
+    return std::lerp(*at, *std::min_element(at + 1, values.end()), place - static_cast<double>(below));
+}
+
 struct PowerLevels {
     double idle_w;
     double running_w;
@@ -27,9 +37,8 @@ std::optional<PowerLevels> power_levels(const Track& power, const Track& altitud
     constexpr std::size_t enough = 20;
     if (power.time_s.size() < enough) return std::nullopt;
     auto heights = altitude_m.value;
-    std::ranges::sort(heights);
-    const double low_m = quantile(heights, 0.02);
-    const double ground_m = low_m + std::max(3.0, 0.1 * (quantile(heights, 0.98) - low_m));
+    const double low_m = quantile_of(heights, 0.02);
+    const double ground_m = low_m + std::max(3.0, 0.1 * (quantile_of(heights, 0.98) - low_m));
     const auto at_m = resample(altitude_m, power.time_s);
     std::vector<double> on_ground_w;
     for (std::size_t i = 0; i < at_m.size(); ++i) {
@@ -37,17 +46,15 @@ std::optional<PowerLevels> power_levels(const Track& power, const Track& altitud
     }
     if (on_ground_w.size() < enough / 2) return std::nullopt;
     auto all_w = power.value;
-    std::ranges::sort(all_w);
-    std::ranges::sort(on_ground_w);
-    const PowerLevels levels{quantile(on_ground_w, 0.25), quantile(all_w, 0.98)};
+    const PowerLevels levels{quantile_of(on_ground_w, 0.25), quantile_of(all_w, 0.98)};
     const bool apart = levels.running_w >= running_over_idle * levels.idle_w &&
                        levels.running_w >= levels.idle_w + running_above_idle_w;
     return apart ? std::optional(levels) : std::nullopt;
 }
 
 /// The throttle on the clock of the power samples, on which it is asked for everywhere, or on its own.
-Track throttle_of(const FlightSeries& series, const Track& power) {
-    auto throttle = chosen_track(series, "throttle_percent");
+Track throttle_of(const ChosenTracks& tracks, const Track& power) {
+    auto throttle = tracks["throttle_percent"];
     if (throttle.empty() || power.empty()) return throttle;
     throttle.value = resample(throttle, power.time_s);
     throttle.time_s = power.time_s;
@@ -74,10 +81,10 @@ std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLe
 
 }  // namespace
 
-MotorRecord motor_record(const FlightSeries& series, const Track& altitude_m) {
+MotorRecord motor_record(const ChosenTracks& tracks, const Track& altitude_m) {
     MotorRecord record;
-    const auto power = power_track(series);
-    auto throttle = throttle_of(series, power);
+    const auto& power = tracks["power_w"];
+    auto throttle = throttle_of(tracks, power);
     const auto levels = altitude_m.empty() ? std::nullopt : power_levels(power, altitude_m);
     const bool stands_still = is_constant(throttle);  // as that of a log which has none
     if (!throttle.empty() && !(stands_still && levels)) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/chosen_track.h"
 #include "flight/flight_series.h"
 
 #include <string>
@@ -27,6 +28,6 @@ struct MotorRecord {
 };
 
 /// From throttle and power; `altitude_m` (cleaned, not empty) tells which power is that on the ground.
-MotorRecord motor_record(const FlightSeries& series, const Track& altitude_m);
+MotorRecord motor_record(const ChosenTracks& tracks, const Track& altitude_m);
 
 }  // namespace flightwatt::flight

@@ -209,15 +209,16 @@ std::vector<double> changes_said(const FlightGrid& grid, const Track& track, dou
     std::vector<double> changes_m;
     const auto steps = grid.steps(window_s);
     const double most_m = physical_bounds("altitude_m").value().high;
+    std::vector<double> middles_s(track.name == "altitude_m" ? 0 : grid.size());
+    for (std::size_t i = 0; i < middles_s.size(); ++i) middles_s[i] = grid.time_s(i) + 0.5 * grid.step_s;
+    const auto climb_m_per_s = resample(track, middles_s);
     for (const auto& piece : grid.pieces) {
         for (auto i = piece.begin; i + steps < piece.end; i += steps) {
             double change_m = 0.0;
             if (track.name == "altitude_m") {
                 change_m = value_at(track, grid.time_s(i + steps)) - value_at(track, grid.time_s(i));
             } else {
-                for (std::size_t k = 0; k < steps; ++k) {
-                    change_m += grid.step_s * value_at(track, grid.time_s(i + k) + 0.5 * grid.step_s);
-                }
+                for (std::size_t k = 0; k < steps; ++k) change_m += grid.step_s * climb_m_per_s[i + k];
             }
             changes_m.push_back(std::abs(change_m) <= most_m ? change_m : 0.0);
         }
@@ -232,9 +233,9 @@ std::string unit_of(double times) {
 
 }  // namespace
 
-std::string why_ground_vehicle(const FlightSeries& series) {
-    if (!chosen_track(series, "rover_mode").empty()) return "a ground vehicle: it sends ROVER_STATUS";
-    if (series.firmware == "rover") return "a ground vehicle: its airframe's firmware is rover";
+std::string why_ground_vehicle(const ChosenTracks& tracks) {
+    if (!tracks["rover_mode"].empty()) return "a ground vehicle: it sends ROVER_STATUS";
+    if (tracks.series().firmware == "rover") return "a ground vehicle: its airframe's firmware is rover";
     return "";
 }
 
@@ -261,20 +262,20 @@ std::string why_no_flight(const ChosenTracks& tracks, const FlightGrid& grid, co
     return why_only_driven(tracks, grid, activity, options);
 }
 
-std::string unit_doubt(const FlightSeries& series, const FlightGrid& grid) {
+std::string unit_doubt(const ChosenTracks& tracks, const FlightGrid& grid) {
     constexpr double window_s = 10.0;
     constexpr double factor = 1.7;  // feet are 3.28 times as many
-    const auto chosen = chosen_track(series, "altitude_m");
+    const auto& chosen = tracks["altitude_m"];
     const auto doubt_by = [&](const Track& said, const char* how) -> std::string {
         const auto times = times_as_much(changes_said(grid, said, window_s), changes_seen(grid, window_s));
         if (!times || (*times<factor&& * times> 1.0 / factor)) return "";
         return fmt::format("{} moves {:.3g} times as much as {}{} says: is one of them in {}?", chosen.source, *times,
                            how, said.source, unit_of(std::max(*times, 1.0 / *times)));
     };
-    if (const auto climb = chosen_track(series, "climb_m_per_s"); !climb.empty()) {
+    if (const auto& climb = tracks["climb_m_per_s"]; !climb.empty()) {
         if (auto doubt = doubt_by(climb, "the climb rate of "); !doubt.empty()) return doubt;
     }
-    for (const auto& track : series.tracks) {
+    for (const auto& track : tracks.series().tracks) {
         if (track.name != "altitude_m" || track.source == chosen.source || track.empty()) continue;
         if (auto doubt = doubt_by(track, ""); !doubt.empty()) return doubt;
     }

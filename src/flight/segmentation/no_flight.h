@@ -28,7 +28,7 @@ inline constexpr double road_slope = 0.03;
 inline constexpr double road_slack_m = 2.0;
 
 /// Why the vehicle is none that flies; empty if that is not said: "a ground vehicle: it sends ROVER_STATUS".
-std::string why_ground_vehicle(const FlightSeries& series);
+std::string why_ground_vehicle(const ChosenTracks& tracks);
 
 /// Why an activity is no flight; empty if it is one.
 std::string why_no_flight(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
@@ -36,6 +36,6 @@ std::string why_no_flight(const ChosenTracks& tracks, const FlightGrid& grid, co
 
 /// Whether the altitude moves, all in all, much more or less than the climb rate or another altitude of the log says:
 /// "ESTIMATOR.z moves 100 times as much as GPS.alt says: is one of them in cm?"; empty if it does not.
-std::string unit_doubt(const FlightSeries& series, const FlightGrid& grid);
+std::string unit_doubt(const ChosenTracks& tracks, const FlightGrid& grid);
 
 }  // namespace flightwatt::flight

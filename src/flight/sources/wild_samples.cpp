@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -148,17 +149,19 @@ std::vector<double> dropout_times(const Track& track, const Track& throttle) {
     return times_s;
 }
 
-Track without_times(const Track& track, const std::vector<double>& times_s) {
+Track without_times(Track track, const std::vector<double>& times_s) {
     if (times_s.empty()) return track;
-    Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
+    std::size_t kept = 0;
     auto next = times_s.begin();
     for (std::size_t i = 0; i < track.time_s.size(); ++i) {
         while (next != times_s.end() && *next < track.time_s[i]) ++next;
         if (next != times_s.end() && *next == track.time_s[i]) continue;
-        kept.time_s.push_back(track.time_s[i]);
-        kept.value.push_back(track.value[i]);
+        track.time_s[kept] = track.time_s[i];
+        track.value[kept++] = track.value[i];
     }
-    return kept;
+    track.time_s.resize(kept);
+    track.value.resize(kept);
+    return track;
 }
 
 SoundTrack sound_track(const Track& candidate, const std::vector<double>& contradicted_s, const Track& throttle) {
@@ -178,11 +181,13 @@ SoundTrack sound_track(const Track& candidate, const std::vector<double>& contra
         left = now;
     };
     note("beyond what can be");
-    sound.track = without_times(sound.track, contradicted_s);
+    sound.track = without_times(std::move(sound.track), contradicted_s);
     note("where power is not voltage times current");
-    sound.track = without_times(sound.track, dropout_times(sound.track, throttle));
+    const auto dropouts_s = dropout_times(sound.track, throttle);
+    sound.track = without_times(std::move(sound.track), dropouts_s);
     note("at 0 for up to three samples with the throttle open");
-    sound.track = without_times(sound.track, spike_times(sound.track));
+    const auto spikes_s = spike_times(sound.track);
+    sound.track = without_times(std::move(sound.track), spikes_s);
     note(is_counter(candidate) ? "out of the counter's order" : "far beyond the samples beside");
     if (!reasons.empty()) {
         sound.left_out = fmt::format("{} of {} samples of {} ({}) are left out: {}", all - left, all, candidate.name,

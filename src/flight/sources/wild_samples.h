@@ -24,7 +24,7 @@ std::vector<double> spike_times(const Track& track);
 std::vector<double> dropout_times(const Track& track, const Track& throttle);
 
 /// The track without its samples at `times_s`, which rise.
-Track without_times(const Track& track, const std::vector<double>& times_s);
+Track without_times(Track track, const std::vector<double>& times_s);
 
 /// A candidate without what cannot be.
 struct SoundTrack {

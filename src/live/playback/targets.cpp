@@ -4,6 +4,7 @@
 #include "live/playback.h"
 #include "live/sources/host_and_port.h"
 #include "live/sources/ivy_agent.h"
+#include "live/sources/serial_line.h"
 #include "telemetry/link_encoder.h"
 
 #include <cerrno>
@@ -16,6 +17,7 @@
 #include <boost/asio/ip/udp.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 namespace flightwatt::live {
@@ -50,6 +52,59 @@ class UdpTarget : public PlaybackTarget {
     boost::asio::io_context context_;
     boost::asio::ip::udp::socket socket_;
     std::string frame_;
+};
+
+/// Link frames on a serial line, which asio opens without blocking. What it does not take at once waits, but no more than some minutes of a modem's.
+class SerialTarget : public PlaybackTarget {
+  public:
+    SerialTarget(std::string_view to, PlaybackTargetSetup setup)
+        : definitions_(std::move(setup.definitions.value())),
+          encoder_(definitions_, setup.version),
+          line_(parse_serial_line(to)) {
+        declare_output(line_.device);
+        if (const auto error = open_serial_line(line_, port_)) refuse_serial_line(line_, error);
+    }
+
+    std::string_view send(double, std::string_view text) override {
+        frame_.clear();
+        const auto why_not = encoder_.append_frame(text, frame_);
+        if (!why_not.empty()) return why_not;
+        write();
+        constexpr std::size_t most_waiting_bytes = 1'000'000;
+        if (waiting_.size() > most_waiting_bytes) return "the serial line is slower than what is played";
+        waiting_ += frame_;
+        write();
+        return {};
+    }
+    void wait_until(Clock::time_point then) override {
+        for (auto now = Clock::now(); now < then && !waiting_.empty(); now = Clock::now()) {
+            ::pollfd line{port_.native_handle(), POLLOUT, 0};
+            const auto wait = std::chrono::ceil<std::chrono::milliseconds>(then - now);
+            if (::poll(&line, 1, static_cast<int>(wait.count())) < 0 && errno == EINTR) return;
+            write();
+        }
+        PlaybackTarget::wait_until(then);
+    }
+    bool is_idle() const override { return waiting_.empty(); }
+
+  private:
+    void write() {
+        while (!waiting_.empty()) {
+            const auto written = ::write(port_.native_handle(), waiting_.data(), waiting_.size());
+            if (written > 0) waiting_.erase(0, static_cast<std::size_t>(written));
+            if (written > 0 || (written < 0 && errno == EINTR)) continue;
+            if (written == 0 || errno == EAGAIN) return;
+            throw OutputError(fmt::format("cannot write to {}: {}", line_.device, std::strerror(errno)));
+        }
+    }
+
+    telemetry::MessageDictionary definitions_;
+    telemetry::LinkEncoder encoder_;
+    SerialLine line_;
+    boost::asio::io_context context_;
+    boost::asio::serial_port port_{context_};
+    std::string frame_;
+    std::string waiting_;
 };
 
 class IvyTarget : public PlaybackTarget {
@@ -138,8 +193,11 @@ std::unique_ptr<PlaybackTarget> open_playback_target(std::string_view to, Playba
     if (kind == "file" && !place.empty()) return std::make_unique<LineTarget>(std::string(place));
     if (kind == "ivy" && !place.empty()) return std::make_unique<IvyTarget>(place, setup.as_aircraft);
     if (kind == "udp" && !place.empty()) return std::make_unique<UdpTarget>(place, std::move(setup));
-    throw UsageError(fmt::format(
-        "nothing can be played to '{}': expected udp:ADDRESS:PORT, ivy:ADDRESS:PORT, file:NAME.data or -", to));
+    if (kind == "serial" && !place.empty()) return std::make_unique<SerialTarget>(place, std::move(setup));
+    throw UsageError(
+        fmt::format("nothing can be played to '{}': expected udp:ADDRESS:PORT, serial:DEVICE:BAUD, "
+                    "ivy:ADDRESS:PORT, file:NAME.data or -",
+                    to));
 }
 
 }  // namespace flightwatt::live

@@ -33,8 +33,10 @@ std::string head_of(int status, std::string_view type, std::string_view more) {
                        text_of(http::obsolete_reason(static_cast<http::status>(status))), type, head_for_all, more);
 }
 
+constexpr int too_many = 503;
+
 std::string whole_answer(int status, std::string_view type, std::string_view body, bool head_alone) {
-    const auto* allow = status == 405 ? "Allow: GET, HEAD\r\n" : "";
+    const auto* allow = status == 405 ? "Allow: GET, HEAD\r\n" : status == too_many ? "Retry-After: 30\r\n" : "";
     auto text = head_of(status, type, fmt::format("Content-Length: {}\r\n{}", body.size(), allow));
     if (!head_alone) text += body;
     return text;
@@ -43,6 +45,7 @@ std::string whole_answer(int status, std::string_view type, std::string_view bod
 std::string refusal(int status) {
     if (status == 403) return "Ask by the address of this machine or as localhost, and from its own page.\n";
     if (status == 405) return "This page is read alone.\n";
+    if (status == too_many) return "As many pages as may be are open.\n";
     return "There is / and /state and /events.\n";
 }
 
@@ -82,6 +85,8 @@ void PageSession::answer() {
         send(whole_answer(status, "text/html; charset=utf-8", contents_.page, head_alone));
     } else if (head.target == "/state") {
         send(whole_answer(status, "application/json", contents_.state + "\n", head_alone));
+    } else if (!head_alone && !contents_.has_room()) {
+        send(whole_answer(too_many, "text/plain; charset=utf-8", refusal(too_many), head_alone));
     } else {
         is_listener_ = !head_alone;
         send(head_of(status, "text/event-stream", "") + (head_alone ? "" : contents_.first_events()));

@@ -22,6 +22,7 @@ struct PageContents {
     std::string page;
     std::string state = "null";
     std::function<std::string()> first_events;  ///< what a listener is told before what is new
+    std::function<bool()> has_room;             ///< for one more listener
 };
 
 /// A connection of a browser: one request, one answer, which for a listener does not end.

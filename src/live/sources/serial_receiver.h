@@ -2,6 +2,7 @@
 
 #include "live/sources/link_reader.h"
 #include "live/sources/receiving_source.h"
+#include "live/sources/serial_line.h"
 
 #include <array>
 #include <optional>
@@ -18,7 +19,7 @@ namespace flightwatt::live {
 class SerialReceiver : public Receiver {
   public:
     /// Throws InputError where the device is not there, or does not know the speed.
-    SerialReceiver(boost::asio::io_context& context, MessageQueue& queue, std::string device, unsigned baud,
+    SerialReceiver(boost::asio::io_context& context, MessageQueue& queue, SerialLine line,
                    telemetry::MessageDictionary dictionary);
 
     std::string description() const override;
@@ -31,8 +32,7 @@ class SerialReceiver : public Receiver {
     void reopen_later();
 
     MessageQueue& queue_;
-    std::string device_;
-    unsigned baud_;
+    SerialLine line_;
     telemetry::MessageDictionary dictionary_;
     boost::asio::serial_port port_;
     boost::asio::steady_timer timer_;

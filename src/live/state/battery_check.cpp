@@ -41,10 +41,10 @@ void compare_voltage(const battery::Battery& battery, const battery::DischargeRe
 }
 
 /// Of a series without a record: by voltage and current of the last minute, as if nothing had settled yet.
-void look_at_voltage(const battery::Battery& battery, const flight::FlightSeries& series, LiveBattery& result) {
-    const auto voltage = flight::chosen_track(series, "voltage_v");
+void look_at_voltage(const battery::Battery& battery, const flight::ChosenTracks& tracks, LiveBattery& result) {
+    const auto& voltage = tracks["voltage_v"];
     if (!battery.thevenin || voltage.empty()) return;
-    const auto current = flight::chosen_track(series, "current_a");
+    const auto& current = tracks["current_a"];
     std::vector<double> rest_v;
     for (std::size_t i = voltage.time_s.size(); i-- > 0 && voltage.time_s[i] >= voltage.time_s.back() - watched_s;) {
         const double current_a = current.empty() ? 0.0 : value_at(current, voltage.time_s[i]);
@@ -55,35 +55,70 @@ void look_at_voltage(const battery::Battery& battery, const flight::FlightSeries
     result.state = battery::BatteryState{*result.soc_by_voltage_percent, 0.0};
 }
 
-/// The part of the expected energy with which nothing is spare: the charge left is nearly straight in it, so that two
-/// secants find it; where the battery fails in between, the root is bracketed. std::nullopt beyond eight standard
-/// deviations `sd` [parts].
-std::optional<double> part_without_spare(const std::function<double(double)>& spare_percent, double sd) {
-    constexpr double most_sds = 8.0;
+constexpr double most_sds = 8.0;
+
+/// So many deviations away nothing is spare: what is spare is nearly straight in them, so that two secants find it; where
+/// the battery fails in between, the root is bracketed. std::nullopt beyond `low` and eight.
+std::optional<double> sds_without_spare(const std::function<double(double)>& spare_percent, double low) {
     constexpr double exact_percent = 0.02;
-    const double low = std::max(0.0, 1.0 - most_sds * sd);
-    const double high = 1.0 + most_sds * sd;
-    double before = 1.0;
-    double part = 1.0 + 2.0 * sd;
+    double before = 0.0;
+    double sds = 2.0;
     double spare_before = spare_percent(before);
     for (int i = 0; i < 3; ++i) {
-        const double spare = spare_percent(part);
-        const double slope = (spare - spare_before) / (part - before);
+        const double spare = spare_percent(sds);
+        const double slope = (spare - spare_before) / (sds - before);
         const bool is_straight = slope < 0.0 && spare > -failed_percent && spare_before > -failed_percent;
         if (!is_straight) break;
-        before = part;
+        before = sds;
         spare_before = spare;
-        part -= spare / slope;
-        if (part <= low || part >= high) return std::nullopt;
-        if (std::abs(spare) < exact_percent) return part;
+        sds -= spare / slope;
+        if (sds <= low || sds >= most_sds) return std::nullopt;
+        if (std::abs(spare) < exact_percent) return sds;
     }
-    if (spare_percent(low) < 0.0 || spare_percent(high) >= 0.0) return std::nullopt;
+    if (spare_percent(low) < 0.0 || spare_percent(most_sds) >= 0.0) return std::nullopt;
     std::uintmax_t most_looks = 12;
-    constexpr int bits = 10;  // a thousandth of the range: less than a hundredth of a standard deviation
+    constexpr int bits = 11;  // less than a hundredth of a standard deviation
     const auto [below, above] = boost::math::tools::toms748_solve(
-        spare_percent, low, high, boost::math::tools::eps_tolerance<double>(bits), most_looks);
+        spare_percent, low, most_sds, boost::math::tools::eps_tolerance<double>(bits), most_looks);
     return 0.5 * (below + above);
 }
+
+/// What is spare at the landing with a part of the expected energy and another capacity.
+class Spare {
+  public:
+    Spare(const PredictionBasis& basis, const Prediction& prediction, const LiveBattery& now)
+        : basis_(basis), prediction_(prediction), state_(now.state.value()), battery_(basis.battery.value()) {
+        if (now.soc_percent) drawn_ah_ = now.drawn_ah.value_or(0.0);
+    }
+
+    /// `capacity_sds`: by so many deviations, as in draws of flights.
+    double percent(double part, double capacity_sds) {
+        const double as_it_is_ah = basis_.battery->capacity_ah;
+        battery_.capacity_ah = std::max(0.01 * as_it_is_ah, as_it_is_ah + capacity_sds * capacity_sd_ah(capacity_sds));
+        auto state = state_;
+        state.soc_percent +=
+            units::percent_of(drawn_ah_, as_it_is_ah) - units::percent_of(drawn_ah_, battery_.capacity_ah);
+        if (!(state.soc_percent > 0.0)) return -failed_percent;
+        state.soc_percent = std::min(state.soc_percent, units::percent_per_whole);
+        const auto landing =
+            battery::forecast_landing(battery_, state, power_ahead(prediction_, part), 0.0, basis_.limits);
+        return landing.fails_after_s ? -failed_percent : landing.soc_percent - basis_.limits.reserve_soc_percent;
+    }
+
+  private:
+    double capacity_sd_ah(double sds) const {
+        const auto& interval = basis_.battery->intervals.capacity_ah;
+        if (!interval) return 0.0;
+        const double capacity_ah = basis_.battery->capacity_ah;
+        return (sds < 0.0 ? capacity_ah - interval->low : interval->high - capacity_ah) / normal_half_width();
+    }
+
+    const PredictionBasis& basis_;
+    const Prediction& prediction_;
+    battery::BatteryState state_;
+    battery::Battery battery_;
+    double drawn_ah_ = 0.0;  ///< of which the state of charge was told
+};
 
 /// A pack that rests at a voltage of so many points more than was left in the one before is another one.
 constexpr double other_pack_percent = 15.0;
@@ -113,11 +148,11 @@ std::optional<double> soc_at(const battery::Battery& battery, const battery::Dis
 }
 
 LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<double>& carried_percent,
-                            const flight::FlightSeries& series, std::optional<battery::DischargeRecord>& record) {
+                            const flight::ChosenTracks& tracks, std::optional<battery::DischargeRecord>& record) {
     const auto& battery = basis.battery.value();
     LiveBattery result;
     try {
-        record = battery::discharge_records(series).records.back();
+        record = battery::discharge_records(tracks).records.back();
         set_initial(basis, carried_percent, *record, result);
         result.drawn_ah = record->charge_ah.back();
         result.state = state_after(battery, *record, result.initial_soc_percent);
@@ -126,27 +161,38 @@ LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<do
         result.soc_percent = result.state->soc_percent;
         compare_voltage(battery, *record, result);
     } catch (const std::exception&) {  // no record yet, or more was drawn than there was
-        look_at_voltage(battery, series, result);
+        look_at_voltage(battery, tracks, result);
     }
     return result;
 }
 
 std::optional<double> chance_below_reserve(const PredictionBasis& basis, const Prediction& prediction,
-                                           const battery::BatteryState& now) {
+                                           const LiveBattery& now) {
     const auto& rest = prediction.rest;
     if (!rest.uncertainty_known || !(rest.energy_wh > 0.0)) return std::nullopt;
-    const auto spare_percent = [&](double part) {
-        const auto landing =
-            battery::forecast_landing(*basis.battery, now, power_ahead(prediction, part), 0.0, basis.limits);
-        return landing.fails_after_s ? -failed_percent : landing.soc_percent - basis.limits.reserve_soc_percent;
-    };
     const double sd = std::sqrt(rest.variance_wh2) / rest.energy_wh;
-    const auto part = part_without_spare(spare_percent, sd);
-    if (!part) return spare_percent(1.0) < 0.0 ? 1.0 : 0.0;
-    const double sds = (*part - 1.0) / sd;
-    if (!(rest.variance_square_per_degree_of_freedom > 0.0)) return cdf(complement(boost::math::normal(), sds));
+    Spare spare(basis, prediction, now);
+    const double expected = spare.percent(1.0, 0.0);
+    // The way to less that is the likeliest: along it each of the two counts by what a deviation of it takes.
+    double by_energy = 1.0;
+    double by_capacity = 0.0;
+    if (basis.battery->intervals.capacity_ah) {
+        const double energy_takes = expected - spare.percent(1.0 + sd, 0.0);
+        const double capacity_takes = expected - spare.percent(1.0, -1.0);
+        const double both = std::hypot(energy_takes, capacity_takes);
+        if (both > 0.0) by_energy = std::max(0.0, energy_takes / both);
+        if (both > 0.0) by_capacity = std::max(0.0, capacity_takes / both);
+    }
+    const auto spare_percent = [&](double sds) {
+        return spare.percent(std::max(0.0, 1.0 + sds * by_energy * sd), -sds * by_capacity);
+    };
+    const auto sds = sds_without_spare(spare_percent, -most_sds);
+    if (!sds) return expected < 0.0 ? 1.0 : 0.0;
+    const double energy_part = by_energy * by_energy;  // of the variance
+    if (!(rest.variance_square_per_degree_of_freedom > 0.0) || !(energy_part > 0.0))
+        return cdf(complement(boost::math::normal(), *sds));
     const double degrees = rest.variance_wh2 * rest.variance_wh2 / rest.variance_square_per_degree_of_freedom;
-    return cdf(complement(boost::math::students_t(degrees), sds));
+    return cdf(complement(boost::math::students_t(degrees / (energy_part * energy_part)), *sds));
 }
 
 }  // namespace flightwatt::live

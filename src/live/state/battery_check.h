@@ -11,15 +11,16 @@ namespace flightwatt::live {
 /// is the state of charge where the series begins, if it is known from what lay before. Where there is no usable record
 /// yet (at rest, or from within a flight) the voltage alone tells it.
 LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<double>& carried_percent,
-                            const flight::FlightSeries& series, std::optional<battery::DischargeRecord>& record);
+                            const flight::ChosenTracks& tracks, std::optional<battery::DischargeRecord>& record);
 
 /// The state of charge at a time of the record.
 std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
                              double initial_soc_percent, double time_s);
 
-/// The probability, after the predictive distribution of the energy (Student's t), of landing with less than the reserve
-/// or not at all. The capacity is taken as the battery has it.
+/// The probability, after the predictive distributions of the energy (Student's t) and of the capacity (normal, by its
+/// interval, where the battery has one), of landing with less than the reserve or not at all (docs/methods.md). `now` has
+/// a state.
 std::optional<double> chance_below_reserve(const PredictionBasis& basis, const Prediction& prediction,
-                                           const battery::BatteryState& now);
+                                           const LiveBattery& now);
 
 }  // namespace flightwatt::live

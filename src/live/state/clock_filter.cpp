@@ -6,25 +6,19 @@
 
 namespace flightwatt::live {
 
-bool ClockFilter::push(double time_s, std::string text, bool restarted, std::vector<Line>& believed) {
-    const bool anew = restarted && started_ && time_s + offset_s_ < latest_s_ - late_s;
-    if (anew) {
-        offset_s_ = 0.0;
-        late_ = 0;
-        unconfirmed_ += held_.size();
-        held_.clear();
-    }
+bool ClockFilter::push(double time_s, std::string text, std::vector<Line>& believed) {
     Line line{time_s + offset_s_, std::move(text)};
     const double ahead_s = line.time_s - latest_s_;
-    if (started_ && !anew && (ahead_s > most_ahead_s || ahead_s < -most_step_s)) return hold(std::move(line), believed);
+    if (started_ && (ahead_s > most_ahead_s || ahead_s < -most_step_s)) return hold(std::move(line), believed);
     unconfirmed_ += held_.size();
     held_.clear();
-    if (!started_ || anew || line.time_s > latest_s_ + late_s) near_latest_ = 0;
-    latest_s_ = started_ && !anew ? std::max(latest_s_, line.time_s) : line.time_s;
+    if (!started_ || is_guess_ || line.time_s > latest_s_ + late_s) near_latest_ = 0;
+    latest_s_ = started_ && !is_guess_ ? std::max(latest_s_, line.time_s) : line.time_s;
     started_ = true;
+    is_guess_ = false;
     look_at_late(line);
     believed.push_back(std::move(line));
-    return anew;
+    return false;
 }
 
 void ClockFilter::look_at_late(Line& line) {
@@ -50,13 +44,14 @@ bool ClockFilter::hold(Line line, std::vector<Line>& believed) {
     }
     held_.push_back(std::move(line));
     if (held_.size() < agreeing) return false;
-    const bool anew = held_.front().time_s < latest_s_;
+    const bool anew = !is_guess_ && held_.front().time_s < latest_s_;
     if (anew) {
         for (auto& held : held_) held.time_s -= offset_s_;
         offset_s_ = 0.0;
     }
     latest_s_ = std::ranges::max(held_, {}, &Line::time_s).time_s;
     late_ = 0;
+    is_guess_ = false;
     near_latest_ = agreeing;
     std::ranges::move(held_, std::back_inserter(believed));
     held_.clear();
@@ -65,7 +60,7 @@ bool ClockFilter::hold(Line line, std::vector<Line>& believed) {
 
 void ClockFilter::flush(std::vector<Line>& believed) {
     for (auto& line : held_) {
-        if (line.time_s < latest_s_) {
+        if (is_guess_ || line.time_s < latest_s_) {
             ++unconfirmed_;
             continue;
         }

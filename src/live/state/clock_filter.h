@@ -24,9 +24,15 @@ class ClockFilter {
         std::string text;     ///< behind the time
     };
 
+    ClockFilter() = default;
+    /// Of a sender whose clock is thought to be near that time: further lines show whether it is.
+    explicit ClockFilter(double about_s) : started_(true), is_guess_(true), latest_s_(about_s) {}
+
     /// Takes a line, and appends those that are believed now. True where the first of them belongs to a clock that began
-    /// anew; `restarted`: its source did, so that it needs no others to agree.
-    bool push(double time_s, std::string text, bool restarted, std::vector<Line>& believed);
+    /// anew.
+    bool push(double time_s, std::string text, std::vector<Line>& believed);
+    /// Whether a line of that time would be late.
+    bool is_late(double time_s) const { return started_ && time_s + offset_s_ < latest_s_ - late_s; }
     /// Nothing more will come: what was held ahead of the latest is believed.
     void flush(std::vector<Line>& believed);
 
@@ -40,6 +46,7 @@ class ClockFilter {
     void look_at_late(Line& line);
 
     bool started_ = false;
+    bool is_guess_ = false;  ///< `latest_s_`, of no line
     double latest_s_ = 0.0;
     double offset_s_ = 0.0;
     std::size_t late_ = 0;

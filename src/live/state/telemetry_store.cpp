@@ -14,19 +14,23 @@
 namespace flightwatt::live {
 namespace {
 
-/// What a flight series is made of, without what no prediction looks at (and positions cost most to make).
-std::vector<telemetry::MessageRequest> predicting_messages(bool with_bank) {
-    static const std::set<std::string> unused_messages{"NAVIGATION", "GPS_LLA", "PPRZ_MODE", "TAKEOFF"};
-    static const std::set<std::string> unused_fields{"utm_east", "utm_north", "utm_zone", "course",
-                                                     "lat",      "lon",       "temp",     "psi"};
+/// What a flight series is made of, without what no prediction looks at.
+std::vector<telemetry::MessageRequest> predicting_messages(const WantedTelemetry& wanted) {
+    static const std::set<std::string> of_places{"NAVIGATION", "GPS_LLA"};
+    static const std::set<std::string> place_fields{"utm_east", "utm_north", "utm_zone", "lat", "lon"};
     auto messages = flight::flight_messages();
     std::erase_if(messages, [&](const auto& request) {
-        return unused_messages.contains(request.message) || (!with_bank && request.message == "ATTITUDE");
+        const auto& name = request.message;
+        return name == "PPRZ_MODE" || name == "TAKEOFF" || (!wanted.bank && name == "ATTITUDE") ||
+               (!wanted.places && of_places.contains(name));
     });
     for (auto& request : messages) {
-        std::erase_if(request.fields, [](const auto& field) { return unused_fields.contains(field); });
-        if (request.message != "ROTORCRAFT_FP") continue;
-        std::erase_if(request.fields, [](const auto& field) { return field == "east" || field == "north"; });
+        std::erase_if(request.fields, [&](const auto& field) {
+            const bool is_place = place_fields.contains(field) ||
+                                  (request.message == "ROTORCRAFT_FP" && (field == "east" || field == "north"));
+            return field == "cur_block" || field == "course" || field == "temp" || field == "psi" ||
+                   (!wanted.places && is_place);
+        });
     }
     return messages;
 }
@@ -63,8 +67,8 @@ void filter_rows(telemetry::MessageTable& table, const std::function<bool(std::s
 }  // namespace
 
 TelemetryStore::TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
-                               bool with_bank)
-    : wanted_(predicting_messages(with_bank)) {
+                               WantedTelemetry wanted)
+    : wanted_(predicting_messages(wanted)) {
     log_.data_file = flight;
     log_.flight = std::move(flight);
     log_.configuration = std::move(configuration);
@@ -151,6 +155,11 @@ void TelemetryStore::drop_before(double time_s) {
             filter_rows(table, [&](std::size_t row) { return table.time_s[row] >= time_s; });
     for (auto& sender : log_.senders)
         std::erase_if(sender.tables, [](const telemetry::MessageTable& table) { return table.empty(); });
+}
+
+void TelemetryStore::drop(const std::string& sender) {
+    std::erase_if(log_.senders, [&](const telemetry::SenderLog& log) { return log.id == sender; });
+    std::erase_if(thinning_, [&](const auto& of) { return of.first.first == sender; });
 }
 
 void TelemetryStore::keep_only(const std::string& sender) {

@@ -13,6 +13,12 @@
 
 namespace flightwatt::live {
 
+/// What is not always wanted of telemetry.
+struct WantedTelemetry {
+    bool bank = true;    ///< the bank angle, which comes most often
+    bool places = true;  ///< positions, which cost most to make
+};
+
 /// What was received of the messages that tell of energy, as columns, in bounded memory: what it keeps is dropped from
 /// its beginning, or thinned evenly. Reads lines as the log reader does.
 class TelemetryStore {
@@ -20,14 +26,16 @@ class TelemetryStore {
     static constexpr std::size_t most_senders = 8;   ///< aircraft of which rows are kept
     static constexpr std::size_t most_devices = 64;  ///< of one message
 
-    /// `with_bank`: whether the bank angle is wanted, which comes most often.
-    TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration, bool with_bank = true);
+    TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
+                   WantedTelemetry wanted = {});
 
     /// Whole .data lines, each with its break.
     void add(std::string_view lines);
     /// What was received; how lines are read stays.
     void clear();
     void drop_before(double time_s);
+    /// What was received of one sender.
+    void drop(const std::string& sender);
     void keep_only(const std::string& sender);
     /// Keeps every second row of the message that has most, and of what comes of it: of each device.
     void thin();

@@ -1,7 +1,6 @@
 #include "mechanical/prediction/flight_progress.h"
 
 #include "base/error.h"
-#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 
 #include <algorithm>
@@ -26,9 +25,9 @@ flight::FlightSeries tracks_for_segmentation(const flight::FlightSeries& series)
 }
 
 /// The sortie as it looks from what is known; std::nullopt before its lift-off.
-std::optional<flight::Sortie> sortie_of(const flight::FlightSeries& known, std::size_t index,
+std::optional<flight::Sortie> sortie_of(const flight::ChosenTracks& known, std::size_t index,
                                         const flight::SegmentationOptions& options) {
-    if (power_track(known).time_s.size() < 2 || chosen_track(known, "altitude_m").empty()) return std::nullopt;
+    if (known["power_w"].time_s.size() < 2 || known["altitude_m"].empty()) return std::nullopt;
     auto phases = segment(known, options);
     if (index >= phases.sorties.size()) return std::nullopt;
     return std::move(phases.sorties[index]);
@@ -62,7 +61,8 @@ double time_since_lift_off(const flight::FlightSeries& series, double since_s, s
     double time_s = first_sample_s(slim) + since_s;
     const double last_s = last_time_s(slim) + longest_log_gap_s;
     while (time_s <= last_s) {
-        const auto found = sortie_of(cut_series(slim, time_s), sortie, options);
+        const auto cut = cut_series(slim, time_s);
+        const auto found = sortie_of(flight::ChosenTracks(cut), sortie, options);
         const double due_s =
             found && !found->phases.empty() ? found->phases.front().start.time_s + since_s : time_s + look_again_s;
         if (due_s <= time_s + same_s) return time_s;
@@ -75,17 +75,24 @@ double time_since_lift_off(const flight::FlightSeries& series, double since_s, s
 FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie_index,
                            const flight::SegmentationOptions& options) {
     const auto known = cut_series(series, until_s);
+    const flight::ChosenTracks tracks(known);
+    const auto sortie = sortie_of(tracks, sortie_index, options);
+    return progress_in(tracks, sortie ? &*sortie : nullptr, until_s, options);
+}
+
+FlightProgress progress_in(const flight::ChosenTracks& known, const flight::Sortie* sortie, double until_s,
+                           const flight::SegmentationOptions& options) {
+    const auto& series = known.series();
     FlightProgress flown;
     flown.until_s = until_s;
-    if (const double end_s = last_time_s(known); std::isfinite(end_s) && until_s > end_s + longest_log_gap_s) {
+    if (const double end_s = last_time_s(series); std::isfinite(end_s) && until_s > end_s + longest_log_gap_s) {
         throw NoAnswerError(
             fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", series.flight, end_s, until_s));
     }
     const auto refuse = [&](std::string_view what) {
         throw NoAnswerError(fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, what));
     };
-    const auto sortie = sortie_of(known, sortie_index, options);
-    if (!sortie || sortie->phases.empty()) refuse("has not taken off");
+    if (sortie == nullptr || sortie->phases.empty()) refuse("has not taken off");
     const auto& first = sortie->phases.front();
     if (first.phase != flight::Phase::takeoff || !first.complete) {
         refuse("is in the air, but its take-off is not in the log");
@@ -98,13 +105,13 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
     if (last.phase == flight::Phase::takeoff || flown.cruise_s() < options.hold_s) {
         refuse(fmt::format("has not held its height for {:.0f} s: expected a moment in cruise", options.hold_s));
     }
-    flown.cruise_energy_wh = integrated_energy_wh(known, flown.cruise_start_s, until_s);
-    flown.energy_wh = integrated_energy_wh(known, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
+    const auto& power = known["power_w"];
+    flown.cruise_energy_wh = integrated_energy_wh(power, flown.cruise_start_s, until_s);
+    flown.energy_wh = integrated_energy_wh(power, flown.lift_off_s, flown.cruise_start_s) + flown.cruise_energy_wh;
     flown.airspeed_cubed_m3_per_s3 =
-        mean_cubed_airspeed_m3_per_s3(chosen_track(known, "airspeed_m_per_s"), flown.cruise_start_s, until_s);
-    const flight::ChosenTracks tracks(known);
-    flown.covariates = covariates_of(tracks, *sortie);
-    flown.motion = motion_of(tracks, {{flight::Phase::takeoff, flown.lift_off_s, flown.cruise_start_s},
+        mean_cubed_airspeed_m3_per_s3(known["airspeed_m_per_s"], flown.cruise_start_s, until_s);
+    flown.covariates = covariates_of(known, *sortie);
+    flown.motion = motion_of(known, {{flight::Phase::takeoff, flown.lift_off_s, flown.cruise_start_s},
                                       {flight::Phase::cruise, flown.cruise_start_s, until_s}});
     return flown;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/chosen_track.h"
 #include "flight/flight_series.h"
 #include "flight/segmentation.h"
 #include "mechanical/covariates.h"
@@ -37,6 +38,10 @@ double time_since_lift_off(const flight::FlightSeries& series, double since_s, s
 /// aircraft has not taken off, has not held its height for hold_s, or has landed, or where nothing was logged
 /// for more than 60 s before; what segment throws.
 FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie = 0,
+                           const flight::SegmentationOptions& options = {});
+
+/// The same of what was known at that time, and was segmented: `known` ends there. nullptr: no sortie.
+FlightProgress progress_in(const flight::ChosenTracks& known, const flight::Sortie* sortie, double until_s,
                            const flight::SegmentationOptions& options = {});
 
 }  // namespace flightwatt::mechanical

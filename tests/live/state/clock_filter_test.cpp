@@ -16,7 +16,7 @@ std::vector<double> times_of(const std::vector<ClockFilter::Line>& lines) {
 
 std::vector<double> pushed(ClockFilter& filter, const std::vector<double>& times) {
     std::vector<ClockFilter::Line> believed;
-    for (const double time_s : times) filter.push(time_s, "20 PONG", false, believed);
+    for (const double time_s : times) filter.push(time_s, "20 PONG", believed);
     return times_of(believed);
 }
 
@@ -64,19 +64,22 @@ TEST(ClockFilter, ALogThatBeginsAnewIsARestart) {
     ClockFilter filter;
     pushed(filter, {1000.0, 1001.0});
     std::vector<ClockFilter::Line> believed;
-    for (int i = 0; i < 4; ++i) EXPECT_FALSE(filter.push(1.0 + i, "20 PONG", false, believed));
-    EXPECT_TRUE(filter.push(5.0, "20 PONG", false, believed));
+    for (int i = 0; i < 4; ++i) EXPECT_FALSE(filter.push(1.0 + i, "20 PONG", believed));
+    EXPECT_TRUE(filter.push(5.0, "20 PONG", believed));
     EXPECT_EQ(times_of(believed), (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0}));
     EXPECT_EQ(filter.latest_s(), 5.0);
 }
 
-TEST(ClockFilter, ASourceThatBeganAnewNeedsNoOthersToAgree) {
-    ClockFilter filter;
-    pushed(filter, {30.0});
+TEST(ClockFilter, AGuessGivesWayToWhatTheFirstLinesSay) {
+    ClockFilter near(100.0);
+    EXPECT_EQ(pushed(near, {70.0, 70.1}), (std::vector<double>{70.0, 70.1}));
+    EXPECT_EQ(near.latest_s(), 70.1);
+    ClockFilter far(100.0);
     std::vector<ClockFilter::Line> believed;
-    EXPECT_TRUE(filter.push(1.0, "20 PONG", true, believed));
-    EXPECT_EQ(times_of(believed), (std::vector<double>{1.0}));
-    EXPECT_FALSE(filter.push(40.0, "20 PONG", true, believed)) << "a clock that went on";
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(far.push(1.0 + i, "20 PONG", believed)) << "nothing was known of it";
+    EXPECT_EQ(times_of(believed), (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0}));
+    EXPECT_EQ(far.latest_s(), 5.0);
+    EXPECT_EQ(far.unconfirmed(), 0U);
 }
 
 TEST(ClockFilter, AClockThatSteppedBackGoesOnFromWhereItWas) {

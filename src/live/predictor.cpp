@@ -1,0 +1,326 @@
+#include "live/predictor.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "live/live_flight.h"
+#include "live/prediction_basis.h"
+#include "live/state/waiting_input.h"
+#include "mission/mission_file.h"
+#include "telemetry/link_decoder.h"
+#include "telemetry/log_configuration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace flightwatt::live {
+namespace {
+
+constexpr std::string_view no_memory = "there is not enough memory";
+
+/// What samples are written as.
+telemetry::LogConfiguration sample_configuration() {
+    const auto definition = [](const char* name, std::vector<telemetry::FieldDefinition> fields) {
+        return std::pair{std::string(name), telemetry::MessageDefinition{name, std::move(fields), "samples"}};
+    };
+    const auto field = [](const char* name, const char* unit) {
+        return telemetry::FieldDefinition{name, "double", unit, "", std::nullopt};
+    };
+    telemetry::LogConfiguration configuration;
+    configuration.file = "samples";
+    configuration.messages = {
+        definition("ENERGY", {field("throttle", "%"), field("voltage", "V"), field("current", "A"), field("power", "W"),
+                              field("charge", "Ah")}),
+        definition("ESTIMATOR", {field("z", "m"), field("z_dot", "m/s")}),
+        definition("AIRSPEED", {field("airspeed", "m/s")}),
+        definition("ATTITUDE", {field("phi", "deg")}),
+    };
+    return configuration;
+}
+
+struct Start {
+    std::optional<PredictionBasis> basis;
+    std::unique_ptr<LiveSchedule> schedule;
+    compute::ComputeModel compute;
+};
+
+Start start_of_mission(const PredictorSetup& setup) {
+    if (!setup.model_file.empty()) throw UsageError("mission_file and model_file exclude each other");
+    mission::MissionReading reading;
+    reading.may_lack_schedule = true;
+    const auto mission = mission::read_mission(setup.mission_file, reading);
+    const auto& of = setup_of(mission);
+    if (!of.mechanical)
+        throw InputError({setup.mission_file}, "the mission has no mechanical model", "name one: mechanical = FILE");
+    Start start{mission_basis(of, setup.mission_file), nullptr, of.compute};
+    if (!start.compute.components.empty() || setup.decides)
+        start.schedule = std::make_unique<LiveSchedule>(mission, setup.decides);
+    return start;
+}
+
+/// What --mission or --model, --battery, --remaining and --initial-soc of the programs are.
+Start start_of(const PredictorSetup& setup) {
+    Start start;
+    if (!setup.mission_file.empty()) {
+        start = start_of_mission(setup);
+    } else {
+        if (setup.model_file.empty()) throw UsageError("no model given: expected mission_file, or model_file");
+        if (!setup.remaining_s) throw UsageError("model_file goes with remaining_s");
+        if (setup.decides) throw UsageError("decides goes with mission_file");
+        start.basis =
+            model_basis(mechanical::read_mechanical_model(setup.model_file), setup.model_file, *setup.remaining_s);
+    }
+    auto& basis = *start.basis;
+    basis.remaining_s = setup.remaining_s;
+    if (basis.remaining_s && !(*basis.remaining_s >= 0.0 && std::isfinite(*basis.remaining_s)))
+        throw UsageError(fmt::format("remaining_s is {}: expected 0 or more", *basis.remaining_s));
+    if (!setup.battery_file.empty()) {
+        basis.battery = battery::read_battery(setup.battery_file);
+        basis.battery_file = setup.battery_file;
+    }
+    if (!setup.initial_soc_percent) return start;
+    if (!(*setup.initial_soc_percent >= 0.0 && *setup.initial_soc_percent <= 100.0))
+        throw UsageError(fmt::format("initial_soc_percent is {}: expected 0 to 100", *setup.initial_soc_percent));
+    basis.initial_soc_percent = setup.initial_soc_percent;
+    return start;
+}
+
+LiveOptions options_of(const PredictorSetup& setup) {
+    LiveOptions options;
+    if (!setup.aircraft_id.empty()) options.aircraft_id = setup.aircraft_id;
+    options.most_rows = setup.most_rows;
+    if (setup.input == PredictorInput::samples) {
+        options.configuration = sample_configuration();
+    } else if (!setup.definitions_file.empty()) {
+        options.configuration = telemetry::parse_log_configuration(
+            read_file(setup.definitions_file, telemetry::most_log_configuration_bytes), setup.definitions_file);
+    }
+    return options;
+}
+
+FlightPhase phase_of(const std::optional<flight::Phase>& phase) {
+    if (!phase) return FlightPhase::ground;
+    constexpr std::array phases{FlightPhase::takeoff, FlightPhase::cruise, FlightPhase::landing};
+    return phases[static_cast<std::size_t>(*phase)];
+}
+
+LandingOutlook landing_of(const LiveState& state) {
+    const auto& of = *state.prediction;
+    LandingOutlook landing{of.remaining_s,
+                           of.landing_s,
+                           of.rest.energy_wh,
+                           of.interval.low_wh,
+                           of.interval.high_wh,
+                           of.flown.energy_wh + of.rest.energy_wh,
+                           state.expected_power_w.value_or(0.0)};
+    if (of.battery) {
+        landing.soc_percent = of.battery->expected.soc_percent;
+        landing.worst_soc_percent = of.battery->worst.soc_percent;
+        landing.voltage_v = of.battery->expected.voltage_v;
+        landing.fails_in_s = of.battery->expected.fails_after_s;
+    }
+    if (state.battery) {
+        landing.reserve_in_s = state.battery->reserve_in_s;
+        landing.chance_below_reserve = state.battery->chance_below;
+    }
+    if (state.turn_home) landing.turn_home_in_s = state.turn_home->latest_in_s;
+    return landing;
+}
+
+DecisionOutlook decision_of(const LiveDecision& of) {
+    DecisionOutlook decision{of.utility_per_s, {}, of.rest_utility, of.keeps_reserve, of.changes};
+    if (of.next) decision.next_in_s = of.next_in_s;
+    return decision;
+}
+
+}  // namespace
+
+class Predictor::State {
+  public:
+    State(const PredictorSetup& setup, Start start)
+        : input_(setup.input),
+          waiting_(setup.most_waiting_bytes),
+          flight_(options_of(setup), std::move(start.basis), std::move(start.schedule)),
+          compute_(std::move(start.compute)) {
+        if (setup.input == PredictorInput::messages && !setup.definitions_file.empty())
+            decoder_.emplace(telemetry::read_message_dictionary(setup.definitions_file));
+        for (const auto& component : compute_.components)
+            quality_.emplace_back(component.profile.parameters.size(), 0.0);
+        for (std::size_t c = 0; c < quality_.size(); ++c)
+            runs.push_back({compute_.components[c].name, false, quality_[c]});
+    }
+
+    bool push(WaitingInput::Kind kind, double time_s, std::string_view bytes) {
+        const bool is_wanted = input_ == PredictorInput::messages && std::isfinite(time_s) &&
+                               (kind != WaitingInput::Kind::frames || decoder_);
+        if (is_wanted && waiting_.push(kind, time_s, bytes)) return true;
+        ++outlook.dropped;
+        return false;
+    }
+
+    bool push(const Sample& sample) {
+        if (input_ == PredictorInput::samples && std::isfinite(sample.time_s) && waiting_.push(sample)) return true;
+        ++outlook.dropped;
+        return false;
+    }
+
+    void look(double silent_s);
+    void end();
+
+    Outlook outlook;
+    std::vector<ComponentRun> runs;
+    std::vector<AlarmText> alarms;
+
+  private:
+    void take_in();
+    void receive(const Sample& sample);
+    void receive(const telemetry::LinkMessage& message, double time_s);
+    void set_runs(const compute::Configuration& configuration);
+
+    PredictorInput input_;
+    WaitingInput waiting_;
+    LiveFlight flight_;
+    compute::ComputeModel compute_;
+    std::optional<telemetry::LinkDecoder> decoder_;
+    std::vector<std::vector<double>> quality_;
+    LiveState state_;
+    std::size_t not_lines_ = 0;
+};
+
+void Predictor::State::receive(const Sample& sample) {
+    const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string("-"); };
+    const auto any = [](auto... values) { return (std::isfinite(values) || ...); };
+    const auto send = [&](std::string text) { flight_.receive({sample.time_s, std::move(text)}, sample.time_s); };
+    if (any(sample.voltage_v, sample.current_a, sample.power_w, sample.charge_ah, sample.throttle_percent)) {
+        send(fmt::format("1 ENERGY {} {} {} {} {}", number(sample.throttle_percent), number(sample.voltage_v),
+                         number(sample.current_a), number(sample.power_w), number(sample.charge_ah)));
+    }
+    if (any(sample.altitude_m, sample.climb_m_per_s))
+        send(fmt::format("1 ESTIMATOR {} {}", number(sample.altitude_m), number(sample.climb_m_per_s)));
+    if (any(sample.airspeed_m_per_s)) send(fmt::format("1 AIRSPEED {}", sample.airspeed_m_per_s));
+    if (any(sample.bank_deg)) send(fmt::format("1 ATTITUDE {}", sample.bank_deg));
+}
+
+void Predictor::State::receive(const telemetry::LinkMessage& message, double time_s) {
+    if (message.class_id != telemetry::MessageDictionary::telemetry_class) return;
+    flight_.receive({message.time_s, std::string(message.text)}, time_s);
+}
+
+void Predictor::State::take_in() {
+    using Kind = WaitingInput::Kind;
+    waiting_.take([&](Kind kind, double time_s, std::string_view bytes) {
+        if (kind == Kind::sample) return receive(WaitingInput::sample_of(bytes));
+        if (kind == Kind::message) return flight_.receive({time_s, std::string(bytes)}, time_s);
+        if (kind == Kind::frames) {
+            return decoder_->push(bytes, [&](const telemetry::LinkMessage& message) { receive(message, time_s); });
+        }
+        const auto message = message_of_line(bytes);
+        if (message) return flight_.receive(*message, 0.0);
+        ++not_lines_;
+    });
+}
+
+void Predictor::State::set_runs(const compute::Configuration& configuration) {
+    for (std::size_t c = 0; c < runs.size(); ++c) {
+        const auto running = std::ranges::find(configuration, c, &compute::RunningComponent::component);
+        runs[c].runs = running != configuration.end();
+        if (runs[c].runs)
+            std::ranges::copy(running->qos, quality_[c].begin());
+        else
+            std::ranges::fill(quality_[c], 0.0);
+    }
+}
+
+void Predictor::State::look(double silent_s) {
+    take_in();
+    state_ = flight_.look(silent_s);
+    Outlook now{state_.time_s,    phase_of(state_.phase), state_.landed,    state_.began_in_air, state_.flight_s,
+                state_.energy_wh, state_.power_w,         state_.voltage_v, state_.altitude_m};
+    if (state_.battery && state_.battery->state) now.soc_percent = state_.battery->state->soc_percent;
+    if (state_.prediction) now.landing = landing_of(state_);
+    now.waits_for = state_.waits_for;
+    if (state_.decision) {
+        now.decision = decision_of(*state_.decision);
+        set_runs(state_.decision->run);
+    }
+    now.rows = state_.rows;
+    now.dropped = outlook.dropped;
+    now.unusable = not_lines_;
+    for (const auto& [reason, count] : state_.unusable) now.unusable += count;
+    if (decoder_) now.unusable += decoder_->counts().unknown + decoder_->counts().other_lengths;
+    alarms.clear();
+    for (const auto& alarm : state_.alarms) alarms.push_back({alarm.kind, alarm.text});
+    outlook = now;
+}
+
+void Predictor::State::end() {
+    take_in();
+    if (decoder_) {
+        const double time_s = flight_.clock_s().value_or(0.0);
+        decoder_->flush([&](const telemetry::LinkMessage& message) { receive(message, time_s); });
+    }
+    flight_.end();
+    look(0.0);
+}
+
+Predictor::Predictor(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Predictor::~Predictor() = default;
+
+bool Predictor::push_line(std::string_view line) noexcept { return state_->push(WaitingInput::Kind::line, 0.0, line); }
+
+bool Predictor::push_message(double time_s, std::string_view message) noexcept {
+    return state_->push(WaitingInput::Kind::message, time_s, message);
+}
+
+bool Predictor::push_frames(double time_s, std::string_view bytes) noexcept {
+    return state_->push(WaitingInput::Kind::frames, time_s, bytes);
+}
+
+bool Predictor::push_sample(const Sample& sample) noexcept { return state_->push(sample); }
+
+const Outlook& Predictor::look(double silent_s) noexcept {
+    try {
+        state_->look(silent_s);
+    } catch (const std::exception&) {  // of telemetry nothing is thrown: LiveFlight
+        state_->outlook.failure = no_memory;
+    }
+    return state_->outlook;
+}
+
+const Outlook& Predictor::end() noexcept {
+    try {
+        state_->end();
+    } catch (const std::exception&) {
+        state_->outlook.failure = no_memory;
+    }
+    return state_->outlook;
+}
+
+const Outlook& Predictor::outlook() const noexcept { return state_->outlook; }
+std::span<const ComponentRun> Predictor::runs() const noexcept { return state_->runs; }
+std::span<const AlarmText> Predictor::alarms() const noexcept { return state_->alarms; }
+
+struct PredictorMaker {
+    static std::unique_ptr<Predictor> make(const PredictorSetup& setup) {
+        return std::unique_ptr<Predictor>(
+            new Predictor(std::make_unique<Predictor::State>(setup, start_of(setup))));  // its constructor is private
+    }
+};
+
+PredictorOrError make_predictor(const PredictorSetup& setup) noexcept {
+    try {
+        return {PredictorMaker::make(setup), ""};
+    } catch (const InputError& error) {
+        const auto hint = error.hint().empty() ? std::string() : "; " + error.hint();
+        return {nullptr, fmt::format("{}: {}{}", to_string(error.where()), error.what(), hint)};
+    } catch (const std::exception& error) {
+        return {nullptr, error.what()};
+    }
+}
+
+}  // namespace flightwatt::live

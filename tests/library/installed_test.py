@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Installs the library, moves the tree, builds examples/live_predictor against it, and sets what it says of logs beside
+flightwatt watch --json and flightwatt predict.
+
+usage: installed_test.py SOURCE BUILD FOLDER [LOG.data MODEL.toml BATTERY.toml REMAINING_S]...
+"""
+
+import json
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+LINE = re.compile(
+    r"([0-9.]+) s  (\S+) Wh so far, (\S+) to (\S+) more"
+    r"(?:, lands with (\S+) % at (\S+) V)?(?:, below the reserve: (\S+))?$"
+)
+
+
+def run(command, **options):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}: {done.returncode}\n{(done.stdout + done.stderr)[-2000:]}")
+    return done.stdout
+
+
+def installed(build, folder):
+    """A prefix that was moved after the installation."""
+    shutil.rmtree(folder, ignore_errors=True)
+    run(["cmake", "--install", build, "--component", "library", "--prefix", folder / "first"])
+    (folder / "first").rename(folder / "moved")
+    for path in (folder / "moved").rglob("*.cmake"):
+        for mine in (str(build), str(folder / "first")):
+            if mine in path.read_text():
+                sys.exit(f"{path} names {mine}")
+    return folder / "moved"
+
+
+def built(source, prefix, folder):
+    example = folder / "example"
+    compiler = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    run(["cmake", "-G", "Ninja", "-S", source / "examples/live_predictor", "-B", example, "-DCMAKE_BUILD_TYPE=Release",
+         f"-DCMAKE_PREFIX_PATH={prefix}", *compiler])
+    run(["cmake", "--build", example])
+    return example / "live_predictor"
+
+
+def same(a, b):
+    return a is None and b is None or (
+        a is not None and b is not None and math.isclose(float(a), float(b), rel_tol=1e-12, abs_tol=1e-12))
+
+
+def numbers_of(state):
+    """What the example prints of a state of the watch."""
+    prediction = state["prediction"]
+    battery = prediction.get("battery")
+    landing = battery["at_landing"] if battery else {}
+    low_wh, high_wh = prediction["interval_95_wh"]
+    chance = (state["battery"] or {}).get("chance_below_reserve")
+    return [state["energy_wh"], low_wh, high_wh, landing.get("soc_percent"), landing.get("voltage_v"), chance]
+
+
+def compare(example, build, log, model, battery, remaining_s):
+    """Every line of the example beside the watch's, the last one beside predict's."""
+    definitions = Path(log).with_suffix(".log")
+    with open(log, "rb") as text:
+        said = run([example, definitions, model, remaining_s, battery], stdin=text).splitlines()
+    with open(log, "rb") as text:
+        watched = run([build / "bin/flightwatt-watch", "-", "--log", definitions, "--model", model, "--remaining",
+                       remaining_s, "--battery", battery, "--json"], stdin=text).splitlines()
+    states = [json.loads(line) for line in watched]
+    states = [state for state in states if state.get("prediction")]
+    lines = [LINE.match(line).groups() for line in said]
+    if len(lines) != len(states) or len(lines) < 100:
+        sys.exit(f"{log}: {len(lines)} predictions, {len(states)} of the watch")
+    for line, state in zip(lines, states):
+        expected = numbers_of(state)
+        if not all(map(same, line[1:], expected)):
+            sys.exit(f"{log}: {line} is not the watch's {expected} at {state['time_s']} s")
+    until_s = states[-1]["prediction"]["until_s"]
+    predicted = json.loads(run([build / "bin/flightwatt-predict", log, "--model", model, "--remaining", remaining_s,
+                                "--battery", battery, "--until-log-time", until_s, "--json"]))
+    if not all(map(same, lines[-1][2:4], predicted["interval_95_wh"])):
+        sys.exit(f"{log}: {lines[-1]} is not what predict says at {until_s} s: {predicted['interval_95_wh']}")
+    print(f"{Path(log).name}: {len(lines)} predictions as watch and predict say them")
+
+
+def main():
+    source, build, folder = (Path(word) for word in sys.argv[1:4])
+    os.environ.setdefault("LC_ALL", "C.UTF-8")
+    example = built(source, installed(build, folder), folder)
+    for i in range(4, len(sys.argv), 4):
+        compare(example, build, *sys.argv[i:i + 4])
+
+
+if __name__ == "__main__":
+    main()

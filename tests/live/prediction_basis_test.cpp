@@ -1,0 +1,53 @@
+#include "live/prediction_basis.h"
+
+#include "base/error.h"
+#include "helpers/test_paths.h"
+#include "mission/mission_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::live {
+namespace {
+
+using testing::HasSubstr;
+
+mission::MissionSetup setup_in(const std::string& file) {
+    mission::MissionReading reading;
+    reading.may_lack_schedule = true;
+    return setup_of(mission::read_mission(test::source_dir() / file, reading));
+}
+
+TEST(PredictionBasis, HoldsWhatAMissionSays) {
+    const auto setup = setup_in("missions/synthetic/survey-path.toml");
+    const auto basis = mission_basis(setup, "survey-path.toml");
+    EXPECT_EQ(basis.cannot_predict, "");
+    ASSERT_NE(basis.path, nullptr);
+    EXPECT_FALSE(basis.cruise_s);
+    EXPECT_EQ(basis.landing_s, setup.duration_s[flight::Phase::landing]);
+    EXPECT_EQ(basis.limits.reserve_soc_percent, setup.reserve_soc_percent);
+    ASSERT_TRUE(basis.battery);
+    EXPECT_EQ(basis.battery->capacity_ah, setup.battery.capacity_ah);
+    EXPECT_FALSE(path_basis(setup, "survey-path.toml").battery);
+}
+
+TEST(PredictionBasis, SaysWhyAPublishedModelPredictsNothing) {
+    const auto setup = setup_in("missions/paper/phased.toml");
+    const auto basis = mission_basis(setup, "phased.toml");
+    EXPECT_THAT(basis.cannot_predict, HasSubstr("has no spread"));
+    EXPECT_EQ(basis.cruise_s, setup.duration_s[flight::Phase::cruise]);
+    EXPECT_THROW(path_basis(setup, "phased.toml"), InputError);
+}
+
+TEST(PredictionBasis, TakesTheModelsLanding) {
+    const std::string file = "fits/mechanical/synthetic-wing.toml";
+    auto model = mechanical::read_mechanical_model(test::source_dir() / file);
+    const auto basis = model_basis(model, file, 300.0);
+    EXPECT_EQ(basis.remaining_s, 300.0);
+    EXPECT_EQ(basis.landing_s, model.phases[flight::Phase::landing].duration_s);
+    model.phases[flight::Phase::landing].level_spread.reset();
+    EXPECT_THROW(model_basis(model, file, 300.0), InputError);
+}
+
+}  // namespace
+}  // namespace flightwatt::live
