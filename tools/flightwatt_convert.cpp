@@ -147,10 +147,10 @@ bool holds(const std::filesystem::path& file, const std::string& text) {
     return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == text;
 }
 
-/// NAME.log for NAME.data, where the binary log has one beside it that is not there already.
-std::optional<std::filesystem::path> log_to_write(const cli::StageCall& call, const std::filesystem::path& log) {
-    const auto own = telemetry::find_log_file(log);
-    if (!call.output || !own) return std::nullopt;
+/// NAME.log for NAME.data, where the binary log has a sound one beside it that is not there already.
+std::optional<std::filesystem::path> log_to_write(const cli::StageCall& call, const flight::FlightFile& file) {
+    const auto own = telemetry::find_log_file(file.path());
+    if (!call.output || !own || *own != file.log_file()) return std::nullopt;
     const std::filesystem::path output = *call.output;
     auto beside = output.parent_path() / (telemetry::flight_name(output) + ".log");
     std::error_code error;
@@ -176,7 +176,7 @@ int convert(const cli::StageCall& call) {
         throw InputError({path.string()}, "is no binary log: no frames with right checksums follow each other in it",
                          "expected the .LOG or .tlm of an SD card, or a capture of a link");
     }
-    const auto log_file = log_to_write(call, path);
+    const auto log_file = log_to_write(call, file);
     if (log_file) {
         declare_output(*log_file);
         if (std::filesystem::exists(*log_file) && !holds(*log_file, file.log_text().value())) {
@@ -190,7 +190,8 @@ int convert(const cli::StageCall& call) {
     file.require_unchanged();
     if (log_file) write_file_atomically(*log_file, file.log_text().value());
     cli::write_result(call, converted.text);
-    const auto warnings = warnings_of(converted, file.log_file().string());
+    auto warnings = warnings_of(converted, file.log_file().string());
+    if (!file.log_fault().empty()) warnings.push_back(file.log_fault());
     for (const auto& warning : warnings) cli::warn(call, fmt::format("{}: {}", path.string(), warning));
     if (call.json) {
         cli::print(cli::json_text(summary(file, converted, warnings)));

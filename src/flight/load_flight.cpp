@@ -138,6 +138,18 @@ std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
     return candidates;
 }
 
+/// Why a .log cannot be used; empty if it can.
+std::string fault_of_definitions(const std::filesystem::path& log, bool for_frames) {
+    try {
+        const auto text = read_file(log, telemetry::most_log_configuration_bytes);
+        telemetry::parse_log_configuration(text, log);
+        if (for_frames) telemetry::parse_message_dictionary(text, log);
+    } catch (const InputError& error) {
+        return fmt::format("{}: {}", log.string(), error.what());
+    }
+    return "";
+}
+
 std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
     std::vector<FlightSeries> candidates;
     std::vector<std::string> ids;
@@ -175,11 +187,14 @@ FlightFile::FlightFile(const std::filesystem::path& path, std::size_t most_bytes
     }
     data_.emplace(path, most_bytes);
     framing_ = telemetry::binary_framing(data_->text());
-    const auto beside = telemetry::find_log_file(path);
-    if (const auto& log = beside ? beside : messages) {
+    auto log = telemetry::find_log_file(path);
+    if (log && messages) log_fault_ = fault_of_definitions(*log, framing_.has_value());
+    if (!log || !log_fault_.empty()) log = messages;
+    if (log) {
         log_file_ = *log;
         log_text_ = read_file(*log, telemetry::most_log_configuration_bytes);
     }
+    if (!log_fault_.empty()) log_fault_ += fmt::format(": the definitions are those of {}", log_file_.string());
 }
 
 telemetry::MessageDictionary FlightFile::definitions() const {
@@ -203,6 +218,8 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
         throw;
     }
     file.require_unchanged();
+    for (auto& series : candidates)
+        if (!file.log_fault().empty()) series.notes.push_back(file.log_fault());
     return candidates;
 }
 

@@ -41,8 +41,8 @@ struct LoadedFlight {
 };
 
 /// A log, of text or binary, with its .log, or a series CSV, in memory: mapped once for all who read it. A log that has
-/// no .log has the definitions of `messages`, a messages.xml or another .log, where that is given. Throws InputError for
-/// a file that cannot be read.
+/// no .log, or a damaged one, has the definitions of `messages`, a messages.xml or another .log, where that is given.
+/// Throws InputError for a file that cannot be read.
 class FlightFile {
   public:
     explicit FlightFile(const std::filesystem::path& path, std::size_t most_bytes = telemetry::usual_most_log_bytes,
@@ -58,6 +58,8 @@ class FlightFile {
     /// The .log beside a log, or what stands in for it; std::nullopt without one.
     const std::optional<std::string>& log_text() const { return log_text_; }
     std::filesystem::path log_file() const { return log_file_; }
+    /// What is wrong with the .log that `messages` stand in for; empty if nothing is.
+    const std::string& log_fault() const { return log_fault_; }
     /// Of a binary log. Throws InputError where nothing defines its messages.
     telemetry::MessageDictionary definitions() const;
     /// See DataFile: to be asked after the text was read.
@@ -70,6 +72,7 @@ class FlightFile {
     std::string series_text_;
     std::filesystem::path log_file_;
     std::optional<std::string> log_text_;
+    std::string log_fault_;
 };
 
 /// Calls use(BinaryLog) with a binary file. Throws InputError where nothing defines its messages.

@@ -43,6 +43,7 @@ std::size_t number_of(std::uint8_t class_id, std::uint8_t id) { return class_id 
 struct FramePlan {
     std::size_t plan = 0;
     std::vector<std::size_t> offsets;  ///< of the plan's targets; empty where they differ from frame to frame
+    std::vector<int> decimals;         ///< of the plan's targets, in the last frame
 };
 
 /// Reads the frames of one log into its tables.
@@ -57,7 +58,7 @@ class FrameReader {
             const auto found = std::ranges::find(wanted, message.definition.name, &MessageRequest::message);
             if (found == wanted.end()) continue;
             plan_of_[number_of(message.class_id, message.id)] = frame_plans_.size();
-            frame_plans_.push_back({static_cast<std::size_t>(found - wanted.begin()), {}});
+            frame_plans_.push_back({static_cast<std::size_t>(found - wanted.begin()), {}, {}});
         }
     }
 
@@ -157,6 +158,7 @@ class FrameReader {
             return skips_.add({SkipReason::other_field_count, frame_plan.plan}, time_s, found.offset + 1);
         if (frame_plan.offsets.size() != plan.targets.size() || found.message->has_counted)
             find_offsets(plan, found, frame_plan.offsets);
+        frame_plan.decimals.resize(plan.targets.size());
         auto& table = table_of(found.sender, frame_plan.plan, plan, found.offset);
         if (table.time_s.size() == table.time_s.capacity()) make_room(table, found.offset + 1, binary_.bytes.size());
         table.time_s.push_back(time_s);
@@ -164,7 +166,8 @@ class FrameReader {
             const auto& target = plan.targets[i];
             const auto offset = frame_plan.offsets[i];
             double number = std::numeric_limits<double>::quiet_NaN();
-            if (offset != none) number = wire_value(fields[target.field].type, found.fields.data() + offset);
+            if (offset != none)
+                number = wire_value(fields[target.field].type, found.fields.data() + offset, frame_plan.decimals[i]);
             if (!std::isfinite(number)) {
                 number = std::numeric_limits<double>::quiet_NaN();
                 skips_.add({SkipReason::not_a_number, frame_plan.plan * max_fields + target.field}, time_s,

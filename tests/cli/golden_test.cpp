@@ -89,7 +89,7 @@ TEST(Golden, HoldsCasesAlone) {
 TEST(Golden, HasTheHelpOfEveryProgram) {
     const auto names = case_names();
     std::size_t programs = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(test::binary_dir() / "bin")) {
+    for (const auto& entry : std::filesystem::directory_iterator(test::programs_dir())) {
         const auto program = entry.path().filename().string();
         if (!program.starts_with("flightwatt")) continue;
         ++programs;

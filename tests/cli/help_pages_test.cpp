@@ -43,7 +43,7 @@ TEST(HelpPages, AreNoneWithoutTheFolder) { EXPECT_TRUE(help_pages(test::scratch_
 std::string shown(const std::string& environment, bool on_terminal) {
     const auto folder = folder_with_pages();
     const auto out = folder / "shown";
-    const auto help = (test::binary_dir() / "bin" / "flightwatt").string() + " help missions";
+    const auto help = (test::programs_dir() / "flightwatt").string() + " help missions";
     const auto run = on_terminal ? "script -qec '" + help + "' /dev/null" : help;
     const auto line = "FLIGHTWATT_DOCS=" + folder.string() + " TERM=xterm " + environment + " " + run + " > " +
                       out.string() + " 2>&1 < /dev/null";

@@ -304,7 +304,7 @@ TEST(InputsKeptCoverage, KnowsEveryOptionThatNamesAFile) {
     for (const auto& command : commands()) writing[command.stage].insert(command.option);
     const std::regex line("\n +(?:-[a-z] \\[ )?(--[a-z][a-z-]*)(?: \\])?(?: ([^ \n]+))?");
     std::size_t options = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(test::binary_dir() / "bin")) {
+    for (const auto& entry : std::filesystem::directory_iterator(test::programs_dir())) {
         const auto program = entry.path().filename().string();
         if (!program.starts_with("flightwatt-")) continue;
         const auto stage = program.substr(std::string("flightwatt-").size());

@@ -65,7 +65,7 @@ TEST(Options, AreEachUsedByATestOfTheirProgram) {
     const auto texts = texts_of_tests();
     const std::string prefix = "flightwatt-";
     std::size_t options = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(test::binary_dir() / "bin")) {
+    for (const auto& entry : std::filesystem::directory_iterator(test::programs_dir())) {
         const auto program = entry.path().filename().string();
         if (!program.starts_with(prefix)) continue;
         const auto stage = program.substr(prefix.size());

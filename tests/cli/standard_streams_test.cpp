@@ -59,7 +59,7 @@ class Streams : public testing::Test {
             std::vector<char*> pointers;
             for (auto& word : arguments) pointers.push_back(word.data());
             pointers.push_back(nullptr);
-            ::execv((test::binary_dir() / "bin" / words.front()).c_str(), pointers.data());
+            ::execv((test::programs_dir() / words.front()).c_str(), pointers.data());
             ::_exit(99);
         }
         return test::wait_status_of(child);
@@ -68,7 +68,7 @@ class Streams : public testing::Test {
 
     static std::vector<std::string> programs() {
         std::vector<std::string> names;
-        for (const auto& entry : std::filesystem::directory_iterator(test::binary_dir() / "bin")) {
+        for (const auto& entry : std::filesystem::directory_iterator(test::programs_dir())) {
             names.push_back(entry.path().filename().string());
         }
         EXPECT_GE(names.size(), 14U);

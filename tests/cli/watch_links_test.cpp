@@ -74,7 +74,7 @@ class WatchLinks : public testing::Test {
     }
 
     ::pid_t start_shell(const std::string& command) {
-        const auto path = fmt::format("PATH='{}':$PATH", (test::binary_dir() / "bin").string());
+        const auto path = fmt::format("PATH='{}':$PATH", test::programs_dir().string());
         const auto child = ::fork();
         if (child == 0) {
             std::filesystem::current_path(folder);

@@ -101,7 +101,7 @@ TEST(Examples, TheFiveCommandsOfTheReadmeRun) {
     ASSERT_NE(start, std::string::npos);
     auto commands = text.substr(start + fence.size(), text.find("```", start + 1) - start - fence.size());
     commands = std::regex_replace(commands, std::regex("~/flights"), (source_dir() / "logs").string());
-    commands = std::regex_replace(commands, std::regex("\\$PWD/build/release"), binary_dir().string());
+    commands = std::regex_replace(commands, std::regex("\\$PWD/build/release/bin"), programs_dir().string());
     if (!std::filesystem::exists(source_dir() / "web" / "node_modules" / "vega"))
         commands = std::regex_replace(commands, std::regex("flightwatt report [^\\n]*"), "");
     const auto result = run_shell("set -e\n" + commands, folder);

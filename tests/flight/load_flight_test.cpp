@@ -178,5 +178,24 @@ TEST(FlightFile, OfABinaryLogNeedsDefinitions) {
     EXPECT_EQ(load_flight(bare).phases.sorties.size(), 1u) << "bare.LOG is XML";
 }
 
+/// A damaged .log ends nothing where others stand in for it, and is warned of.
+TEST(FlightFile, TakesNamedDefinitionsForADamagedLog) {
+    const auto made = stored_on_card(test::source_dir() / "logs" / "opterra_synthetic_01.data", test::LinkVersion::v2);
+    const auto sound = test::source_dir() / "logs" / "opterra_synthetic_01.log";
+    const auto definitions = read_file(sound);
+    LoadOptions options;
+    options.messages = sound;
+    for (const auto& log : {made.card, made.text}) {
+        write_file_atomically(log.parent_path() / "x.log", definitions.substr(0, definitions.size() / 2));
+        EXPECT_THROW(load_flight(log), InputError) << "damaged, and nothing else is named";
+        const auto flight = load_flight(log, options);
+        EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr("x.log")));
+        EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr("the definitions are those of " + sound.string())));
+        EXPECT_EQ(flight.phases.sorties.size(), 1u);
+    }
+    write_file_atomically(made.card.parent_path() / "x.log", definitions);
+    EXPECT_EQ(load_flight(made.card, options).warnings, load_flight(made.card).warnings);
+}
+
 }  // namespace
 }  // namespace flightwatt::flight

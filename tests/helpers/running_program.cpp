@@ -53,7 +53,7 @@ ProgramResult run_shell(const std::string& command, const std::filesystem::path&
     const UnnamedFile out;
     const UnnamedFile err;
     const auto line =
-        "export " + environment + " PATH=" + shell_quoted(binary_dir() / "bin") + ":\"$PATH\"; " + command;
+        "export " + environment + " PATH=" + shell_quoted(programs_dir()) + ":\"$PATH\"; " + command;
     const auto child = ::fork();
     if (child == 0) {
         ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
@@ -81,7 +81,7 @@ ProgramResult run_shell(const std::string& command, const std::filesystem::path&
     ::dup2(file("stdout"), STDOUT_FILENO);
     ::dup2(file("stderr"), STDERR_FILENO);
     if (::chdir(folder.c_str()) != 0) ::_exit(98);
-    const auto program = binary_dir() / "bin" / name;
+    const auto program = programs_dir() / name;
     std::vector<std::string> words = arguments;
     words.insert(words.begin(), name);
     std::vector<char*> pointers;

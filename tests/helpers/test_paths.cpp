@@ -1,5 +1,6 @@
 #include "helpers/test_paths.h"
 
+#include <cstdlib>
 #include <string>
 
 namespace flightwatt::test {
@@ -8,6 +9,11 @@ namespace flightwatt::test {
 std::filesystem::path source_dir() { return FLIGHTWATT_SOURCE_DIR; }
 
 std::filesystem::path binary_dir() { return FLIGHTWATT_BINARY_DIR; }
+
+std::filesystem::path programs_dir() {
+    const char* const named = std::getenv("FLIGHTWATT_PROGRAMS");
+    return named != nullptr ? std::filesystem::path(named) : binary_dir() / "bin";
+}
 
 std::filesystem::path shared_dir() {
     const auto folder = source_dir().parent_path() / "shared";

@@ -7,7 +7,11 @@
 namespace flightwatt::test {
 
 std::filesystem::path source_dir();
-std::filesystem::path binary_dir();  ///< of this build; the programs are in bin/
+std::filesystem::path binary_dir();  ///< of this build
+
+/// Where the programs are: bin/ of this build, or the folder that FLIGHTWATT_PROGRAMS names, where something stands
+/// between (scripts/build_arm64).
+std::filesystem::path programs_dir();
 
 /// The folder of real logs and published figures beside the project; empty where it is absent.
 std::filesystem::path shared_dir();

@@ -55,6 +55,18 @@ inline std::uint8_t sum_of(const char* p, std::size_t size) {
 /// What a framing's frames begin with.
 constexpr char sync_byte(Framing framing) { return framing == Framing::xbee ? '\x7E' : '\x99'; }
 
+/// How many bytes a frame ends with that are no part of its message.
+constexpr std::ptrdiff_t checksum_bytes(Framing framing) { return framing == Framing::link ? 2 : 1; }
+
+/// Whether two frames seem to begin, by sync bytes and a length, one after the other at `p`: a quick look. Never for
+/// XBees, whose lengths may be escaped.
+template <Framing framing>
+bool two_seem_to_begin(const char* p, const char* end) {
+    if (framing == Framing::xbee || end - p < 2 || *p != sync_byte(framing)) return false;
+    const std::ptrdiff_t size = byte_at(p + 1) + (framing == Framing::card ? 8 : 0);
+    return size < end - p && p[size] == sync_byte(framing);
+}
+
 /// The most bytes that a frame has: an escaped one is nearly twice as long.
 constexpr std::size_t most_frame_bytes = 640;
 

@@ -90,20 +90,21 @@ class FrameScanner {
                 p = stop;
                 continue;
             }
-            const auto look = look_at_frame<framing>(p, end_, frame_);
+            const auto look = look_at(p, frame_);
             if (look == Look::incomplete && behind != Behind::end && !fitting_begins_in(p + 1, end_)) break;
             if (look == Look::frame) {
                 const char* const stop = p + frame_.size;
                 auto found = read(frame_, true);
-                const auto verdict = judge(found, p, stop, behind);
+                const bool is_sure = found.fits && two_seem_to_begin<framing>(stop, end_);
+                const auto verdict = is_sure ? Verdict::count : judge(found, p, stop, behind);
                 if (verdict == Verdict::wait) break;
-                if (verdict == Verdict::count) {
+                if (verdict != Verdict::reject) {
                     close_gap(on_gap);
                     found.offset = offset_of(p);
                     in_step_ = true;
                     if (found.fits) known_senders_.set(found.sender);
                     on_frame(static_cast<const FoundFrame&>(found), static_cast<const Frame&>(frame_));
-                    p = stop;
+                    p = verdict == Verdict::count ? stop : fitting_;
                     continue;
                 }
             }
@@ -117,16 +118,38 @@ class FrameScanner {
     }
 
   private:
-    enum class Verdict { count, reject, wait };
+    enum class Verdict { count, count_both, reject, wait };
 
     Verdict judge(const FoundFrame& found, const char* p, const char* stop, Behind behind) {
         const bool is_last = stop == end_;
         if (is_last && (behind == Behind::more || (behind == Behind::pause && !found.fits))) return Verdict::wait;
         const bool is_followed = is_last || *stop == sync_byte(framing);
-        if (found.fits && is_followed) return Verdict::count;
-        if (fitting_begins_in(p + 1, stop)) return Verdict::reject;
+        if (found.fits && is_last) return Verdict::count;
+        if (found.fits && is_followed) {
+            const auto next = look_at(stop, inner_);
+            if (next == Look::incomplete && behind == Behind::more) return Verdict::wait;
+            if (next == Look::frame || (next == Look::incomplete && behind == Behind::pause)) return Verdict::count;
+        }
+        if (fitting_begins_in(p + 1, stop)) {
+            // Of a frame that has lost its last byte, and of one that has lost its first, the neighbour may stand in for
+            // it: both were sent, and which of them is damaged cannot be told.
+            return found.fits && fitting_ >= stop - checksum_bytes(framing) ? Verdict::count_both : Verdict::reject;
+        }
         const bool counts = found.fits || in_step_ || is_followed || known_senders_.test(found.sender);
         return counts ? Verdict::count : Verdict::reject;
+    }
+
+    /// Of an XBee's packet that has a right checksum both as it stands and escaped, the one whose message fits.
+    Look look_at(const char* p, Frame& frame) {
+        const auto look = look_at_frame<framing>(p, end_, frame);
+        if constexpr (framing == Framing::xbee) {
+            if (look != Look::frame || read(frame, false).fits) return look;
+            for (const bool escaped : {false, true}) {
+                if (look_at_xbee_frame(p, end_, escaped, other_) != Look::frame || !read(other_, false).fits) continue;
+                return look_at_xbee_frame(p, end_, escaped, frame);
+            }
+        }
+        return look;
     }
 
     /// `counts`: whether the frame tells which version this is.
@@ -157,7 +180,7 @@ class FrameScanner {
             const void* const next = std::memchr(p, sync_byte(framing), static_cast<std::size_t>(to - p));
             if (next == nullptr) break;
             p = static_cast<const char*>(next);
-            if (look_at_frame<framing>(p, end_, inner_) != Look::frame || !read(inner_, false).fits) continue;
+            if (look_at(p, inner_) != Look::frame || !read(inner_, false).fits) continue;
             fitting_ = p;
             searched_ = p + 1;
             return true;
@@ -198,6 +221,7 @@ class FrameScanner {
     const char* fitting_ = nullptr;   ///< this one
     Frame frame_;
     Frame inner_;
+    Frame other_;
 };
 
 }  // namespace flightwatt::telemetry

@@ -50,9 +50,10 @@ void append_element(WireType type, const char* p, std::string& text) {
         case WireType::uint64:
             append_number(wire_number<std::uint64_t>(p), text);
             break;
-        default:
-            append_number(static_cast<std::int64_t>(wire_value(type, p)), text);
-            break;
+        default: {
+            int decimals = 0;
+            append_number(static_cast<std::int64_t>(wire_value(type, p, decimals)), text);
+        }
     }
 }
 

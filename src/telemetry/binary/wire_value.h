@@ -28,8 +28,9 @@ T wire_number(const char* p) {
 double as_written_slowly(float value);
 
 /// The decimal number of fewest digits that a float is read from: 11.62 of the float 11.6199999. So a log reads the same
-/// as the text that it is converted to.
-inline double as_written(float value) {
+/// as the text that it is converted to. `decimals`: how many it is likely to have, then how many it has; fields mostly
+/// have as many from message to message.
+inline double as_written(float value, int& decimals) {
     const double exact{value};
     const double magnitude = std::fabs(exact);
     if (!(magnitude < 1e9 && magnitude > 1e-9)) return exact == 0.0 ? exact : as_written_slowly(value);
@@ -39,20 +40,17 @@ inline double as_written(float value) {
     const auto exponent = static_cast<int>(std::bit_cast<std::uint32_t>(value) >> 23 & 0xFFU) - 127;
     // What is nearer than half a step of floats is read as this float (or its neighbour: asked for at the end).
     const double half_step = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + exponent - 24) << 52);
-    const auto digits_of = [exact](int decimals) {
-        const double scaled = exact * tenths[decimals];
-        return static_cast<double>(static_cast<std::int64_t>(scaled + std::copysign(0.5, scaled)));
+    // Doubles of this size are whole numbers: a sum with it is rounded to the nearest, of two to the even one.
+    constexpr double whole = 0x1.8p52;
+    const auto digits_of = [exact](int places) { return exact * tenths[places] + whole - whole; };
+    const auto reads_back = [&](int places) {
+        return std::fabs(digits_of(places) - exact * tenths[places]) <= half_step * tenths[places];
     };
-    const auto reads_back = [&](int decimals) {
-        return std::fabs(digits_of(decimals) - exact * tenths[decimals]) <= half_step * tenths[decimals];
-    };
-    // Eight digits behind the leading zeros; most floats of sensors need seven to nine. 1233 / 4096 is log10(2).
+    // No float needs more than nine digits behind the leading zeros. 1233 / 4096 is log10(2).
     constexpr int most_decimals = 20;
-    int decimals = std::clamp(7 - (exponent * 1233 >> 12), 0, most_decimals - 2);
-    constexpr int often_enough = 4;
-    if (decimals > often_enough && reads_back(often_enough)) decimals = often_enough;
-    while (decimals > 0 && reads_back(decimals - 1)) --decimals;
+    decimals = std::min(decimals, std::clamp(9 - (exponent * 1233 >> 12), 0, most_decimals - 2));
     while (decimals < most_decimals && !reads_back(decimals)) ++decimals;
+    while (decimals > 0 && reads_back(decimals - 1)) --decimals;
     double number = digits_of(decimals) / tenths[decimals];
     while (decimals < most_decimals && static_cast<float>(number) != value) {
         ++decimals;
@@ -61,8 +59,13 @@ inline double as_written(float value) {
     return number;
 }
 
-/// One element as a number; a char is its code.
-inline double wire_value(WireType type, const char* p) {
+inline double as_written(float value) {
+    int decimals = 4;  // often enough
+    return as_written(value, decimals);
+}
+
+/// One element as a number; a char is its code. `decimals`: as for as_written().
+inline double wire_value(WireType type, const char* p, int& decimals) {
     switch (type) {
         case WireType::int8:
             return wire_number<std::int8_t>(p);
@@ -82,7 +85,7 @@ inline double wire_value(WireType type, const char* p) {
         case WireType::uint64:
             return static_cast<double>(wire_number<std::uint64_t>(p));
         case WireType::float32:
-            return as_written(wire_number<float>(p));
+            return as_written(wire_number<float>(p), decimals);
         case WireType::float64:
             return wire_number<double>(p);
     }

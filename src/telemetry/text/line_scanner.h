@@ -9,6 +9,8 @@
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
+#elif defined(__AARCH64EL__)
+#include <arm_neon.h>
 #endif
 
 /// The log reader's inner loop: lines and words of a .data text, 64 bytes at a time, without a copy.
@@ -22,10 +24,20 @@ struct BlockMasks {
 
 inline constexpr std::size_t block_size = 64;
 
-/// Blanks and line breaks among the 64 bytes from `p`, all of which must be readable.
-inline BlockMasks masks_of(const char* p) {
+/// Blanks and line breaks among the 64 bytes from `p`, all of which must be readable; on any machine.
+inline BlockMasks masks_of_bytes(const char* p) {
     BlockMasks masks{0, 0};
+    for (unsigned i = 0; i < block_size; ++i) {
+        masks.blanks |= std::uint64_t{p[i] == ' '} << i;
+        masks.breaks |= std::uint64_t{p[i] == '\n'} << i;
+    }
+    return masks;
+}
+
+/// The same by 16 bytes at a time, where the machine can.
+inline BlockMasks masks_of(const char* p) {
 #if defined(__SSE2__)
+    BlockMasks masks{0, 0};
     const __m128i blank = _mm_set1_epi8(' ');
     const __m128i line_break = _mm_set1_epi8('\n');
     for (unsigned i = 0; i < 4; ++i) {
@@ -38,13 +50,24 @@ inline BlockMasks masks_of(const char* p) {
         masks.blanks |= bits(blank) << (16 * i);
         masks.breaks |= bits(line_break) << (16 * i);
     }
-#else
-    for (unsigned i = 0; i < block_size; ++i) {
-        masks.blanks |= std::uint64_t{p[i] == ' '} << i;
-        masks.breaks |= std::uint64_t{p[i] == '\n'} << i;
-    }
-#endif
     return masks;
+#elif defined(__AARCH64EL__)
+    // Each byte that matches gives the bit of its place among eight; sums of neighbours, three times over, gather them.
+    static constexpr std::uint8_t places[16] = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
+    const uint8x16_t place = vld1q_u8(places);
+    uint8x16_t bytes[4];
+    std::memcpy(bytes, p, sizeof bytes);
+    const auto mask_of = [&](char character) {
+        const uint8x16_t wanted = vdupq_n_u8(static_cast<std::uint8_t>(character));
+        const auto bits = [&](uint8x16_t quarter) { return vandq_u8(vceqq_u8(quarter, wanted), place); };
+        const auto halves =
+            vpaddq_u8(vpaddq_u8(bits(bytes[0]), bits(bytes[1])), vpaddq_u8(bits(bytes[2]), bits(bytes[3])));
+        return vgetq_lane_u64(vreinterpretq_u64_u8(vpaddq_u8(halves, halves)), 0);
+    };
+    return {mask_of(' '), mask_of('\n')};
+#else
+    return masks_of_bytes(p);
+#endif
 }
 
 /// The first line break from `p`, whose bytes up to `block_size` beyond `end` must be readable; `end` or a

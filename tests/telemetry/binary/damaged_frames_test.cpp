@@ -7,9 +7,11 @@
 #include "telemetry/link_decoder.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -198,6 +200,57 @@ TEST(DamagedFrames, LeaveTheOthersOfAnXbeeToBeFound) {
     EXPECT_GT(tally.whole, 40'000u);
     EXPECT_EQ(tally.lost, 0u);
     EXPECT_LT(tally.invented, tally.damaged / 100);
+}
+
+std::vector<std::string> texts_of(const std::string& bytes, Framing framing) {
+    std::vector<std::string> texts;
+    LinkDecoder decoder(test::binary_dictionary(), framing, LinkVersion::v1);
+    const auto sink = [&](const LinkMessage& message) { texts.emplace_back(message.text); };
+    decoder.push(bytes, sink);
+    decoder.flush(sink);
+    return texts;
+}
+
+/// Messages of ENERGY until one's frame is as asked.
+std::string energy_with(Framing framing, const std::function<bool(const std::string&)>& is_asked_for) {
+    const auto dictionary = test::binary_dictionary();
+    for (std::size_t i = 0; i < 100'000; ++i) {
+        const auto text = fmt::format("7 ENERGY {} {}.25 1.64 19.1 0.08 {}.", i % 100, i, i);
+        if (is_asked_for(framed(framing, test::binary_message(text, dictionary, LinkVersion::v1).value(), 1)))
+            return text;
+    }
+    throw std::logic_error("no frame is as asked for");
+}
+
+/// One byte is missing between two frames: the last of the first or the first of the second, which are alike.
+TEST(DamagedFrames, AreBothFoundWhereTheyShareTheByteThatOneHasLost) {
+    const auto dictionary = test::binary_dictionary();
+    for (const auto framing : {Framing::card, Framing::link, Framing::xbee}) {
+        SCOPED_TRACE(to_string(framing));
+        const auto frame_of = [&](const std::string& text) {
+            return framed(framing, test::binary_message(text, dictionary, LinkVersion::v1).value(), 1);
+        };
+        const auto ends_in_sync = [&](const std::string& frame) { return frame.back() == sync_byte(framing); };
+        const auto first = energy_with(framing, ends_in_sync);
+        const std::string before = "7 ESTIMATOR 1. 0.5";
+        const std::string behind = "7 ESTIMATOR 2. 0.5";
+        const auto bytes = frame_of(before) + frame_of(first) + frame_of(behind).substr(1) + frame_of(before);
+        EXPECT_EQ(texts_of(bytes, framing), (std::vector{before, first, behind, before}));
+    }
+}
+
+/// An escaped packet that has a right checksum as it stands, too: what fits its definition was sent.
+TEST(DamagedFrames, OfAnXbeeAreReadAsTheirMessagesFit) {
+    const auto dictionary = test::binary_dictionary();
+    Frame frame;
+    const auto is_right_in_both = [&](const std::string& plain) {
+        const std::string_view packet(plain);
+        const auto escaped = test::xbee_frame(packet.substr(8, packet.size() - 9), 0x81, true) + "\x01\x02\x03";
+        return look_at_xbee_frame(escaped.data(), escaped.data() + escaped.size(), false, frame) == Look::frame;
+    };
+    const auto text = energy_with(Framing::xbee, is_right_in_both);
+    const auto packet = test::xbee_frame(test::binary_message(text, dictionary, LinkVersion::v1).value(), 0x81, true);
+    EXPECT_EQ(texts_of(packet + "\x01\x02\x03", Framing::xbee), std::vector{text});
 }
 
 }  // namespace

@@ -37,6 +37,31 @@ std::vector<std::vector<std::string>> scan(const std::string& text) {
     return lines;
 }
 
+/// What is compiled for this machine (SSE2, NEON, or the same loop) against one byte after the other.
+TEST(LineScanner, FindsBlanksAndBreaksAsALoopOverBytesDoes) {
+    std::mt19937 random(5);
+    const std::string alphabet = " \n\t\r!*\x1f\x8a\xa0\xff" + std::string(1, '\0');
+    std::vector<char> bytes(block_size + 16);
+    for (int round = 0; round < 20'000; ++round) {
+        const bool any = round % 2 == 0;
+        for (auto& byte : bytes) byte = any ? static_cast<char>(random()) : alphabet[random() % alphabet.size()];
+        const char* const at = bytes.data() + random() % 16;  // of any alignment
+        const auto expected = masks_of_bytes(at);
+        const auto masks = masks_of(at);
+        ASSERT_EQ(masks.blanks, expected.blanks) << "round " << round;
+        ASSERT_EQ(masks.breaks, expected.breaks) << "round " << round;
+    }
+    for (unsigned i = 0; i < block_size; ++i) {  // each place alone
+        std::string block(block_size, 'x');
+        block[i] = ' ';
+        EXPECT_EQ(masks_of(block.data()).blanks, std::uint64_t{1} << i);
+        EXPECT_EQ(masks_of(block.data()).breaks, 0u);
+        block[i] = '\n';
+        EXPECT_EQ(masks_of(block.data()).breaks, std::uint64_t{1} << i);
+        EXPECT_EQ(masks_of(block.data()).blanks, 0u);
+    }
+}
+
 TEST(LineScanner, SplitsLinesAndWords) {
     EXPECT_THAT(scan("1.5 20 PONG \n2 20 GPS 1 2\n"),
                 ElementsAre(ElementsAre("1.5", "20", "PONG"), ElementsAre("2", "20", "GPS", "1", "2")));
