@@ -10,10 +10,8 @@
 namespace flightwatt::report {
 namespace {
 
-using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
-using testing::Not;
 using testing::StartsWith;
 
 mission::MissionOfReading reading_of(const std::string& name) {
