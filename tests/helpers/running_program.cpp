@@ -52,8 +52,7 @@ ProgramResult run_shell(const std::string& command, const std::filesystem::path&
                         const std::string& environment) {
     const UnnamedFile out;
     const UnnamedFile err;
-    const auto line =
-        "export " + environment + " PATH=" + shell_quoted(programs_dir()) + ":\"$PATH\"; " + command;
+    const auto line = "export " + environment + " PATH=" + shell_quoted(programs_dir()) + ":\"$PATH\"; " + command;
     const auto child = ::fork();
     if (child == 0) {
         ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
