@@ -201,6 +201,8 @@ TEST(WrittenKeys, OfMissionsAreDocumented) {
     expect_summary("compare", {phased, path_of("missions/paper/adaptive-replanned.toml")}, folder);
     expect_summary("plan", {path_of("missions/paper/plan.toml"), "-o", "planned.toml"}, folder);
     expect_summary("plan", {phased, "--longest-cruise"}, folder);
+    expect_summary("init", {"home"}, folder);
+    expect_summary("new-mission", {"--mechanical", published, "--battery", path_of("fits/battery/paper.toml")}, folder);
     expect_summary("plan", {phased, "--largest-payload"}, folder);
     expect_summary("plan", {survey_path, "--longest-cruise"}, folder);
     expect_summary("path", {survey_path, "-o", "legs.csv"}, folder);
