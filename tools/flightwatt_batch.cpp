@@ -229,9 +229,20 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
     return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
 }
 
-/// What the run will do to the folder, before it does it.
-batch::BatchPlan make_plan(const cli::StageCall& call, const batch::BatchOptions& options) {
-    auto logs = batch::find_logs(call.inputs);
+std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, std::vector<batch::LogFile> logs) {
+    std::vector<std::string> names(logs.size());
+    std::ranges::transform(logs, names.begin(), &batch::LogFile::flight);
+    const auto chosen = cli::chosen_flights(call, names);
+    std::vector<batch::LogFile> kept;
+    kept.reserve(logs.size());
+    for (std::size_t i = 0; i < logs.size(); ++i)
+        if (chosen[i]) kept.push_back(std::move(logs[i]));
+    return kept;
+}
+
+/// What the run will do to the folder, before it does it. Patterns of --exclude become names in `options`.
+batch::BatchPlan make_plan(const cli::StageCall& call, batch::BatchOptions& options) {
+    auto logs = chosen_logs(call, batch::find_logs(call.inputs));
     for (const auto& log : logs) {
         note_input(log.path);
         if (const auto file = telemetry::find_log_file(log.path)) note_input(*file);
@@ -246,6 +257,7 @@ batch::BatchPlan make_plan(const cli::StageCall& call, const batch::BatchOptions
 
 void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
     if (plan.earlier.is_of_earlier_version) {
+    options.load.excluded = cli::with_matching(options.load.excluded, "exclude", names);
         cli::note(call, fmt::format("{} has no {}: taken for the folder of an earlier version, whose records say that "
                                     "{} flights in it are the batch's",
                                     *call.output, batch::manifest_name, plan.earlier.flights.size()));
@@ -327,3 +339,4 @@ ended, the same command goes on where it stopped and comes to the same results.)
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, run_over_logs);
 }
+    cli::add_choice_options(stage.options);

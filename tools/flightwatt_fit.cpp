@@ -49,7 +49,8 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, int order) {
     const auto needed = mechanical::samples_needed(order);
     const auto options = cli::read_flight_options(call);
-    return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
+    const auto chosen = cli::with_chosen_flights(call, options);
+    return cli::from_flights<mechanical::MeasuredFlight>(chosen, options, [&](const auto&, const auto& loaded) {
         auto measured = mechanical::measure_flights(loaded, needed);
         for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
         return std::move(measured.flights);
@@ -125,10 +126,11 @@ int fit(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "fit", "FLIGHT.data|SERIES.csv...",
+        "fit", "FLIGHT.data|SERIES.csv|OUT...",
         R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
-as TOML; with -o it goes to the file and Table I is shown.)"};
+as TOML; with -o it goes to the file and Table I is shown. OUT is a folder of flightwatt batch: the flights
+that it accepted.)"};
     add_fit_options(stage.options, cli::AutoOrder::accepted);
     cli::add_model_option(stage.options);
     auto add = stage.options.add_options();
@@ -153,4 +155,5 @@ as TOML; with -o it goes to the file and Table I is shown.)"};
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, fit);
+    cli::add_choice_options(stage.options);
 }

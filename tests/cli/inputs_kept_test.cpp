@@ -216,6 +216,8 @@ const std::set<std::string> no_files{"N",
                                      "PORT",
                                      "ADDRESS:PORT",
                                      "DEVICE:BAUD",
+                                     "DATE",
+                                     "PATTERN",
                                      "TARGET"};
 
 /// Options that name files to read; those that write have a command above.
