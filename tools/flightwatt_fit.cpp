@@ -7,6 +7,7 @@
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/physical_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mechanical/measured_flight.h"
 #include "mechanical/physical_fit.h"
@@ -117,7 +118,9 @@ int fit(const cli::StageCall& call) {
             if (choices) cli::add_order_json(json, phase, (*choices)[phase]);
         cli::print(cli::json_text(json));
     } else if (call.output) {
-        cli::print(to_text(table) + (physical ? "\n" + cli::physical_text(*physical) : ""));
+        const auto screen = screen_of(call);
+        const cli::ScreenTable shown{fmt::format("{}: Table I of {} flights", fitted.model.name, flights.size()), {}};
+        cli::print(screen_text(table, screen, shown) + (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
     }
     return cli::ok;
 }
@@ -131,6 +134,7 @@ int main(int argc, char** argv) {
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
 as TOML; with -o it goes to the file and Table I is shown. OUT is a folder of flightwatt batch: the flights
 that it accepted.)"};
+    stage.shows_table = true;
     add_fit_options(stage.options, cli::AutoOrder::accepted);
     cli::add_model_option(stage.options);
     auto add = stage.options.add_options();
@@ -152,8 +156,8 @@ that it accepted.)"};
     add("curve", cli::value("HOW")->default_value("mean"),
         "mean or least-squares: the curve where the samples leave its frequency open. mean: over all frequencies that "
         "may be, and never below 0 W unless that was measured");
+    cli::add_choice_options(stage.options);
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, fit);
-    cli::add_choice_options(stage.options);
 }
