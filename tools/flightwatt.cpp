@@ -126,6 +126,8 @@ int run(int argc, char** argv) {
             "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
             "usage: flightwatt STAGE [arguments]; flightwatt help tells more\n" +
             stage_list());
+    } else if (stage == "--list-stages") {  // for completion and man pages
+        for (const auto& [name, summary] : stages) cli::print(fmt::format("{}\t{}\n", name, summary));
     } else if (stage == "--version") {
         cli::print("flightwatt " FLIGHTWATT_VERSION "\n");
     } else if (stage != "help") {
