@@ -29,6 +29,7 @@ struct StageLine {
 };
 
 constexpr StageLine stages[] = {
+    {"init", "a folder for an aircraft, with the five commands from logs to a report"},
     {"parse", "a Paparazzi log to a table of its power samples (CSV)"},
     {"convert", "a binary log of an SD card or a link to text"},
     {"segment", "take-off, cruise and landing of every sortie in a log"},
@@ -39,6 +40,7 @@ constexpr StageLine stages[] = {
     {"battery", "flights to the battery that they were flown on"},
     {"batch", "parse, segment and fit every log of a folder, incrementally"},
     {"profile", "software to its power by quality of service, measured while it runs"},
+    {"new-mission", "a mission file to begin with, every key explained"},
     {"simulate", "a mission file to its state of charge over time"},
     {"compare", "several missions, ranked by final state of charge"},
     {"plan", "the schedule of highest utility that lands a mission with its reserve"},
@@ -124,6 +126,8 @@ int run(int argc, char** argv) {
             "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
             "usage: flightwatt STAGE [arguments]; flightwatt help tells more\n" +
             stage_list());
+    } else if (stage == "--list-stages") {  // for completion and man pages
+        for (const auto& [name, summary] : stages) cli::print(fmt::format("{}\t{}\n", name, summary));
     } else if (stage == "--version") {
         cli::print("flightwatt " FLIGHTWATT_VERSION "\n");
     } else if (stage != "help") {

@@ -16,6 +16,7 @@
 #include "cli/output/json_text.h"
 #include "cli/output/physical_output.h"
 #include "cli/progress.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "telemetry/log_configuration.h"
 
@@ -191,7 +192,11 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
                               options.out / batch::unfinished_folder);
     }
-    const auto shown = to_text(flights_table(flights));
+    const auto screen = screen_of(call);
+    const cli::ScreenTable shown_first{fmt::format("{}: {} logs", options.out.string(), flights.size()),
+                                       {"flight", "cruise s", "cruise W", "energy Wh", "phases fitted", "take-off s",
+                                        "landing s", "take-off W", "landing W", "warnings", "gaps", "longest s"}};
+    const auto shown = screen_text(flights_table(flights), screen, shown_first);
     const auto is_rejected = [](const auto& flight) { return !flight.record.accepted; };
     const auto of_this_run = std::ranges::count_if(flights, &batch::BatchFlight::is_of_this_run);
     const auto rejected = std::ranges::count_if(
@@ -218,7 +223,8 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         auto json = cli::to_json(fit.model);
         if (physical) json["physical"] = cli::physical_json(*physical);
         cli::print(call.json ? cli::json_text(with_logs(std::move(json), flights))
-                             : shown + "\n" + to_text(table) + (physical ? "\n" + cli::physical_text(*physical) : ""));
+                             : shown + "\n" + screen_text(table, screen, {"Table I", {}}) +
+                                   (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
     } catch (const InputError&) {
         if (!call.json) cli::print(shown);
         throw;
@@ -229,9 +235,20 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
     return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
 }
 
-/// What the run will do to the folder, before it does it.
-batch::BatchPlan make_plan(const cli::StageCall& call, const batch::BatchOptions& options) {
-    auto logs = batch::find_logs(call.inputs);
+std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, std::vector<batch::LogFile> logs) {
+    std::vector<std::string> names(logs.size());
+    std::ranges::transform(logs, names.begin(), &batch::LogFile::flight);
+    const auto chosen = cli::chosen_flights(call, names);
+    std::vector<batch::LogFile> kept;
+    kept.reserve(logs.size());
+    for (std::size_t i = 0; i < logs.size(); ++i)
+        if (chosen[i]) kept.push_back(std::move(logs[i]));
+    return kept;
+}
+
+/// What the run will do to the folder, before it does it. Patterns of --exclude become names in `options`.
+batch::BatchPlan make_plan(const cli::StageCall& call, batch::BatchOptions& options) {
+    auto logs = chosen_logs(call, batch::find_logs(call.inputs));
     for (const auto& log : logs) {
         note_input(log.path);
         if (const auto file = telemetry::find_log_file(log.path)) note_input(*file);
@@ -240,6 +257,7 @@ batch::BatchPlan make_plan(const cli::StageCall& call, const batch::BatchOptions
     refuse_files_of_others(plan, options.out);
     std::vector<std::string> names(plan.logs.size());
     std::ranges::transform(plan.logs, names.begin(), &batch::LogFile::flight);
+    options.load.excluded = cli::with_matching(options.load.excluded, "exclude", names);
     cli::refuse_unknown_flights(options.load, names);
     return plan;
 }
@@ -315,6 +333,7 @@ listed and excluded from the fit; its first line says why.
 
 SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. However it
 ended, the same command goes on where it stopped and comes to the same results.)"};
+    stage.shows_table = true;
     stage.output_help = "the folder of the results";
     cli::add_fit_options(stage.options);
     cli::add_model_option(stage.options);
@@ -323,6 +342,7 @@ ended, the same command goes on where it stopped and comes to the same results.)
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
     add("prune", "drop the flights of earlier runs that are not among the logs given");
     add("jobs", cli::value("N")->default_value("0", "one a core"), "logs at a time");
+    cli::add_choice_options(stage.options);
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, run_over_logs);

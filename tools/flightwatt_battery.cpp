@@ -6,6 +6,7 @@
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 
 #include <algorithm>
@@ -105,8 +106,12 @@ int identify(const cli::StageCall& call) {
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(identified, left_out)));
     } else if (call.output) {
-        cli::print(to_text(cli::parameters_table(identified)) + "\n" +
-                   to_text(cli::flights_table(identified, left_out)));
+        const auto screen = screen_of(call);
+        const cli::ScreenTable flights{
+            fmt::format("{} flights", records.size()),
+            {"flight", "own ohm", "drawn Ah", "missing Ah", "leave-one-out mV", "at rest V"}};
+        cli::print(screen_text(cli::parameters_table(identified), screen, {identified.battery.name, {}}) + "\n" +
+                   screen_text(cli::flights_table(identified, left_out), screen, flights));
     }
     return cli::ok;
 }
@@ -123,6 +128,7 @@ parameters and flights are shown: how well each flight's voltage is met, and how
 predict it. What was missing from the pack when a flight began is estimated with it, and a flight that
 follows another on what looks like the same pack is chained to it. Each flight's own resistance tells
 the pack's state of health. Flights whose current was computed from throttle are refused.)"};
+    stage.shows_table = true;
     auto add = stage.options.add_options();
     add("capacity", cli::value<double>("AH"),
         "the pack's capacity; without it, what a flight drew from full to empty, or "

@@ -1,7 +1,9 @@
 // Several mission files to a table, ranked by what they leave in the battery.
 
+#include "base/error.h"
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
 #include "mission/mission_summary.h"
@@ -9,6 +11,7 @@
 #include "mission/sampled_flights.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -40,7 +43,7 @@ mission::Simulation simulation_of(const cli::StageCall& call, const mission::Any
 std::string soc_picture(const cli::StageCall& call, const std::vector<mission::Simulation>& simulations,
                         const std::vector<mission::MissionSummary>& ranking) {
     const auto plot = terminal_plot(call, "state of charge [%] over time, by rank");
-    if (!plot || call.has("markdown")) return "";
+    if (!plot || call.has("markdown") || call.has("csv")) return "";
     std::vector<cli::TerminalLine> lines;
     for (const auto& simulation : simulations) {
         const auto place = std::ranges::find_if(ranking, [&](const mission::MissionSummary& summary) {
@@ -51,6 +54,29 @@ std::string soc_picture(const cli::StageCall& call, const std::vector<mission::S
         if (!simulation.curve.rows.empty()) lines.push_back(cli::soc_line(simulation.curve, rank));
     }
     return draw(*plot, lines);
+}
+
+enum class Form { text, markdown, csv };
+
+/// By --markdown, --csv or else the ending of the result's file.
+Form form_of(const cli::StageCall& call) {
+    if (call.has("markdown") && call.has("csv")) throw UsageError("--markdown and --csv are two forms: give one");
+    const auto ending = std::filesystem::path(call.output.value_or("")).extension();
+    if (call.has("markdown") || (!call.has("csv") && ending == ".md")) return Form::markdown;
+    return call.has("csv") || ending == ".csv" ? Form::csv : Form::text;
+}
+
+std::string ranking_text(const cli::StageCall& call, const std::vector<mission::MissionSummary>& ranking, Form form) {
+    if (form == Form::csv) return cli::comparison_csv(ranking);
+    const auto table = comparison_table(ranking);
+    if (form == Form::markdown) return to_markdown(table);
+    const auto screen = call.output ? cli::Screen() : screen_of(call);
+    const auto count = ranking.size();
+    return screen_text(table, screen,
+                       {fmt::format("{} mission{}, the one with most charge left first", count, count == 1 ? "" : "s"),
+                        {"rank", "mission", "final_soc_percent", "probability_below_reserve", "utility", "energy_wh",
+                         "duration_s", "depleted_at_s", "cut_off_at_s"},
+                        0});
 }
 
 /// What the table does not say.
@@ -77,6 +103,7 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
 
 int compare_missions(const cli::StageCall& call) {
     const auto sampling = sampling_options(call, false);
+    const auto form = form_of(call);
     // All are read before the first is run: a bad file leaves no half answer.
     std::vector<mission::AnyMission> missions;
     missions.reserve(call.inputs.size());
@@ -92,8 +119,7 @@ int compare_missions(const cli::StageCall& call) {
         require_spread(setup_of(missions.front()));  // says what is missing
     }
     const auto ranking = ranked(std::move(summaries));
-    const auto table = comparison_table(ranking);
-    cli::write_result(call, call.has("markdown") ? to_markdown(table) : to_text(table));
+    cli::write_result(call, ranking_text(call, ranking, form));
     cli::print(soc_picture(call, simulations, ranking));
     if (call.json) cli::print(ranking_json(ranking, sampling.has_value()));
     return explain(call, ranking, sampling.has_value());
@@ -107,8 +133,10 @@ int main(int argc, char** argv) {
         R"(Runs several missions and ranks them by final state of charge; of those that run empty, the one that
 lasts longer comes first. A mission without a schedule is planned first, one with an adaptive policy in
 flight. --json lists the summaries in that order.)"};
+    stage.shows_table = true;
     auto add = stage.options.add_options();
-    add("markdown", "write the table as Markdown");
+    add("markdown", "write the table as Markdown, as -o FILE.md does");
+    add("csv", "write the table as CSV with all digits, as -o FILE.csv does");
     add("disturb", cli::input_file("FILE"), "let the disturbances of FILE happen to all (missions/disturbances/)");
     add_sampling_options(stage);
     return cli::run_stage(argc, argv, stage, compare_missions);

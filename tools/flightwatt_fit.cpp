@@ -7,6 +7,7 @@
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/physical_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mechanical/measured_flight.h"
 #include "mechanical/physical_fit.h"
@@ -49,7 +50,8 @@ mechanical::ModelFitOptions read_options(const cli::StageCall& call) {
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, int order) {
     const auto needed = mechanical::samples_needed(order);
     const auto options = cli::read_flight_options(call);
-    return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
+    const auto chosen = cli::with_chosen_flights(call, options);
+    return cli::from_flights<mechanical::MeasuredFlight>(chosen, options, [&](const auto&, const auto& loaded) {
         auto measured = mechanical::measure_flights(loaded, needed);
         for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
         return std::move(measured.flights);
@@ -116,7 +118,9 @@ int fit(const cli::StageCall& call) {
             if (choices) cli::add_order_json(json, phase, (*choices)[phase]);
         cli::print(cli::json_text(json));
     } else if (call.output) {
-        cli::print(to_text(table) + (physical ? "\n" + cli::physical_text(*physical) : ""));
+        const auto screen = screen_of(call);
+        const cli::ScreenTable shown{fmt::format("{}: Table I of {} flights", fitted.model.name, flights.size()), {}};
+        cli::print(screen_text(table, screen, shown) + (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
     }
     return cli::ok;
 }
@@ -125,10 +129,12 @@ int fit(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "fit", "FLIGHT.data|SERIES.csv...",
+        "fit", "FLIGHT.data|SERIES.csv|OUT...",
         R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
-as TOML; with -o it goes to the file and Table I is shown.)"};
+as TOML; with -o it goes to the file and Table I is shown. OUT is a folder of flightwatt batch: the flights
+that it accepted.)"};
+    stage.shows_table = true;
     add_fit_options(stage.options, cli::AutoOrder::accepted);
     cli::add_model_option(stage.options);
     auto add = stage.options.add_options();
@@ -150,6 +156,7 @@ as TOML; with -o it goes to the file and Table I is shown.)"};
     add("curve", cli::value("HOW")->default_value("mean"),
         "mean or least-squares: the curve where the samples leave its frequency open. mean: over all frequencies that "
         "may be, and never below 0 W unless that was measured");
+    cli::add_choice_options(stage.options);
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, fit);

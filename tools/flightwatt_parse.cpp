@@ -2,8 +2,10 @@
 
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/chosen_track.h"
+#include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 #include "flight/series_file.h"
 
@@ -34,7 +36,13 @@ int parse(const cli::StageCall& call) {
     options.power_required = false;
     const auto loaded = cli::load_flight(call, call.inputs.front(), options);
     const auto& series = loaded.series;
-    cli::write_result(call, to_csv(series));
+    constexpr std::size_t rows = 24;
+    write_csv_result(call, to_csv(series),
+                     {fmt::format("{}: aircraft {}", series.flight,
+                                  flight::describe_aircraft(series.aircraft_id, series.aircraft_name)),
+                      {"time_s", "power_w", "voltage_v", "current_a", "altitude_m", "throttle_percent"},
+                      std::nullopt,
+                      rows});
     const auto power = power_track(series);
     if (call.json) {
         cli::print(cli::json_text(summary(series, power, loaded.warnings)));
@@ -62,6 +70,7 @@ int main(int argc, char** argv) {
 altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.
 Any stage reads the series file as it reads the log, and comes to the same.)"};
     stage.max_inputs = 1;
+    stage.shows_table = true;
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, parse);
 }

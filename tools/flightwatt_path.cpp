@@ -6,6 +6,7 @@
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/flown_path.h"
 #include "mission/mission_file.h"
@@ -57,7 +58,7 @@ int show_path(const cli::StageCall& call) {
                 leg.climb_m_per_s, leg.load_factor, leg.mechanical_w);
         length_m += leg.length_m.value_or(0.0);
     }
-    cli::write_result(call, csv.text());
+    write_csv_result(call, csv.text(), {setup.name, {"leg", "start_s", "duration_s", "length_m", "mechanical_w"}});
     print_summary(call, setup, length_m);
     return cli::ok;
 }
@@ -88,7 +89,7 @@ int take_path(const cli::StageCall& call, const std::string& file) {
                 is_first ? std::nullopt : std::optional(place.duration_s));
         duration_s += place.duration_s;
     }
-    cli::write_result(call, csv.text());
+    write_csv_result(call, csv.text(), {loaded.series.flight + ": where it flew", {}});
     if (call.json) {
         nlohmann::ordered_json json;
         json["flight"] = loaded.series.flight;
@@ -133,6 +134,7 @@ With --path-from the path of a log's cruise instead, as waypoints for a mission 
 [path]): a place every 30 s, with the airspeed on the way there and how long it took.)"};
     stage.min_inputs = 0;
     stage.max_inputs = 1;
+    stage.shows_table = true;
     stage.options.add_options()("path-from", cli::input_file("LOG"),
                                 "write the path that was flown in LOG as waypoints");
     cli::add_flight_options(stage.options);

@@ -1,10 +1,12 @@
 // A mission to the schedule of most utility that lands with the reserve; and what is feasible at most.
 
 #include "base/atomic_file.h"
+#include "base/duration_text.h"
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
@@ -127,7 +129,9 @@ int answer(const cli::StageCall& call, const mission::MissionSetup& mission, con
     }
     json["residual_percent"] = most.residual_percent;
     json["limited_by"] = to_string(most.limited_by);
-    cli::write_result(call, fmt::format("{:.6f} {}\n", most.value, unit));
+    const bool in_minutes = unit == "s" && !call.output && screen_of(call).is_terminal;
+    const auto value = fmt::format("{:.6f} {}\n", most.value, unit);
+    cli::write_result(call, in_minutes ? duration_text(most.value) + "\n" : value);
     if (call.json) {
         cli::print(cli::json_text(json));
     } else {

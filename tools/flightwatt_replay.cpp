@@ -6,6 +6,7 @@
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/replay_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mechanical/measured_flight.h"
 #include "mission/mission_file.h"
@@ -60,7 +61,7 @@ int replay(const cli::StageCall& call) {
     if (call.json)
         cli::print(cli::json_text(cli::to_json(replays)));
     else
-        cli::print(cli::replay_text(replays.replays));
+        cli::print(cli::replay_text(replays.replays, screen_of(call)));
     return cli::ok;
 }
 
@@ -82,6 +83,7 @@ a model fitted to the other flights alone. Schedules:
 Where no plan keeps the reserve, what demands least energy is run, and the table says so. Regret is the
 utility that hindsight has more; schedules that do not keep the reserve have none. Last is said what
 replanning in flight was worth against planning beforehand. -o writes the table of schedules as CSV.)"};
+    stage.shows_table = true;
     stage.output_help = "write the table of schedules to FILE, as CSV";
     auto add = stage.options.add_options();
     add("mission", cli::input_files("FILE"), "a mission whose schedules are replayed; may be given several times");

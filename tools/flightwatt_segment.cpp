@@ -3,6 +3,7 @@
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/segment_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/phases_file.h"
 
@@ -28,11 +29,16 @@ int segment_flight(const cli::StageCall& call) {
         cli::warn(call, fmt::format("{}: power fault: {}", file, fault));
     }
     const bool explain = call.has("explain");
-    if (!explain || call.output) cli::write_result(call, flight::phases_csv(series, phases));
+    if (!explain || call.output) {
+        write_csv_result(call, flight::phases_csv(series, phases),
+                         {cli::describe_flight(series, phases),
+                          {"sortie", "phase", "start_s", "end_s", "duration_s", "mean_power_w", "energy_wh", "samples",
+                           "gaps", "complete", "start_altitude_m", "end_altitude_m"}});
+    }
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(series, phases, power, loaded.warnings)));
     } else if (explain) {
-        cli::print(cli::explanation(series, phases, power));
+        cli::print(cli::explanation(series, phases, power, screen_of(call)));
     }
     if (const auto plot = terminal_plot(call, "altitude [m] over time")) {
         cli::print(altitude_profile(*plot, series, phases));
@@ -50,6 +56,7 @@ lift-off until the height held is reached, cruise, landing from where that heigh
 touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.
 A log without measured power is segmented too; its columns of power are then empty.)"};
     stage.max_inputs = 1;
+    stage.shows_table = true;
     stage.options.add_options()("explain", "show the reasons for each edge, and how good the power record is");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, segment_flight);

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
@@ -50,7 +51,9 @@ int simulate_mission(const cli::StageCall& call) {
     if (summary.undeliverable) throw NoAnswerError(describe(summary));
     sample(call, prepared, disturbed_by, summary);
     write_schedule(call, text, prepared, flight);
-    cli::write_result(call, to_csv(flight.simulation.curve));
+    constexpr std::size_t rows = 24;
+    write_csv_result(call, to_csv(flight.simulation.curve),
+                     {summary.mission, {"time_s", "phase", "soc_percent", "power_w"}, std::nullopt, rows});
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(summary)));
     } else {
@@ -73,6 +76,7 @@ delivered_energy_wh, depleted_at_s, cut_off_at_s (null: never), feasible, keeps_
 A mission with [policy] kind = "adaptive" is planned anew in flight. --samples draws flights and reports
 their final state of charge; the CSV stays that of the mission as it is stated.)"};
     stage.max_inputs = 1;
+    stage.shows_table = true;
     auto add = stage.options.add_options();
     add("step", cli::value<double>("S")->default_value(1.0, "1"),
         "seconds between rows; jumps of power have rows besides");

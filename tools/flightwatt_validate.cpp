@@ -6,6 +6,7 @@
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/validation_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/chosen_track.h"
 #include "mechanical/covariates.h"
@@ -82,7 +83,8 @@ int validate_flights(const cli::StageCall& call) {
     const auto covariates = read_covariates(call);
     const auto flights = read_flights(call, mechanical::samples_needed(options.phases.order));
     const auto validated = leave_one_out(flights, options, covariates);
-    cli::write_result(call, cli::validation_text(validated, covariates, until_s.has_value()));
+    const auto screen = call.output ? cli::Screen() : screen_of(call);
+    cli::write_result(call, cli::validation_text(validated, covariates, until_s.has_value(), screen));
     if (call.json) cli::print(cli::json_text(cli::scores_json(validated)));
     return cli::ok;
 }
@@ -111,6 +113,7 @@ the cruise and the landing are predicted, by the models above as before the flig
                       rest as they were flown, as if they had been known
 Errors in percent are parts of the phase's measured energy, the flown part included; none for landing,
 whose power is near zero. Bias is predicted less measured.)"};
+    stage.shows_table = true;
     cli::add_fit_options(stage.options);
     auto add = stage.options.add_options();
     add("until", cli::value<double>("S"), "validate the prediction in flight, S seconds after lift-off");

@@ -1,34 +1,28 @@
 #include "base/duration_text.h"
 
+#include "base/units.h"
+
 #include <cmath>
+#include <cstdint>
 
 #include <fmt/format.h>
 
 namespace flightwatt {
-namespace {
 
-constexpr long long seconds_a_minute = 60;
-constexpr long long minutes_an_hour = 60;
-
-std::string in_parts(long long whole, const char* unit, long long rest, const char* unit_of_rest) {
-    if (rest == 0) return fmt::format("{} {}", whole, unit);
-    return fmt::format("{} {} {} {}", whole, unit, rest, unit_of_rest);
-}
-
-}  // namespace
-
-std::string duration_text(double seconds) {
-    if (!std::isfinite(seconds)) return "-";
-    if (seconds < 0.0) return "-" + duration_text(-seconds);
-    constexpr double rounds_to_a_minute = 59.95;
-    constexpr double rounds_to_an_hour = 3599.5;
-    if (seconds < rounds_to_a_minute) return fmt::format("{:.1f} s", seconds);
-    if (seconds < rounds_to_an_hour) {
-        const auto whole = std::llround(seconds);
-        return in_parts(whole / seconds_a_minute, "min", whole % seconds_a_minute, "s");
-    }
-    const auto minutes = std::llround(seconds / static_cast<double>(seconds_a_minute));
-    return in_parts(minutes / minutes_an_hour, "h", minutes % minutes_an_hour, "min");
+std::string duration_text(double duration_s) {
+    constexpr std::int64_t per_minute = 60;
+    constexpr std::int64_t per_hour = 3600;
+    constexpr double longest_s = 1e9;
+    const double length_s = std::abs(duration_s);
+    if (!(length_s >= units::seconds_per_minute - 0.05) || length_s > longest_s)
+        return fmt::format("{:.1f} s", duration_s);
+    const auto whole = static_cast<std::int64_t>(std::llround(length_s));
+    std::string text = duration_s < 0.0 ? "-" : "";
+    if (whole >= per_hour) text += fmt::format("{} h ", whole / per_hour);
+    if (whole % per_hour != 0) text += fmt::format("{} min ", whole % per_hour / per_minute);
+    if (whole % per_minute != 0) text += fmt::format("{} s ", whole % per_minute);
+    text.pop_back();
+    return text;
 }
 
 }  // namespace flightwatt

@@ -4,6 +4,8 @@
 #include "base/error.h"
 #include "base/file_use.h"
 #include "base/toml_reader.h"
+#include "cli/screen_table.h"
+#include "cli/terminal.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -32,10 +34,20 @@ bool reader_has_left = false;
 /// Diagnostics that nobody can read (closed, full disk) change nothing.
 void tell(const std::string& line) { std::fwrite(line.data(), 1, line.size(), stderr); }
 
+/// What a line begins with, in colour where the standard error has colours.
+std::string alert(const char* word, int color) {
+    return standard_error_has_colors() ? fmt::format("\x1b[1;38;5;{}m{}:\x1b[0m", color, word)
+                                       : fmt::format("{}:", word);
+}
+
+constexpr int color_of_errors = 160;
+constexpr int color_of_warnings = 172;
+
 /// Says what went wrong, and where; returns the exit code that stands for it.
 ExitCode failed(ExitCode code, const std::string& program, const std::string& message, const std::string& where = "") {
     const auto place = where.empty() ? "" : where + ": ";
-    tell(fmt::format("{}: {}error: {}\n", program, one_line(place), one_line(clipped(message))));
+    tell(fmt::format("{}: {}{} {}\n", program, one_line(place), alert("error", color_of_errors),
+                     one_line(clipped(message))));
     return code;
 }
 
@@ -79,11 +91,41 @@ void close_standard_output() {
         fmt::format("{}; {}", error.what(), near.empty() ? "see --help" : fmt::format("did you mean '{}'?", near)));
 }
 
-StageCall parse(int argc, char** argv, const StageDefinition& definition, po::options_description& visible) {
-    StageCall call;
-    call.program = "flightwatt-" + definition.name;
+/// Those of the stage, and those of every stage.
+po::options_description visible_options(const StageDefinition& definition) {
+    auto visible = definition.options;
+    if (definition.shows_table) add_wide_option(visible);
     visible.add_options()("output,o", output_file("FILE"), definition.output_help.c_str())(
         "json", "print the summary as JSON")("help,h", "show this help")("version", "show the version");
+    return visible;
+}
+
+/// What the option takes: nothing, the name of a file that is read or written, or another value.
+std::string_view kind_of(const po::option_description& option) {
+    const auto* semantic = option.semantic().get();
+    if (semantic->max_tokens() == 0) return "flag";
+    if (dynamic_cast<const InputFilesValue*>(semantic) != nullptr) return "input";
+    const auto* file = dynamic_cast<const FileValue*>(semantic);
+    if (file == nullptr) return "value";
+    return file->role() == FileRole::input ? "input" : "output";
+}
+
+/// For completion and man pages: a line an option with name, short name, kind, value and description, between tabs.
+std::string option_list(const po::options_description& options) {
+    std::string text;
+    for (const auto& option : options.options()) {
+        const auto shortest = option->canonical_display_name(po::command_line_style::allow_dash_for_short);
+        const auto kind = kind_of(*option);
+        text += fmt::format("--{}\t{}\t{}\t{}\t{}\n", option->long_name(),
+                            shortest.starts_with("-") && shortest.size() == 2 ? shortest : "", kind,
+                            kind == "flag" ? "" : option->format_parameter(), one_line(option->description()));
+    }
+    return text;
+}
+
+StageCall parse(int argc, char** argv, const StageDefinition& definition, const po::options_description& visible) {
+    StageCall call;
+    call.program = "flightwatt-" + definition.name;
     po::options_description all = visible;
     all.add_options()(inputs_option, po::value<std::vector<std::string>>());
     po::positional_options_description positional;
@@ -131,7 +173,11 @@ void declare_files(const StageCall& call, const po::options_description& options
 }
 
 int run(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
-    po::options_description visible = definition.options;
+    const auto visible = visible_options(definition);
+    if (argc == 2 && std::string_view(argv[1]) == "--list-options") {
+        print(option_list(visible));
+        return ok;
+    }
     const auto call = parse(argc, argv, definition, visible);
     if (call.has("help")) {
         std::ostringstream options;
@@ -218,7 +264,7 @@ std::string one_line(std::string_view text) {
 }
 
 void warn(const StageCall& call, std::string_view message) {
-    tell(fmt::format("{}: warning: {}\n", call.program, one_line(message)));
+    tell(fmt::format("{}: {} {}\n", call.program, alert("warning", color_of_warnings), one_line(message)));
 }
 
 void note(const StageCall& call, std::string_view message) {

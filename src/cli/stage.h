@@ -50,6 +50,7 @@ struct StageDefinition {
     boost::program_options::options_description options{"Options"};
     std::size_t min_inputs = 1;
     std::size_t max_inputs = 1000000;
+    bool shows_table = false;  ///< on a terminal: then --wide is an option
     std::string output_help = "write the result to FILE instead of the standard output";
 };
 

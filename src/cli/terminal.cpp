@@ -128,8 +128,10 @@ TerminalAbility ability_of(bool is_terminal, std::size_t columns, const Environm
     TerminalAbility ability;
     if (columns > 0) ability.columns = columns;
     const auto kind = value_of(environment, "TERM");
-    ability.draws = is_terminal && !kind.empty() && kind != "dumb" && is_utf8(environment);
-    ability.colors = ability.draws && value_of(environment, "NO_COLOR").empty();
+    ability.is_terminal = is_terminal;
+    const bool is_able = is_terminal && !kind.empty() && kind != "dumb";
+    ability.draws = is_able && is_utf8(environment);
+    ability.colors = is_able && value_of(environment, "NO_COLOR").empty();
     return ability;
 }
 
@@ -138,6 +140,10 @@ TerminalAbility standard_output_ability() {
     const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
     return ability_of(::isatty(STDOUT_FILENO) != 0, known ? size.ws_col : 0,
                       [](const char* name) { return std::getenv(name); });
+}
+
+bool standard_error_has_colors() {
+    return ability_of(::isatty(STDERR_FILENO) != 0, 0, [](const char* name) { return std::getenv(name); }).colors;
 }
 
 std::optional<TerminalPlot> terminal_plot(const StageCall& call, const std::string& title) {
@@ -163,10 +169,16 @@ std::string draw(const TerminalPlot& plot, std::span<const TerminalLine> lines) 
     if (x_high <= x_low) return "";
     Canvas canvas{plot.columns - axis_columns - label_columns, plot.rows, x_low, x_high};
     std::vector<std::string> labels(plot.rows);
+    std::vector<std::size_t> label_widths(plot.rows);
     for (std::size_t who = 0; who < lines.size(); ++who) {
         draw_line(plot, canvas, lines[who], who);
-        auto& label = labels[dot_row(plot, canvas, lines[who].y.back()) / dots_down];
-        if (!lines[who].label.empty()) label += " " + colored(plot, lines[who].label, who);
+        if (lines[who].label.empty()) continue;
+        const auto row = dot_row(plot, canvas, lines[who].y.back()) / dots_down;
+        // As many as there is room for; " +" stands for more.
+        const auto columns = label_widths[row] + 1 + lines[who].label.size();
+        if (columns + 2 <= label_columns) labels[row] += " " + colored(plot, lines[who].label, who);
+        if (columns + 2 > label_columns && label_widths[row] < label_columns) labels[row] += " +";
+        label_widths[row] = columns + 2 <= label_columns ? columns : label_columns;
     }
     auto text = plot.title + "\n";
     for (std::size_t row = 0; row < plot.rows; ++row) {

@@ -14,8 +14,9 @@ namespace flightwatt::cli {
 
 /// What the standard output can show.
 struct TerminalAbility {
+    bool is_terminal = false;
     bool draws = false;   ///< a terminal that shows Unicode
-    bool colors = false;  ///< and wants colours (no-color.org)
+    bool colors = false;  ///< one that has colours, and they are wanted (no-color.org)
     std::size_t columns = 80;
 };
 
@@ -28,6 +29,9 @@ TerminalAbility ability_of(bool is_terminal, std::size_t columns, const Environm
 
 /// The same of the standard output of this program.
 TerminalAbility standard_output_ability();
+
+/// Whether diagnostics are read on a terminal with colours.
+bool standard_error_has_colors();
 
 /// A line of a plot in the terminal: `x` rises (equal values: a jump), `y` is as long; at least one point.
 struct TerminalLine {

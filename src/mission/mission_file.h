@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace flightwatt::mission {
 
@@ -29,10 +30,33 @@ AnyMission read_mission(const std::filesystem::path& path, const MissionReading&
 AnyMission parse_mission(std::string_view text, const std::filesystem::path& path, const MissionReading& reading = {});
 
 /// The mission file `text` (of `path`) with `schedule` in the place of its [plan], [policy] and [[schedule]];
-/// everything else says what it said, its keys sorted and without comments. `compute` is the mission's. The
+/// everything else stands as it was written, with its comments (of a text that does not allow that, its keys sorted and
+/// without). `compute` is the mission's. The
 /// files that it names are found from `folder`, where the result is to stand.
 std::string planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                  const compute::ComputeModel& compute, const Schedule& schedule,
                                  const std::filesystem::path& folder);
+
+/// A component of a mission that is yet to be written.
+struct NewComponent {
+    std::string name;
+    std::string profile;  ///< its file, as the mission is to name it
+    compute::PowerProfile power;
+};
+
+/// What a new mission is made of. Files are named as the mission is to name them.
+struct NewMission {
+    std::string name;
+    std::string mechanical;
+    mechanical::MechanicalModel model;  ///< that file's
+    std::string battery;
+    double capacity_ah = 0.0;  ///< that file's
+    std::vector<NewComponent> components = {};
+    bool is_planned = false;  ///< the schedule is left to `flightwatt plan`
+};
+
+/// A mission file with every key of docs/missions.md explained: those that it can do without are commented out ("#key"
+/// without a blank), with values that fit the files. It simulates as it is, unless it is to be planned.
+std::string new_mission_toml(const NewMission& mission);
 
 }  // namespace flightwatt::mission

@@ -109,6 +109,11 @@ std::vector<Command> commands() {
          {"missions/synthetic/survey-path.toml", "fits/mechanical/synthetic-wing.toml",
           "fits/battery/synthetic-3s.toml", "fits/compute/tx2-detection.csv"},
          "--output"},
+        {"new-mission",
+         "--mechanical " + model + " --battery fits/battery/paper.toml --profile fits/compute/tx2-detection.csv",
+         {model, "fits/battery/paper.toml", "fits/compute/tx2-detection.csv"},
+         "--output"},
+        {"init", "home", {}, "--output"},  // it reads nothing
         {"compare", simulate, disturbed, "--output"},
         {"replay", "a.data s.series.csv --model " + model + " --mission " + mission, flight_files + mission_files,
          "--output"},
@@ -211,12 +216,14 @@ const std::set<std::string> no_files{"N",
                                      "PORT",
                                      "ADDRESS:PORT",
                                      "DEVICE:BAUD",
+                                     "DATE",
+                                     "PATTERN",
                                      "TARGET"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{"--published", "--model",   "--mission",   "--disturb",
-                                    "--sysfs",     "--battery", "--path-from", "--reference-figures",
-                                    "--follow",    "--log",     "--messages"};
+const std::set<std::string> reading{
+    "--published",         "--model",  "--mission", "--disturb",  "--sysfs",      "--battery", "--path-from",
+    "--reference-figures", "--follow", "--log",     "--messages", "--mechanical", "--profile"};
 
 class InputsKept : public testing::Test {
   protected:

@@ -93,14 +93,13 @@ TEST(Examples, AreReadByTheirPrograms) {
 }
 
 /// The commands of "Your own flights in five commands", with the sample logs in place of one's own.
-TEST(Examples, TheFiveCommandsOfTheReadmeRun) {
-    const auto folder = scratch_dir();
+void type_five_commands(const std::filesystem::path& flights, const std::filesystem::path& folder) {
     const auto text = read_file(source_dir() / "README.md");
     const std::string fence = "```sh\n";
     const auto start = text.find(fence, text.find("in five commands"));
     ASSERT_NE(start, std::string::npos);
     auto commands = text.substr(start + fence.size(), text.find("```", start + 1) - start - fence.size());
-    commands = std::regex_replace(commands, std::regex("~/flights"), (source_dir() / "logs").string());
+    commands = std::regex_replace(commands, std::regex("~/flights"), flights.string());
     commands = std::regex_replace(commands, std::regex("\\$PWD/build/release/bin"), programs_dir().string());
     if (!std::filesystem::exists(source_dir() / "web" / "node_modules" / "vega"))
         commands = std::regex_replace(commands, std::regex("flightwatt report [^\\n]*"), "");
@@ -108,6 +107,25 @@ TEST(Examples, TheFiveCommandsOfTheReadmeRun) {
     EXPECT_EQ(result.code, 0) << result.out << result.err;
     for (const auto* file : {"my/model.toml", "my/pack.toml", "my/soc.csv"})
         EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+}
+
+TEST(Examples, TheFiveCommandsOfTheReadmeRun) { type_five_commands(source_dir() / "logs", scratch_dir()); }
+
+TEST(Examples, TheFiveCommandsOfTheReadmeRunOnRealFlights) {
+    const auto shared = source_dir() / ".." / "shared" / "flights";
+    if (!std::filesystem::exists(shared)) GTEST_SKIP() << "no " << shared;
+    const auto folder = scratch_dir();
+    std::filesystem::create_directories(folder / "flights");
+    std::size_t logs = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(shared)) {
+        const auto name = entry.path().filename().string();
+        const bool is_log = name.ends_with(".data") || name.ends_with(".log");
+        if (!name.starts_with("20_07_") || !is_log) continue;
+        std::filesystem::create_symlink(std::filesystem::canonical(entry.path()), folder / "flights" / name);
+        ++logs;
+    }
+    ASSERT_GT(logs, 2U);
+    type_five_commands(folder / "flights", folder);
 }
 
 }  // namespace

@@ -95,6 +95,8 @@ TEST(WrittenColumns, AreDocumented) {
     expect_columns(folder / "replay.csv", "Replayed schedules");
     output_of("path", {survey_path, "-o", "legs.csv"}, folder);
     expect_columns(folder / "legs.csv", "Legs of a path");
+    output_of("compare", {phased, "--csv", "-o", "ranking.csv"}, folder);
+    expect_columns(folder / "ranking.csv", "Ranking");
     output_of("profile", {"specification.toml", "-o", "profiles"}, folder);
     expect_columns(folder / "profiles" / "runs.csv", "Runs");
     expect_columns(folder / "profiles" / "idle.csv", "Power profile");
@@ -199,6 +201,8 @@ TEST(WrittenKeys, OfMissionsAreDocumented) {
     const auto folder = scratch_dir();
     expect_summary("simulate", {phased, "--samples", "10", "-o", "soc.csv"}, folder);
     expect_summary("compare", {phased, path_of("missions/paper/adaptive-replanned.toml")}, folder);
+    expect_summary("init", {"home"}, folder);
+    expect_summary("new-mission", {"--mechanical", published, "--battery", path_of("fits/battery/paper.toml")}, folder);
     expect_summary("plan", {path_of("missions/paper/plan.toml"), "-o", "planned.toml"}, folder);
     expect_summary("plan", {phased, "--longest-cruise"}, folder);
     expect_summary("plan", {phased, "--largest-payload"}, folder);

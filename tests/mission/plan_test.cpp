@@ -227,6 +227,70 @@ TEST(Plan, IsWrittenAsAMission) {
     EXPECT_EQ(summary.utility, plan.summary.utility);
 }
 
+TEST(Plan, KeepsCommentsAndNumbersOfTheFileThatItComesFrom) {
+    const std::string text =
+        "# A survey of the north field.\n"
+        "name = 'plan'   # in single quotes\n"
+        "mechanical = \"../../fits/mechanical/opterra-table1.toml\"\n"
+        "battery = '../../fits/battery/paper.toml'   # 9.9, not 9.9000000000000004\n"
+        "cutoff_voltage_v = 0.10\n"
+        "reserve_soc_percent = 2\n"
+        "\n"
+        "# What is planned, and how.\n"
+        "[plan]\n"
+        "slot_s = 60\n"
+        "# of the plan\n"
+        "levels = { detection = { fps = [5.8, 10] } }\n"
+        "\n"
+        "# The camera.\n"
+        "[components.detection]\n"
+        "profile = \"../../fits/compute/tx2-detection.csv\"\n"
+        "utility = { parameter = \"fps\", weight = 1.0 }\n"
+        "\n"
+        "# decided in flight\n"
+        "[policy]\n"
+        "kind = \"static\"\n"
+        "\n"
+        "# An afterword.\n";
+    const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
+    const auto problem = parse_mission(text, path, {.may_lack_schedule = true});
+    const auto plan = plan_mission(std::get<PlanningProblem>(problem));
+    const auto written = planned_mission_toml(text, path, plan.flown.compute, plan.flown.schedule, test::source_dir());
+    const std::string kept =
+        "# A survey of the north field.\n"
+        "format = 1\n"
+        "name = 'plan'   # in single quotes\n"
+        "mechanical = \"fits/mechanical/opterra-table1.toml\"\n"
+        "battery = \"fits/battery/paper.toml\"   # 9.9, not 9.9000000000000004\n"
+        "cutoff_voltage_v = 0.10\n"
+        "reserve_soc_percent = 2\n"
+        "\n"
+        "# The camera.\n"
+        "[components.detection]\n"
+        "profile = \"fits/compute/tx2-detection.csv\"\n"
+        "utility = { parameter = \"fps\", weight = 1.0 }\n"
+        "\n"
+        "# An afterword.\n"
+        "\n[[schedule]]\n";
+    EXPECT_EQ(written.substr(0, kept.size()), kept);
+    EXPECT_EQ(written.find("[plan]"), std::string::npos);
+    EXPECT_NO_THROW(parse_mission(written, test::source_dir() / "planned.toml"));
+}
+
+TEST(Plan, IsWrittenWhateverWayTheFileIsWritten) {
+    const std::string text =
+        "mechanical = \"../../fits/mechanical/opterra-table1.toml\"\nbattery = '../../fits/battery/paper.toml'\n"
+        "plan = { slot_s = 60, levels = { detection = { fps = [\n  5.8,\n  10 ] } } }\n"
+        "components = { detection = { profile = \"\"\"../../fits/compute/tx2-detection.csv\"\"\", "
+        "utility = { parameter = \"fps\" } } }\n";
+    const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
+    const auto problem = parse_mission(text, path, {.may_lack_schedule = true});
+    const auto plan = plan_mission(std::get<PlanningProblem>(problem));
+    const auto written = planned_mission_toml(text, path, plan.flown.compute, plan.flown.schedule, test::source_dir());
+    const auto again = std::get<Mission>(parse_mission(written, test::source_dir() / "planned.toml"));
+    EXPECT_EQ(simulate(again).summary.utility, plan.summary.utility);
+}
+
 TEST(Planner, DropsWhatIsDominated) {
     auto mission = paper_problem("plan");
     EXPECT_EQ(make_planner(mission).free_choices, 4U);  // longer keys have no utility here

@@ -169,9 +169,13 @@ void add_mix_option(po::options_description& options) {
                           "use flights of several aircraft as if they were of one, also synthetic ones");
 }
 
-std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::LoadOptions& options,
+std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::LoadOptions& given,
                                          const std::function<void(const std::string&, flight::LoadedFlight&)>& read) {
+    auto options = given;
     std::vector<std::string> flights;
+    for (const auto& file : call.inputs) flights.push_back(flight_of_file(file));
+    options.excluded = with_matching(given.excluded, "exclude", flights);
+    flights.clear();
     UsedFlights used(call);
     for (const auto& file : call.inputs) {
         auto loaded = flight::load_flight(std::filesystem::path(file), options);

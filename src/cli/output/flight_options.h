@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,25 @@ std::vector<T> from_flights(const StageCall& call, const flight::LoadOptions& op
     for (const auto number : counting) std::ranges::move(of_each[number], std::back_inserter(all));
     return all;
 }
+
+/// --since, --until and --glob, of stages that take many flights.
+void add_choice_options(boost::program_options::options_description& options);
+
+/// Which of the flights of these names those options choose, one each; says which it leaves out and why. Throws
+/// InputError where none is left.
+std::vector<bool> chosen_flights(const StageCall& call, const std::vector<std::string>& flights);
+
+/// The call with the flights of its folders of flightwatt batch in place of them, and of all flights those that are
+/// chosen. Throws InputError for a folder that is no batch's, and where no flight is left.
+StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options);
+
+/// The name of a flight by that of its file, also of a series that a batch wrote.
+std::string flight_of_file(const std::filesystem::path& file);
+
+/// The names with all flights that match in place of those that are patterns ('20_07_*'). Throws UsageError for one
+/// that matches none.
+std::set<std::string> with_matching(const std::set<std::string>& names, const std::string& option,
+                                    const std::vector<std::string>& flights);
 
 /// Throws UsageError for --exclude and --keep of a flight that is none of `flights`.
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights);

@@ -35,6 +35,9 @@ void add_sources(const mission::DrawnSources& sources, nlohmann::ordered_json& j
 /// The summary as simulate and compare print it; null stands for "never".
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary);
 
+/// rank,mission,schedule,... (docs/formats.md): a row a mission in their order, all columns whatever the missions are.
+std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked);
+
 /// A plan; null stands for what an infeasible one does not have.
 nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission);
 

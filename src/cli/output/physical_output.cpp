@@ -80,9 +80,9 @@ TextTable trials_table(const mechanical::PhysicalFit& fit) {
     return table;
 }
 
-std::string physical_text(const mechanical::PhysicalFit& fit) {
+std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& screen) {
     const auto& model = fit.model;
-    return "Power from the motion through the air\n" + to_text(constants_table(model)) + accuracy(model) +
+    return "Power from the motion through the air\n" + screen_text(constants_table(model), screen) + accuracy(model) +
            fmt::format(
                "rests on {} flight{}, {} stretches of about {:.0f} s with {} samples, {:.1f} to {:.1f} m/s, climbing "
                "{:+.1f} to {:+.1f} m/s\n\n",
@@ -91,7 +91,7 @@ std::string physical_text(const mechanical::PhysicalFit& fit) {
                model.climb_m_per_s.high) +
            fmt::format("RMS error of stretches held back, {} in turn:\n",
                        fit.held_back_flights ? "flights" : "fifths of the flight") +
-           to_text(trials_table(fit));
+           screen_text(trials_table(fit), screen);
 }
 
 nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit) {

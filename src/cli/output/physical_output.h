@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/text_table.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mechanical/physical_fit.h"
 #include "mechanical/validation.h"
@@ -20,7 +21,7 @@ TextTable constants_table(const mechanical::PhysicalModel& model);
 TextTable trials_table(const mechanical::PhysicalFit& fit);
 
 /// Both tables, what the model rests on, and how far an unseen flight may be off.
-std::string physical_text(const mechanical::PhysicalFit& fit);
+std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& screen);
 
 nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit);
 

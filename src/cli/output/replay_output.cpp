@@ -224,8 +224,11 @@ std::string replay_remark() {
            "utility are the missions' own and were not aboard.";
 }
 
-std::string replay_text(Replays replays) {
-    auto text = to_text(replay_basis_table(replays)) + "\n" + to_text(replay_table(replays)) + "\n";
+std::string replay_text(Replays replays, const Screen& screen) {
+    const ScreenTable results{"what came of each schedule",
+                              {"flight", "mission", "schedule", "final SoC %", "utility", "reserve"}};
+    auto text = screen_text(replay_basis_table(replays), screen, {"what the replays rest on", {}}) + "\n" +
+                screen_text(replay_table(replays), screen, results) + "\n";
     for (const auto& sentence : replay_sentences(replays)) text += sentence + "\n";
     return text + replay_remark() + "\n";
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/text_table.h"
+#include "cli/screen_table.h"
 #include "mission/replay.h"
 
 #include <span>
@@ -25,7 +26,7 @@ std::vector<std::string> replay_sentences(std::span<const mission::Replay> repla
 std::string replay_remark();
 
 /// All of that for people.
-std::string replay_text(std::span<const mission::Replay> replays);
+std::string replay_text(std::span<const mission::Replay> replays, const Screen& screen);
 
 /// flight,mission,schedule,... (docs/formats.md), one row a flight, mission and schedule.
 std::string replay_csv(std::span<const mission::Replay> replays);

@@ -139,6 +139,13 @@ std::string witness_text(const flight::ExplainedEdge& edge) {
     return text.empty() ? "-" : text;
 }
 
+std::string describe_flight(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
+    const auto sorties = phases.sorties.size();
+    return fmt::format("{}: aircraft {}, {} sortie{}", series.flight,
+                       flight::describe_aircraft(series.aircraft_id, series.aircraft_name), sorties,
+                       sorties == 1 ? "" : "s");
+}
+
 TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
     TextTable table{
         {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "verdict", "witnesses"}, {}};
@@ -156,8 +163,10 @@ TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPh
 }
 
 std::string explanation(const flight::FlightSeries& series, const flight::FlightPhases& phases,
-                        const flight::PowerReport& power) {
-    std::string text = to_text(edges_table(series, phases));
+                        const flight::PowerReport& power, const Screen& screen) {
+    const ScreenTable shown{describe_flight(series, phases),
+                            {"sortie", "edge", "time s", "verdict", "altitude m", "witnesses"}};
+    std::string text = screen_text(edges_table(series, phases), screen, shown);
     for (const auto& sortie : phases.sorties) text += heights_text(sortie);
     for (const auto& other : phases.ground_events) {
         text += fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);

@@ -107,8 +107,12 @@ std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, con
 }
 
 std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights,
-                            const std::vector<mechanical::Covariate>& covariates, bool in_flight) {
-    auto text = to_text(flights_table(flights)) + "\n" + to_text(scores_table(flights)) + "\n" +
+                            const std::vector<mechanical::Covariate>& covariates, bool in_flight,
+                            const Screen& screen) {
+    const ScreenTable shown{fmt::format("{} flights, each predicted by the others", flights.size()),
+                            {"flight", "phase", "model", "error %", "measured Wh", "predicted Wh", "error Wh"}};
+    auto text = screen_text(flights_table(flights), screen, shown) + "\n" +
+                screen_text(scores_table(flights), screen, {"how well they predict", {}}) + "\n" +
                 verdict(flights, "fourier", "constant_mean");
     if (in_flight) text += verdict(flights, "in_flight", "fourier");
     text += verdicts_on(covariates, flights);

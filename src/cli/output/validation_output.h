@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/text_table.h"
+#include "cli/screen_table.h"
 #include "mechanical/covariates.h"
 #include "mechanical/validation.h"
 
@@ -24,7 +25,7 @@ std::string verdict(const std::vector<mechanical::ValidatedFlight>& flights, con
 
 /// Both tables, and the verdicts on the models, on those by `covariates`, and on the one in flight where it was tried.
 std::string validation_text(const std::vector<mechanical::ValidatedFlight>& flights,
-                            const std::vector<mechanical::Covariate>& covariates, bool in_flight);
+                            const std::vector<mechanical::Covariate>& covariates, bool in_flight, const Screen& screen);
 
 /// The scores by phase and model.
 nlohmann::ordered_json scores_json(const std::vector<mechanical::ValidatedFlight>& flights);

@@ -1,5 +1,7 @@
 #include "base/toml_reader.h"
 #include "base/toml_text.h"
+#include "mission/file/kept_text.h"
+#include "mission/file/toml_keys.h"
 #include "mission/mission_file.h"
 
 #include <algorithm>
@@ -32,28 +34,16 @@ void move_path(toml::table& table, std::string_view key, const std::filesystem::
     *value = (error ? from / named : near).generic_string();  // what cannot be followed is left where it is
 }
 
-/// A key as people write it: quoted only if it has to be.
-std::string key_text(const std::string& name) {
-    const bool bare = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
-        return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-');
-    });
-    return bare ? name : toml_string(name);
-}
-
-std::string inline_table(const std::vector<std::string>& pairs) {
-    return pairs.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(pairs, ", "));
-}
-
 std::string run_text(const compute::ComputeModel& compute, const compute::Configuration& run) {
     std::vector<std::string> components;
     for (const auto& running : run) {
         const auto& component = compute.components.at(running.component);
         std::vector<std::string> qos;
         for (std::size_t i = 0; i < running.qos.size(); ++i)
-            qos.push_back(key_text(component.profile.parameters[i]) + " = " + toml_real(running.qos[i]));
-        components.push_back(key_text(component.name) + " = " + inline_table(qos));
+            qos.push_back(toml_key(component.profile.parameters[i]) + " = " + toml_real(running.qos[i]));
+        components.push_back(toml_key(component.name) + " = " + toml_inline_table(qos));
     }
-    return inline_table(components);
+    return toml_inline_table(components);
 }
 
 std::string schedule_text(const compute::ComputeModel& compute, const Schedule& schedule) {
@@ -68,10 +58,22 @@ std::string schedule_text(const compute::ComputeModel& compute, const Schedule& 
 
 }  // namespace
 
+std::string toml_key(const std::string& name) {
+    const bool bare = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+        return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-');
+    });
+    return bare ? name : toml_string(name);
+}
+
+std::string toml_inline_table(const std::vector<std::string>& pairs) {
+    return pairs.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(pairs, ", "));
+}
+
 std::string planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                  const compute::ComputeModel& compute, const Schedule& schedule,
                                  const std::filesystem::path& folder) {
-    auto root = toml::parse(text, path.string());
+    const auto read = toml::parse(text, path.string());
+    auto root = read;
     root.insert_or_assign("format", format_version);
     root.erase("plan");
     root.erase("schedule");
@@ -85,9 +87,11 @@ std::string planned_mission_toml(std::string_view text, const std::filesystem::p
     }
     if (auto* cruise = root.get_as<toml::table>("path"))
         for (const std::string_view key : {"waypoints", "flight_plan"}) move_path(*cruise, key, from, to);
+    const auto schedule_below = schedule_text(compute, schedule);
+    if (const auto kept = kept_text(text, read, root)) return *kept + schedule_below;
     std::ostringstream out;
     out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};
-    return out.str() + "\n" + schedule_text(compute, schedule);
+    return out.str() + "\n" + schedule_below;
 }
 
 }  // namespace flightwatt::mission

@@ -1,0 +1,185 @@
+// Which of the flights that are given are used: by name, by date, and those of folders of flightwatt batch.
+
+#include "base/error.h"
+#include "batch/batch_files.h"
+#include "batch/manifest.h"
+#include "cli/output/flight_options.h"
+#include "telemetry/log_configuration.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <regex>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fnmatch.h>
+
+namespace flightwatt::cli {
+namespace {
+
+/// A day as a number that orders days: 20200705.
+using Day = int;
+
+std::optional<Day> day_of(int year, int month, int day) {
+    constexpr int per_year = 10000;
+    constexpr int per_month = 100;
+    if (month < 1 || month > 12 || day < 1 || day > 31) return std::nullopt;
+    return year * per_year + month * per_month + day;
+}
+
+int number_of(const std::ssub_match& digits) { return std::stoi(digits.str()); }
+
+/// Of a log that the ground station named after its start: 20_07_05__10_26_44.
+std::optional<Day> day_of_flight(const std::string& flight) {
+    constexpr int century = 2000;
+    static const std::regex name("(^|[^0-9])([0-9]{2})_([0-9]{2})_([0-9]{2})__[0-9]{2}_[0-9]{2}_[0-9]{2}");
+    std::smatch match;
+    if (!std::regex_search(flight, match, name)) return std::nullopt;
+    return day_of(century + number_of(match[2]), number_of(match[3]), number_of(match[4]));
+}
+
+std::optional<Day> day_option(const StageCall& call, const std::string& option) {
+    const auto text = call.maybe<std::string>(option);
+    if (!text) return std::nullopt;
+    static const std::regex date("([0-9]{4})-([0-9]{2})-([0-9]{2})");
+    std::smatch match;
+    std::optional<Day> day;
+    if (std::regex_match(*text, match, date))
+        day = day_of(number_of(match[1]), number_of(match[2]), number_of(match[3]));
+    if (!day) throw UsageError(fmt::format("--{} {}: expected a date as 2020-07-05", option, *text));
+    return day;
+}
+
+bool matches(const std::string& pattern, const std::string& name) {
+    return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+}
+
+bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
+
+std::vector<std::string> texts_of(const StageCall& call, const std::string& option) {
+    return call.maybe<std::vector<std::string>>(option).value_or(std::vector<std::string>());
+}
+
+/// What the user chose.
+struct FlightChoice {
+    std::optional<Day> since;
+    std::optional<Day> until;
+    std::vector<std::string> patterns;
+};
+
+/// Why a flight is left out; empty for one that is used.
+std::string why_left_out(const FlightChoice& choice, const std::string& flight) {
+    const auto fits = [&](const auto& pattern) { return matches(pattern, flight); };
+    if (!choice.patterns.empty() && std::ranges::none_of(choice.patterns, fits)) return "its name is not of --glob";
+    if (!choice.since && !choice.until) return "";
+    const auto day = day_of_flight(flight);
+    if (!day) return "its name holds no date (YY_MM_DD__hh_mm_ss)";
+    if (choice.since && *day < *choice.since) return "it is before --since";
+    if (choice.until && *day > *choice.until) return "it is after --until";
+    return "";
+}
+
+/// The series of the flights that a batch accepted and may fit.
+std::vector<std::string> series_of_batch(const StageCall& call, const std::filesystem::path& out,
+                                         const flight::LoadOptions& options) {
+    std::vector<std::string> files;
+    for (const auto& stored : batch::read_stored_flights(out)) {
+        const auto& record = stored.record;
+        if (!stored.damage.empty()) {
+            warn(call, stored.damage);
+        } else if (const auto why = record.accepted ? batch::exclusion_of(record, options) : record.error;
+                   !why.empty() && !options.excluded.contains(record.flight)) {
+            note(call, fmt::format("{} is left out: {}", record.flight, why));
+        } else {
+            files.push_back((out / "flights" / (record.flight + batch::series_ending)).string());
+        }
+    }
+    return files;
+}
+
+}  // namespace
+
+void add_choice_options(boost::program_options::options_description& options) {
+    auto add = options.add_options();
+    add("since", value("DATE"), "flights of this day (2020-07-05) and later, by the date in their names");
+    add("until", value("DATE"), "flights of this day and before");
+    add("glob", value<std::vector<std::string>>("PATTERN")->composing(),
+        "flights whose name matches, '20_07_*'; may be given several times");
+}
+
+std::vector<bool> chosen_flights(const StageCall& call, const std::vector<std::string>& flights) {
+    const FlightChoice choice{day_option(call, "since"), day_option(call, "until"), texts_of(call, "glob")};
+    if (choice.since && choice.until && *choice.since > *choice.until)
+        throw UsageError("--since is after --until: no flight is of both");
+    std::vector<bool> chosen;
+    std::vector<std::string> left_out;
+    chosen.reserve(flights.size());
+    for (const auto& flight : flights) {
+        const auto why = why_left_out(choice, flight);
+        chosen.push_back(why.empty());
+        if (!why.empty()) left_out.push_back(fmt::format("{} ({})", flight, why));
+    }
+    if (left_out.empty()) return chosen;
+    if (left_out.size() == flights.size()) {
+        throw InputError({}, fmt::format("no flight is left of {}: {}", flights.size(), left_out.front()),
+                         "see --since, --until and --glob");
+    }
+    constexpr std::size_t most = 8;
+    const auto more = left_out.size() > most ? fmt::format(" and {} more", left_out.size() - most) : std::string();
+    note(call,
+         fmt::format("{} of {} flights are left out: {}{}", left_out.size(), flights.size(),
+                     fmt::join(left_out.begin(),
+                               left_out.begin() + static_cast<std::ptrdiff_t>(std::min(left_out.size(), most)), ", "),
+                     more));
+    return chosen;
+}
+
+StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options) {
+    std::vector<std::string> files;
+    for (const auto& input : call.inputs) {
+        std::error_code none;
+        if (std::filesystem::is_directory(input, none)) {
+            std::ranges::move(series_of_batch(call, input, options), std::back_inserter(files));
+        } else {
+            files.push_back(input);
+        }
+    }
+    std::vector<std::string> names;
+    names.reserve(files.size());
+    for (const auto& file : files) names.push_back(flight_of_file(file));
+    const auto chosen = chosen_flights(call, names);
+    call.inputs.clear();
+    for (std::size_t i = 0; i < files.size(); ++i)
+        if (chosen[i]) call.inputs.push_back(files[i]);
+    if (call.inputs.empty()) throw InputError({}, "none of the folders holds a flight that can be used");
+    return call;
+}
+
+std::string flight_of_file(const std::filesystem::path& file) {
+    const auto name = file.filename().string();
+    const std::string_view series = batch::series_ending;
+    if (name.ends_with(series)) return name.substr(0, name.size() - series.size());
+    return telemetry::flight_name(file);
+}
+
+std::set<std::string> with_matching(const std::set<std::string>& names, const std::string& option,
+                                    const std::vector<std::string>& flights) {
+    std::set<std::string> all;
+    for (const auto& name : names) {
+        const bool is_flight = std::ranges::find(flights, name) != flights.end();
+        if (is_flight || !is_pattern(name)) {
+            all.insert(name);
+            continue;
+        }
+        const auto before = all.size();
+        for (const auto& flight : flights)
+            if (matches(name, flight)) all.insert(flight);
+        if (all.size() == before && std::ranges::none_of(flights, [&](const auto& f) { return matches(name, f); }))
+            throw UsageError(fmt::format("--{} {}: no flight's name matches", option, name));
+    }
+    return all;
+}
+
+}  // namespace flightwatt::cli

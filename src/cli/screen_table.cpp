@@ -1,0 +1,384 @@
+#include "cli/screen_table.h"
+
+#include "base/csv.h"
+#include "base/duration_text.h"
+#include "base/number.h"
+#include "cli/terminal.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/split.hpp>
+#include <fmt/format.h>
+
+namespace flightwatt::cli {
+namespace {
+
+struct UnitOfSuffix {
+    std::string_view suffix;
+    std::string_view unit;
+    int decimals;
+};
+
+/// Longer ones before those that they end with.
+constexpr std::array<UnitOfSuffix, 15> units_of_suffixes{{{"_m3_per_s3", "m3/s3", 0},
+                                                          {"_m_per_s2", "m/s2", 2},
+                                                          {"_m_per_s", "m/s", 1},
+                                                          {"_rad_per_s", "rad/s", 4},
+                                                          {"_percent", "%", 1},
+                                                          {"_mah", "mAh", 0},
+                                                          {"_ohm", "ohm", 4},
+                                                          {"_deg", "deg", 1},
+                                                          {"_ah", "Ah", 3},
+                                                          {"_wh", "Wh", 3},
+                                                          {"_w", "W", 2},
+                                                          {"_v", "V", 2},
+                                                          {"_a", "A", 2},
+                                                          {"_m", "m", 1},
+                                                          {"_s", "s", 1}}};
+
+const UnitOfSuffix* unit_of(std::string_view column) {
+    const auto* const found = std::ranges::find_if(
+        units_of_suffixes, [&](const UnitOfSuffix& unit) { return column.ends_with(unit.suffix); });
+    return found == units_of_suffixes.end() ? nullptr : found;
+}
+
+/// Columns of durations are told in minutes, in a table for people.
+bool is_duration(std::string_view column) { return column.starts_with("duration") && column.ends_with("_s"); }
+
+std::size_t characters_of(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+/// The first `count` characters of `text`, in bytes.
+std::size_t bytes_of_characters(std::string_view text, std::size_t count) {
+    std::size_t at = 0;
+    while (at < text.size() && count > 0) {
+        ++at;
+        while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U) ++at;
+        --count;
+    }
+    return at;
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+    std::vector<std::string> words;
+    boost::split(words, text, boost::is_any_of(" "), boost::token_compress_on);
+    std::erase(words, "");
+    return words;
+}
+
+/// Text in lines of at most `width` characters, broken between words, and within one that is longer (after an
+/// underscore, a slash or a hyphen, where it has one).
+std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
+    std::vector<std::string> lines;
+    std::string line;
+    const auto end_line = [&] {
+        if (!line.empty()) lines.push_back(line);
+        line.clear();
+    };
+    for (std::string word : words_of(text)) {
+        if (!line.empty() && characters_of(line) + 1 + characters_of(word) > width) end_line();
+        if (!line.empty()) line += ' ';
+        while (characters_of(line) + characters_of(word) > width) {
+            end_line();
+            auto cut = bytes_of_characters(word, width);
+            const auto joint = std::string_view(word).substr(0, cut).find_last_of("_/-");
+            if (joint != std::string_view::npos && joint > 0) cut = joint + 1;
+            lines.push_back(word.substr(0, cut));
+            word.erase(0, cut);
+        }
+        line += word;
+    }
+    end_line();
+    if (lines.empty()) lines.emplace_back();
+    return lines;
+}
+
+/// A column as it is shown.
+struct ShownColumn {
+    std::size_t index = 0;
+    std::string name;  ///< words of the head
+    std::string unit;  ///< below them; may be empty
+    bool is_text = false;
+    std::size_t least = 0;    ///< characters that it cannot do without
+    std::size_t natural = 0;  ///< characters of its widest cell and head
+    std::size_t width = 0;
+};
+
+bool is_number_like(std::string_view cell) {
+    return !cell.empty() && (std::isdigit(static_cast<unsigned char>(cell.front())) != 0 || cell.front() == '-' ||
+                             cell.front() == '+' || cell == "nan");
+}
+
+constexpr std::size_t text_wraps_from = 24;  ///< characters: names of flights and missions stay on one line
+
+ShownColumn shown_column(const TextTable& table, std::size_t index) {
+    ShownColumn column;
+    column.index = index;
+    std::string_view head = table.header[index];
+    if (const auto* unit = unit_of(head); unit != nullptr && head.find(' ') == std::string_view::npos) {
+        head.remove_suffix(unit->suffix.size());
+        if (!is_duration(table.header[index])) column.unit = std::string(unit->unit);
+    }
+    column.name = std::string(head);
+    std::ranges::replace(column.name, '_', ' ');
+    std::size_t widest = characters_of(column.unit);
+    std::size_t numbers = 0;
+    for (const auto& row : table.rows) {
+        widest = std::max(widest, characters_of(row[index]));
+        if (row[index].empty() || is_number_like(row[index])) ++numbers;
+    }
+    column.is_text = numbers * 2 < table.rows.size() || table.rows.empty();
+    std::size_t longest_word = 0;
+    for (const auto& word : words_of(column.name)) longest_word = std::max(longest_word, characters_of(word));
+    column.natural = std::max(widest, longest_word);
+    column.least = column.is_text ? std::max(std::min(widest, text_wraps_from), longest_word) : column.natural;
+    return column;
+}
+
+/// Names of the columns in the order of what they matter.
+std::vector<std::size_t> by_importance(const TextTable& table, const std::vector<std::string>& first) {
+    std::vector<std::size_t> order;
+    for (const auto& name : first) {
+        const auto found = std::ranges::find(table.header, name);
+        if (found != table.header.end()) order.push_back(static_cast<std::size_t>(found - table.header.begin()));
+    }
+    for (std::size_t i = 0; i < table.header.size(); ++i)
+        if (std::ranges::find(order, i) == order.end()) order.push_back(i);
+    return order;
+}
+
+constexpr std::size_t gap = 2;  ///< blanks between columns
+
+bool is_empty_column(const TextTable& table, std::size_t index) {
+    return std::ranges::all_of(table.rows, [&](const auto& row) { return row[index].empty() || row[index] == "-"; });
+}
+
+/// The columns for which there is room, each with its width, in the order of the table.
+std::vector<ShownColumn> columns_that_fit(const TextTable& table, const Screen& screen, const ScreenTable& options) {
+    std::vector<ShownColumn> columns;
+    std::size_t used = 0;
+    for (const auto index : by_importance(table, options.first)) {
+        auto column = shown_column(table, index);
+        if (!screen.wide && !table.rows.empty() && is_empty_column(table, index)) continue;
+        const auto needs = column.least + (columns.empty() ? 0 : gap);
+        if (!screen.wide && !columns.empty() && used + needs > screen.columns) continue;
+        column.width = screen.wide ? column.natural : std::min(column.least, screen.columns);
+        used += needs;
+        columns.push_back(std::move(column));
+    }
+    for (auto& column : columns) {  // what is left goes to texts, the important ones first
+        if (screen.wide || !column.is_text || used >= screen.columns) continue;
+        const auto more = std::min(column.natural - std::min(column.natural, column.width), screen.columns - used);
+        column.width += more;
+        used += more;
+    }
+    std::ranges::sort(columns, {}, &ShownColumn::index);
+    return columns;
+}
+
+/// Of the 256 colours those of the pictures, for phases; and what is good or wrong.
+int color_of(std::string_view cell) {
+    constexpr int none = -1;
+    if (cell == "takeoff" || cell == "take-off") return 33;
+    if (cell == "cruise") return 36;
+    if (cell == "landing") return 166;
+    if (cell.starts_with("rejected")) return 160;
+    return none;
+}
+
+constexpr int color_of_the_best = 34;
+
+std::string in_color(const std::string& text, int color) {
+    return color < 0 ? text : fmt::format("\x1b[38;5;{}m{}\x1b[0m", color, text);
+}
+
+std::string strong(const std::string& text, bool colors) {
+    return colors ? fmt::format("\x1b[1m{}\x1b[0m", text) : text;
+}
+
+std::string without_controls_of(std::string text) {
+    std::ranges::replace_if(
+        text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+    return text;
+}
+
+/// One line of a row: the parts of its cells.
+std::string line_of(const std::vector<ShownColumn>& columns, const std::vector<std::string>& parts,
+                    const std::vector<int>& colors) {
+    std::string line;
+    std::size_t pending = 0;  // blanks: none at the end of a line
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        const auto blanks = columns[i].width - std::min(columns[i].width, characters_of(parts[i]));
+        if (i > 0) pending += gap;
+        if (!columns[i].is_text) pending += blanks;
+        if (!parts[i].empty()) {
+            line += std::string(pending, ' ') + in_color(parts[i], colors[i]);
+            pending = 0;
+        }
+        if (columns[i].is_text || parts[i].empty()) pending += columns[i].is_text ? blanks : 0;
+    }
+    return line + "\n";
+}
+
+/// A row in as many lines as its longest cell takes.
+std::string row_lines(const std::vector<ShownColumn>& columns, const std::vector<std::vector<std::string>>& cells,
+                      const std::vector<int>& colors) {
+    std::size_t height = 1;
+    for (const auto& cell : cells) height = std::max(height, cell.size());
+    std::string text;
+    for (std::size_t line = 0; line < height; ++line) {
+        std::vector<std::string> parts;
+        parts.reserve(cells.size());
+        for (const auto& cell : cells) parts.push_back(line < cell.size() ? cell[line] : "");
+        text += line_of(columns, parts, colors);
+    }
+    return text;
+}
+
+/// The words of each head at its bottom, the units below.
+std::string head_lines(const std::vector<ShownColumn>& columns, bool colors) {
+    std::vector<std::vector<std::string>> cells;
+    std::size_t height = 1;
+    bool has_units = false;
+    cells.reserve(columns.size());
+    for (const auto& column : columns) {
+        cells.push_back(wrapped(column.name, column.width));
+        height = std::max(height, cells.back().size());
+        has_units = has_units || !column.unit.empty();
+    }
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        cells[i].insert(cells[i].begin(), height - cells[i].size(), "");
+        if (has_units) cells[i].push_back(columns[i].unit);
+    }
+    const std::vector<int> plain(columns.size(), -1);
+    constexpr int grey = 244;
+    const std::vector<int> pale(columns.size(), colors ? grey : -1);
+    return row_lines(columns, cells, colors ? pale : plain);
+}
+
+std::string rows_text(const TextTable& table, const std::vector<ShownColumn>& columns, const Screen& screen,
+                      const ScreenTable& options) {
+    const auto rows = table.rows.size();
+    const bool cuts = options.most_rows > 0 && rows > options.most_rows;
+    const auto before = cuts ? options.most_rows - options.most_rows / 3 : rows;
+    const auto after = cuts ? options.most_rows / 3 : 0;
+    std::string text;
+    for (std::size_t r = 0; r < rows; ++r) {
+        if (cuts && r == before) {
+            text += fmt::format("... {} rows more: -o FILE or a pipe gives all\n", rows - before - after);
+            r = rows - after;
+        }
+        std::vector<std::vector<std::string>> cells;
+        std::vector<int> colors;
+        cells.reserve(columns.size());
+        colors.reserve(columns.size());
+        for (const auto& column : columns) {
+            const auto& cell = table.rows[r][column.index];
+            cells.push_back(wrapped(without_controls_of(cell), column.width));
+            colors.push_back(!screen.colors ? -1 : options.best_row == r ? color_of_the_best : color_of(cell));
+        }
+        text += row_lines(columns, cells, colors);
+    }
+    return text;
+}
+
+/// The names of the columns that are not shown.
+std::string left_out_text(const TextTable& table, const std::vector<ShownColumn>& columns, const Screen& screen) {
+    std::vector<std::string> no_room;
+    std::vector<std::string> empty;
+    for (std::size_t i = 0; i < table.header.size(); ++i) {
+        if (std::ranges::find(columns, i, &ShownColumn::index) != columns.end()) continue;
+        (is_empty_column(table, i) ? empty : no_room).push_back(table.header[i]);
+    }
+    std::string text;
+    const auto add = [&](const char* what, const std::vector<std::string>& names, const char* more) {
+        if (names.empty()) return;
+        for (const auto& line : wrapped(what + boost::algorithm::join(names, ", ") + more, screen.columns))
+            text += line + "\n";
+    };
+    add("left out: ", no_room, " (--wide shows all)");
+    add("empty: ", empty, "");
+    return text;
+}
+
+/// The decimals of a column: by its unit, or enough for four digits of the largest number.
+std::string readable_cell(const std::string& cell, std::string_view column) {
+    const auto number = parse_number(cell);
+    if (!number || !std::isfinite(*number)) return cell;
+    if (is_duration(column)) return cell;  // told in minutes when it is shown
+    const bool is_place = column.starts_with("latitude") || column.starts_with("longitude");
+    constexpr int decimals_of_places = 5;  // a metre
+    if (is_place) return fmt::format("{:.{}f}", *number, decimals_of_places);
+    if (const auto* unit = unit_of(column)) return fmt::format("{:.{}f}", *number, unit->decimals);
+    if (cell.find_first_of(".eE") == std::string::npos) return cell;
+    return fmt::format("{:.4g}", *number);
+}
+
+TextTable with_minutes(TextTable table) {
+    for (std::size_t i = 0; i < table.header.size(); ++i) {
+        if (!is_duration(table.header[i])) continue;
+        for (auto& row : table.rows)
+            if (const auto number = parse_number(row[i])) row[i] = duration_text(*number);
+    }
+    return table;
+}
+
+}  // namespace
+
+Screen screen_of(const StageCall& call) {
+    const auto ability = standard_output_ability();
+    Screen screen;
+    screen.is_terminal = ability.is_terminal;
+    screen.colors = ability.colors;
+    screen.columns = ability.columns;
+    screen.wide = call.has("wide");
+    return screen;
+}
+
+void add_wide_option(boost::program_options::options_description& options) {
+    options.add_options()("wide", "on a terminal: all columns, also beyond its width");
+}
+
+std::string screen_text(const TextTable& whole, const Screen& screen, const ScreenTable& options) {
+    if (!screen.is_terminal) return to_text(whole);
+    const auto table = with_minutes(whole);
+    const auto columns = columns_that_fit(table, screen, options);
+    std::string text;
+    if (!options.title.empty()) {
+        for (const auto& line : wrapped(without_controls_of(options.title), screen.columns))
+            text += strong(line, screen.colors) + "\n";
+    }
+    text += head_lines(columns, screen.colors);
+    text += rows_text(table, columns, screen, options);
+    return text + left_out_text(table, columns, screen);
+}
+
+TextTable readable_table(std::string_view csv) {
+    const auto read = parse_csv(csv, "the result");
+    TextTable table{read.columns, {}};
+    table.rows.reserve(read.rows.size());
+    for (const auto& row : read.rows) {
+        auto& cells = table.rows.emplace_back();
+        cells.reserve(row.cells.size());
+        for (std::size_t i = 0; i < row.cells.size(); ++i)
+            cells.push_back(readable_cell(row.cells[i].text, table.header[i]));
+    }
+    return table;
+}
+
+void write_csv_result(const StageCall& call, std::string_view csv, const ScreenTable& options) {
+    const auto screen = screen_of(call);
+    if (call.output || call.json || !screen.is_terminal) return write_result(call, csv);
+    print(screen_text(readable_table(csv), screen, options));
+}
+
+}  // namespace flightwatt::cli

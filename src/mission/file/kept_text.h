@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <toml++/toml.h>
+
+namespace flightwatt::mission {
+
+/// The text of a mission file that says what `wanted` says, with its comments, its order and its numbers as they were
+/// written: without its plan, policy and schedule and the comments directly above and in them, with other names of
+/// files, and with a format if it had none. `read` is what `text` says. std::nullopt for a text that is written in a
+/// way that this does not follow; what it gives was read again and says what `wanted` says.
+std::optional<std::string> kept_text(std::string_view text, const toml::table& read, const toml::table& wanted);
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,176 @@
+// A new mission holds every key of docs/missions.md, and each that it has as a comment is read once it is none.
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "battery/battery.h"
+#include "compute/profile_reader.h"
+#include "helpers/document.h"
+#include "helpers/test_paths.h"
+#include "mechanical/covariates.h"
+#include "mission/mission_file.h"
+
+#include <algorithm>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::test {
+namespace {
+
+/// A folder with the files that missions of it name.
+class NewMissions : public testing::Test {
+  protected:
+    std::filesystem::path folder = scratch_dir();
+    std::vector<std::string> models{"synthetic-wing.toml"};
+
+    void SetUp() override {
+        copy("fits/mechanical/synthetic-wing.toml");
+        copy("fits/battery/paper.toml");
+        copy("fits/compute/tx2-detection.csv");
+        write_file_atomically(folder / "no-header.csv", "5.8,20\n10,22\n16,23\n25,25\n32,27\n");
+        write_file_atomically(folder / "with-flags.csv", "200,100\n5.8,20\n10,22\n16,23\n25,25\n32,27\n");
+        write_file_atomically(folder / "survey.csv", "east_m,north_m\n500,0\n900,400\n");
+        write_file_atomically(folder / "flight_plan.xml",
+                              "<flight_plan lat0=\"43.46223\" lon0=\"1.27289\" alt=\"260\"><waypoints>"
+                              "<waypoint name=\"1\" x=\"300\" y=\"10\"/><waypoint name=\"2\" x=\"500\" y=\"90\"/>"
+                              "<waypoint name=\"STDBY\" x=\"40\" y=\"70\"/></waypoints></flight_plan>\n");
+        write_models_by_covariate();
+    }
+
+    /// The mission for a model, with the schedule planned or given.
+    std::string text_for(const std::string& model, bool is_planned) const {
+        mission::NewMission fresh;
+        fresh.name = "survey";
+        fresh.mechanical = model;
+        fresh.model = mechanical::read_mechanical_model(folder / model);
+        fresh.battery = "paper.toml";
+        fresh.capacity_ah = battery::read_battery(folder / "paper.toml").capacity_ah;
+        fresh.components.push_back(
+            {"detection", "tx2-detection.csv", compute::read_power_profile(folder / "tx2-detection.csv")});
+        fresh.is_planned = is_planned;
+        return new_mission_toml(fresh);
+    }
+
+    std::string why_refused(const std::string& text, bool may_lack_schedule) const {
+        try {
+            mission::MissionReading reading;
+            reading.may_lack_schedule = may_lack_schedule;
+            mission::parse_mission(text, folder / "mission.toml", reading);
+            return "";
+        } catch (const InputError& error) {
+            return std::string(error.what()) + " " + error.hint();
+        }
+    }
+
+  private:
+    void copy(const std::string& file) const {
+        const auto from = source_dir() / file;
+        write_file_atomically(folder / from.filename(), read_file(from));
+    }
+
+    /// The model of docs/formats.md, once for each covariate that a level may follow.
+    void write_models_by_covariate() {
+        const auto page = read_document(source_dir() / "docs" / "formats.md");
+        const auto example = std::ranges::find(page.examples, "model", &DocumentedExample::kind);
+        ASSERT_NE(example, page.examples.end());
+        for (const auto covariate : mechanical::all_covariates) {
+            const auto name = std::string(to_string(covariate));
+            models.push_back(name + ".toml");
+            write_file_atomically(folder / models.back(),
+                                  std::regex_replace(example->text, std::regex("wind_m_per_s"), name));
+        }
+    }
+};
+
+bool is_commented_key(const std::string& line) { return line.size() > 1 && line[0] == '#' && line[1] != ' '; }
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    for (std::size_t at = 0; at < text.size();) {
+        const auto end = text.find('\n', at);
+        lines.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return lines;
+}
+
+/// The numbers of the lines of each block of commented keys: [begin, end).
+std::vector<std::pair<std::size_t, std::size_t>> blocks_of(const std::vector<std::string>& lines) {
+    std::vector<std::pair<std::size_t, std::size_t>> blocks;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (!is_commented_key(lines[i])) continue;
+        if (blocks.empty() || blocks.back().second != i) blocks.emplace_back(i, i);
+        blocks.back().second = i + 1;
+    }
+    return blocks;
+}
+
+/// The text with one block taken out of its comment. What the comments say goes instead of it is left out: of a plan
+/// and a policy the schedule, of a utility the one that stands there.
+std::string with_block(const std::vector<std::string>& lines, const std::pair<std::size_t, std::size_t>& block) {
+    const auto& first = lines[block.first];
+    const bool decides = first.starts_with("#[plan]") || first.starts_with("#[policy]");
+    const bool is_utility = first.starts_with("#utility");
+    std::string text;
+    bool in_schedule = false;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const bool is_taken = i >= block.first && i < block.second;
+        if (lines[i].starts_with("[")) in_schedule = lines[i] == "[[schedule]]";
+        if (!is_taken && decides && in_schedule && !lines[i].starts_with("#")) continue;
+        if (!is_taken && is_utility && lines[i].starts_with("utility")) continue;
+        text += (is_taken ? lines[i].substr(1) : lines[i]) + "\n";
+    }
+    return text;
+}
+
+TEST_F(NewMissions, AreReadAsTheyAre) {
+    for (const auto& model : models) {
+        EXPECT_EQ(why_refused(text_for(model, false), false), "") << model;
+        EXPECT_EQ(why_refused(text_for(model, true), true), "") << model;
+    }
+}
+
+TEST_F(NewMissions, HoldEveryKeyOfTheDocumentation) {
+    const auto page = read_document(source_dir() / "docs" / "missions.md");
+    const auto text = text_for(models.front(), false) + text_for(models.front(), true);
+    std::size_t keys = 0;
+    for (const auto& documented : page.keys) {
+        const bool is_free = std::ranges::all_of(documented.key, [](char c) { return c >= 'A' && c <= 'Z'; });
+        if (documented.section != "Mission file" || is_free) continue;
+        ++keys;
+        EXPECT_TRUE(std::regex_search(text, std::regex("(^|[^a-z_])" + documented.key + "([^a-z_]|$)")))
+            << "line " << documented.line << ": " << documented.key;
+    }
+    EXPECT_GT(keys, 80U) << "the page was not read";
+}
+
+TEST_F(NewMissions, HaveNoCommentedKeyThatIsRefused) {
+    std::set<std::string> tried;
+    for (const bool is_planned : {false, true}) {
+        const auto usual = lines_of(text_for(models.front(), is_planned));
+        for (const auto& block : blocks_of(usual)) {
+            std::string why;
+            bool is_read = false;
+            for (const auto& model : models) {
+                // The comments are the same for all models but for values: of the model's own covariate.
+                const auto text = with_block(lines_of(text_for(model, is_planned)), block);
+                for (const auto* profile : {"tx2-detection.csv", "no-header.csv", "with-flags.csv"}) {
+                    const auto refused =
+                        why_refused(std::regex_replace(text, std::regex("tx2-detection\\.csv"), profile), true);
+                    is_read = is_read || refused.empty();
+                    if (!refused.empty()) why += "\n" + model + ", " + profile + ": " + refused;
+                }
+                if (is_read) break;
+            }
+            tried.insert(usual[block.first]);
+            EXPECT_TRUE(is_read) << usual[block.first] << why;
+        }
+    }
+    EXPECT_GT(tried.size(), 25U);
+}
+
+}  // namespace
+}  // namespace flightwatt::test

@@ -1,0 +1,90 @@
+// A folder for an aircraft: its logs, fits and missions, and the commands that lead from one to the other.
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "cli/numeric_options.h"
+#include "cli/output/json_text.h"
+#include "cli/stage.h"
+
+#include <array>
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace {
+
+using namespace flightwatt;
+
+constexpr std::array<const char*, 3> folders{"logs", "fits", "missions"};
+
+/// The five commands, for make(1) or to be typed. A line that make runs begins with a tab.
+std::string list_of_commands(double capacity_ah) {
+    return fmt::format(
+        R"(# From logs to a report in five commands. `make` runs those that something newer asks for; they may be typed as well.
+# Put each flight's .data and .log into logs/ first.
+
+# What the pack holds [Ah], as printed on it.
+CAPACITY_AH = {}
+
+report.html: missions/first.csv
+	flightwatt report fits missions/first.toml -o report.html
+
+# State of charge over time.
+missions/first.csv: missions/first.toml fits/model.toml fits/pack.toml
+	flightwatt simulate missions/first.toml -o missions/first.csv
+
+# Written once, then yours: every key is explained in it.
+missions/first.toml: | fits/model.toml fits/pack.toml
+	flightwatt new-mission --mechanical fits/model.toml --battery fits/pack.toml -o missions/first.toml
+
+# The battery that they flew on.
+fits/pack.toml: fits/model.toml
+	flightwatt battery $(wildcard logs/*.data logs/*.data.*) --capacity $(CAPACITY_AH) -o fits/pack.toml
+
+# Phases, energies, and the model of take-off, cruise and landing.
+fits/model.toml: logs $(wildcard logs/*)
+	flightwatt batch logs -o fits
+)",
+        capacity_ah);
+}
+
+int make_folder(const cli::StageCall& call) {
+    constexpr double usual_ah = 5.0;
+    const auto capacity_ah = cli::positive_option(call, "capacity", "Ah").value_or(usual_ah);
+    const std::filesystem::path root = call.inputs.front();
+    const std::filesystem::path list = call.output ? std::filesystem::path(*call.output) : root / "Makefile";
+    std::error_code none;
+    if (std::filesystem::exists(list, none)) {
+        throw OutputError(fmt::format("{} is there already and stays as it is; nothing was made", list.string()));
+    }
+    for (const auto* folder : folders) make_directories(root / folder);
+    write_file_atomically(list, list_of_commands(capacity_ah));
+    if (call.json) {
+        nlohmann::ordered_json json{{"folder", root.string()}, {"folders", folders}, {"commands", list.string()}};
+        cli::print(cli::json_text(json));
+    } else {
+        cli::print(
+            fmt::format("{0}/logs      put each flight's .data and .log here\n"
+                        "{0}/fits      models, and what was found of each flight\n"
+                        "{0}/missions  what is to be flown\n"
+                        "{1}  the five commands from logs to report.html{2}\n",
+                        root.string(), list.string(), call.output ? "" : ": make -C " + root.string()));
+    }
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "init", "DIR",
+        R"(Lays out a folder for an aircraft: logs/, fits/, missions/, and a Makefile with the five commands that lead from
+logs to a report. Folders that are there stay; a Makefile that is there is not replaced, and then nothing is
+made.)"};
+    stage.max_inputs = 1;
+    stage.output_help = "write the list of commands to FILE instead of DIR/Makefile";
+    stage.options.add_options()("capacity", cli::value<double>("AH"),
+                                "what the pack holds, for the list; 5 if not given");
+    return cli::run_stage(argc, argv, stage, make_folder);
+}

@@ -1,0 +1,104 @@
+// A mission file to begin with: every key explained, made for the files that it names.
+
+#include "base/error.h"
+#include "battery/battery.h"
+#include "cli/output/json_text.h"
+#include "cli/output/mission_output.h"
+#include "cli/stage.h"
+#include "compute/profile_reader.h"
+#include "mission/mission_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace {
+
+using namespace flightwatt;
+
+/// A file as a mission in `folder` names it.
+std::string named_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    std::error_code error;
+    const auto near = std::filesystem::proximate(file, folder, error);
+    return (error ? std::filesystem::absolute(file) : near).generic_string();
+}
+
+std::string required_file(const cli::StageCall& call, const std::string& option, const char* made_by) {
+    const auto file = call.maybe<std::string>(option);
+    if (!file) throw UsageError(fmt::format("expected --{} FILE, from `flightwatt {}`", option, made_by));
+    return *file;
+}
+
+/// The file's name without its ending, or the next free one of NAME_2, NAME_3, ...
+std::string component_name(const std::filesystem::path& profile, const std::vector<mission::NewComponent>& others) {
+    const auto stem = profile.stem().string();
+    auto name = stem;
+    for (int use = 2; std::ranges::find(others, name, &mission::NewComponent::name) != others.end(); ++use)
+        name = fmt::format("{}_{}", stem, use);
+    return name;
+}
+
+int write_new_mission(const cli::StageCall& call) {
+    const auto mechanical = required_file(call, "mechanical", "batch");
+    const auto pack = required_file(call, "battery", "battery");
+    const std::filesystem::path file = call.output.value_or("mission.toml");
+    std::error_code none;
+    if (call.output && std::filesystem::exists(file, none)) {
+        throw OutputError(fmt::format("{} is there already and stays as it is: give another name", file.string()));
+    }
+    const auto folder = std::filesystem::absolute(file).parent_path();
+    mission::NewMission fresh;
+    fresh.name = call.maybe<std::string>("name").value_or(file.stem().string());
+    fresh.mechanical = named_from(folder, mechanical);
+    fresh.model = mechanical::read_mechanical_model(mechanical);
+    fresh.battery = named_from(folder, pack);
+    fresh.capacity_ah = battery::read_battery(pack).capacity_ah;
+    fresh.is_planned = call.has("plan");
+    for (const auto& profile : call.maybe<std::vector<std::string>>("profile").value_or(std::vector<std::string>())) {
+        fresh.components.push_back({component_name(profile, fresh.components), named_from(folder, profile),
+                                    compute::read_power_profile(profile)});
+    }
+    if (fresh.is_planned && fresh.components.empty()) {
+        throw UsageError("--plan: expected --profile FILE of the software whose schedule is to be planned");
+    }
+    const auto text = new_mission_toml(fresh);
+    mission::MissionReading reading;
+    reading.may_lack_schedule = fresh.is_planned;
+    const auto read = mission::parse_mission(text, file, reading);
+    cli::write_result(call, text);
+    cli::warn_of_setup(call, setup_of(read));
+    if (call.json) {
+        nlohmann::ordered_json json{{"mission", fresh.name}, {"components", nlohmann::ordered_json::array()}};
+        for (const auto& component : fresh.components) json["components"].push_back(component.name);
+        json["planned"] = fresh.is_planned;
+        cli::print(cli::json_text(json));
+    } else if (call.output) {
+        cli::note(call, fmt::format("{0} is written; next: flightwatt {1} {0}", file.string(),
+                                    fresh.is_planned ? "plan" : "simulate"));
+    }
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "new-mission", "--mechanical MODEL.toml --battery PACK.toml [--profile P.csv]...",
+        R"(Writes a mission file to begin with, for that aircraft, pack and software. It simulates as it is: each
+component runs at the middle of what was profiled, and 20 % of charge are kept in reserve. Every other key of a
+mission stands in it as a comment, with what it means and an example. A file that is there is not
+replaced.)"};
+    stage.min_inputs = 0;
+    stage.max_inputs = 0;
+    stage.output_help = "write the mission to FILE, which names its files relative to it";
+    auto add = stage.options.add_options();
+    add("mechanical", cli::input_file("MODEL.toml"), "what the aircraft takes, from flightwatt batch or fit");
+    add("battery", cli::input_file("PACK.toml"), "its pack, from flightwatt battery");
+    add("profile", cli::input_files("FILE"), "software on board, from flightwatt profile; may be given several times");
+    add("plan", "leave the schedule to flightwatt plan: utilities and [plan] instead of [[schedule]]");
+    add("name", cli::value("NAME"), "the mission's name; default: FILE's");
+    return cli::run_stage(argc, argv, stage, write_new_mission);
+}
