@@ -8,6 +8,7 @@
 #include "live/state/alarms.h"
 #include "live/state/battery_check.h"
 #include "live/state/flight_clock.h"
+#include "live/state/flight_from_air.h"
 #include "live/state/sender_clocks.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
@@ -191,6 +192,7 @@ void LiveFlight::Watch::look_at_battery_of(const flight::FlightSeries& series, L
                                            std::optional<battery::DischargeRecord>& record) {
     if (!basis_ || !basis_->battery) return;
     state.battery = look_at_battery(*basis_, carried_percent_, series, record);
+    if (state.began_in_air && !record) look_at_counter(*basis_, series, *state.battery);
 }
 
 void LiveFlight::Watch::predict(const flight::FlightSeries& series,
@@ -215,6 +217,13 @@ void LiveFlight::Watch::predict(const flight::FlightSeries& series,
     }
     Remarks remarks;
     try {
+        if (state.began_in_air) {
+            state.prediction = predict_from_air(*basis_, series, phases_.sorties.back(),
+                                                state.battery ? &*state.battery : nullptr, remarks);
+            state.expected_power_w = power_ahead(*state.prediction).front().power_w;
+            state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
+            return;
+        }
         const double until_s = mechanical::last_time_s(series);
         const auto sortie = phases_.sorties.empty() ? 0 : phases_.sorties.size() - 1;
         const auto flown = mechanical::progress_at(series, until_s, sortie);
