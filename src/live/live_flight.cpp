@@ -8,6 +8,7 @@
 #include "live/state/alarms.h"
 #include "live/state/battery_check.h"
 #include "live/state/flight_clock.h"
+#include "live/state/flight_from_air.h"
 #include "live/state/sender_clocks.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
@@ -194,6 +195,7 @@ void LiveFlight::Watch::look_at_battery_of(const flight::ChosenTracks& tracks, L
                                            std::optional<battery::DischargeRecord>& record) {
     if (!basis_ || !basis_->battery) return;
     state.battery = look_at_battery(*basis_, carried_percent_, tracks, record);
+    if (state.began_in_air && !record) look_at_counter(*basis_, tracks.series(), *state.battery);
 }
 
 void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
@@ -219,6 +221,13 @@ void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
     if (!state.waits_for.empty()) return;  // it cannot be segmented
     Remarks remarks;
     try {
+        if (state.began_in_air) {
+            state.prediction = predict_from_air(*basis_, tracks.series(), phases_.sorties.back(),
+                                                state.battery ? &*state.battery : nullptr, remarks);
+            state.expected_power_w = power_ahead(*state.prediction).front().power_w;
+            state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
+            return;
+        }
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
         const auto flown = mechanical::progress_in(tracks, sortie, now_s);
         state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();

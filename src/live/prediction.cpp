@@ -241,11 +241,14 @@ std::vector<battery::PowerStretch> power_ahead(const Prediction& prediction, dou
     return ahead;
 }
 
-void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
-          BatteryPrediction& result) {
+namespace {
+
+/// `state_of`: what a battery of that capacity is in now.
+template <typename StateOf>
+void land_from(const battery::Battery& battery, const StateOf& state_of, const Prediction& prediction,
+               BatteryPrediction& result) {
     const auto forecast = [&](const battery::Battery& of, double part) {
-        const auto now = battery::state_after(of, flown, result.initial_soc_percent);
-        return battery::forecast_landing(of, now, power_ahead(prediction, part),
+        return battery::forecast_landing(of, state_of(of), power_ahead(prediction, part),
                                          prediction.cruise.remaining_mean_w * part, result.limits);
     };
     const double rest_wh = prediction.rest.energy_wh;
@@ -254,6 +257,22 @@ void land(const battery::Battery& battery, const battery::DischargeRecord& flown
     if (result.with_least_capacity) least.capacity_ah = battery.intervals.capacity_ah->low;
     result.expected = forecast(battery, 1.0);
     result.worst = forecast(least, rest_wh > 0.0 ? prediction.interval.high_wh / rest_wh : 1.0);
+}
+
+}  // namespace
+
+void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
+          BatteryPrediction& result) {
+    const auto state_of = [&](const battery::Battery& of) {
+        return battery::state_after(of, flown, result.initial_soc_percent);
+    };
+    land_from(battery, state_of, prediction, result);
+}
+
+void land(const battery::Battery& battery, const battery::BatteryState& now, const Prediction& prediction,
+          BatteryPrediction& result) {
+    land_from(
+        battery, [&](const battery::Battery&) { return now; }, prediction, result);
 }
 
 }  // namespace flightwatt::live

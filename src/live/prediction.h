@@ -36,6 +36,7 @@ struct BatteryPrediction {
     bool with_least_capacity = false;  ///< `worst`
     double initial_soc_percent = 0.0;
     bool initial_is_measured = false;  ///< by the resting voltage
+    bool is_of_now = false;            ///< what was drawn before is not known: `initial_soc_percent` is that of now
 };
 
 /// Where a flight is on its path, by its positions.
@@ -47,6 +48,7 @@ struct PathSighting {
 
 struct Prediction {
     mechanical::FlightProgress flown;
+    bool began_in_air = false;             ///< `flown` since the first message: the lift-off was not seen
     std::optional<double> on_path_s = {};  ///< where on its path the flight is, in the path's planned time
     bool is_sighted = false;               ///< there, by its positions; else by the time
     double remaining_s = 0.0;
@@ -99,6 +101,10 @@ std::vector<battery::PowerStretch> power_ahead(const Prediction& prediction, dou
 /// Flies the battery through the rest of `prediction`, from its initial charge and what was drawn of it. Throws as
 /// battery::state_after.
 void land(const battery::Battery& battery, const battery::DischargeRecord& flown, const Prediction& prediction,
+          BatteryPrediction& result);
+
+/// The same from the state that it is in.
+void land(const battery::Battery& battery, const battery::BatteryState& now, const Prediction& prediction,
           BatteryPrediction& result);
 
 }  // namespace flightwatt::live

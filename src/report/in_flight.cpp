@@ -31,7 +31,7 @@ std::optional<PredictedMoment> predict_at(const live::PredictionBasis& basis, co
     try {
         const auto flown = mechanical::progress_at(cut_series(series, until_s), until_s);
         live::Remarks remarks;
-        const auto prediction = live::predict_energy(basis, flown, remarks);
+        const auto prediction = live::predict_energy(basis, flown, std::nullopt, remarks);
         return PredictedMoment{
             until_s - flown.lift_off_s,
             flown.energy_wh + prediction.rest.energy_wh,

@@ -194,20 +194,57 @@ TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedHasNoEndThatIsKnown) {
     EXPECT_GT(state.expected_power_w.value(), 10.0);
 }
 
-TEST(LiveFlight, AStartInMidFlightSaysWhatItDoesNotKnow) {
+TEST(LiveFlight, AStartInMidFlightPredictsWithWhatIsKnown) {
     const auto log = test::sample(1);
     auto basis = wing_basis();
     basis.initial_soc_percent.reset();
-    LiveFlight flight(options_of(log), basis, nullptr);
-    receive_all(flight, messages_of(log, 500.0, 200.0));
-    const auto state = flight.look();
+    const auto state_from = [&](double from_s) {
+        LiveFlight flight(options_of(log), basis, nullptr);
+        receive_all(flight, messages_of(log, 500.0, from_s));
+        return flight.look();
+    };
+    const auto whole = state_from(0.0);
+    const auto state = state_from(200.0);
     EXPECT_TRUE(state.began_in_air);
     EXPECT_FALSE(state.lift_off_s);
-    EXPECT_FALSE(state.prediction);
-    EXPECT_THAT(state.waits_for, testing::HasSubstr("its take-off is not in the log"));
-    EXPECT_GT(state.energy_wh.value(), 1.0);
+    ASSERT_TRUE(state.prediction) << state.waits_for;
+    const auto width = [](const LiveState& of) {
+        return of.prediction->interval.high_wh - of.prediction->interval.low_wh;
+    };
+    EXPECT_TRUE(state.prediction->interval.contains(whole.prediction->rest.energy_wh));
+    EXPECT_GT(width(state), 0.8 * width(whole)) << "the time that is left is told";
     EXPECT_FALSE(state.battery->soc_percent) << "its charge at the start is not known";
-    EXPECT_GT(state.battery->soc_by_voltage_percent.value(), 20.0);
+    EXPECT_NEAR(state.prediction->battery->expected.soc_now_percent, state.battery->soc_by_voltage_percent.value(),
+                1e-9);
+    EXPECT_THAT(state.warnings, testing::Contains(testing::HasSubstr("that of the voltage in flight")));
+    basis.initial_soc_percent = 90.0;
+    const auto counted = state_from(200.0);
+    EXPECT_NEAR(counted.battery->soc_percent.value(), state_from(0.0).battery->soc_percent.value(), 0.5)
+        << "by the autopilot's counter";
+    EXPECT_THAT(state_from(480.0).waits_for, testing::HasSubstr("seen from the air on"));
+}
+
+TEST(LiveFlight, AStartInMidFlightDoesNotKnowHowFarTheMissionIs) {
+    const auto log = test::sample(1);
+    auto basis = wing_basis();
+    basis.remaining_s.reset();
+    basis.cruise_s = 600.0;
+    const auto state_from = [&](double from_s) {
+        LiveFlight flight(options_of(log), basis, nullptr);
+        receive_all(flight, messages_of(log, 400.0, from_s));
+        return flight.look();
+    };
+    const auto state = state_from(200.0);
+    ASSERT_TRUE(state.prediction) << state.waits_for;
+    EXPECT_NEAR(state.prediction->remaining_s, 200.0, 1.0) << "half of 600 less the 200 that were seen";
+    const double power_w = state.prediction->cruise.remaining_mean_w;
+    const double landing_wh = state.prediction->landing.energy_wh;
+    EXPECT_LE(state.prediction->interval.low_wh, landing_wh);
+    EXPECT_GE(state.prediction->interval.high_wh, landing_wh + power_w * 400.0 / 3600.0);
+    EXPECT_THAT(state.warnings, testing::Contains(testing::HasSubstr("how far the cruise had come is not known")));
+    const auto climbing = state_from(75.0);
+    ASSERT_TRUE(climbing.prediction) << climbing.waits_for;
+    EXPECT_TRUE(climbing.prediction->interval.contains(state_from(0.0).prediction->rest.energy_wh));
 }
 
 /// Everything that a bus brings beside the messages of the aircraft.

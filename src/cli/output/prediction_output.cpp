@@ -28,10 +28,12 @@ std::string landing_text(const battery::LandingForecast& forecast, const battery
 std::string battery_text(const std::optional<BatteryPrediction>& battery) {
     if (!battery) return "";
     return fmt::format(
-        "battery    {:.1f} % now, from {:.1f} % {}; {}\n"
+        "battery    {:.1f} % now{}; {}\n"
         "           {}: {}\n",
-        battery->expected.soc_now_percent, battery->initial_soc_percent,
-        battery->initial_is_measured ? "by its voltage at rest" : "as given",
+        battery->expected.soc_now_percent,
+        battery->is_of_now ? ""
+                           : fmt::format(", from {:.1f} % {}", battery->initial_soc_percent,
+                                         battery->initial_is_measured ? "by its voltage at rest" : "as given"),
         landing_text(battery->expected, battery->limits),
         battery->with_least_capacity ? "with the most energy and the least capacity of their 95 % intervals"
                                      : "at the high end of the energy's interval",
@@ -63,40 +65,41 @@ nlohmann::ordered_json json_of(const battery::LandingForecast& forecast) {
 }  // namespace
 
 std::string text_of(const Prediction& prediction) {
-    const auto& [flown, on_path_s, is_sighted, remaining_s, by_motion, cruise, power_ahead, landing, landing_s, rest,
-                 interval, battery] = prediction;
+    const auto& [flown, began_in_air, on_path_s, is_sighted, remaining_s, by_motion, cruise, power_ahead, landing,
+                 landing_s, rest, interval, battery] = prediction;
     return fmt::format(
-               "flown      {:.3f} Wh from lift-off at {:.1f} s to {:.1f} s of the log ({:.1f} s)\n"
+               "flown      {:.3f} Wh from {} at {:.1f} s to {:.1f} s of the log ({:.1f} s)\n"
                "cruise     {:.3f} Wh in {:.0f} s more: {:.2f} W; so far {:.2f} W, {}\n"
                "landing    {:.3f} Wh in {:.0f} s, as in the model\n"
                "remaining  {:.3f} Wh, 95 % interval {:.3f} to {:.3f} Wh\n"
                "total      {:.3f} Wh\n",
-               flown.energy_wh, flown.lift_off_s, flown.until_s, flown.until_s - flown.lift_off_s,
-               cruise.energy.energy_wh, remaining_s, cruise.remaining_mean_w, cruise.flown_w,
-               expectation_text(prediction), landing.energy_wh, landing_s, rest.energy_wh, interval.low_wh,
-               interval.high_wh, flown.energy_wh + rest.energy_wh) +
+               flown.energy_wh, began_in_air ? "the first message" : "lift-off", flown.lift_off_s, flown.until_s,
+               flown.until_s - flown.lift_off_s, cruise.energy.energy_wh, remaining_s, cruise.remaining_mean_w,
+               cruise.flown_w, expectation_text(prediction), landing.energy_wh, landing_s, rest.energy_wh,
+               interval.low_wh, interval.high_wh, flown.energy_wh + rest.energy_wh) +
            battery_text(battery);
 }
 
 nlohmann::ordered_json json_of(const Prediction& prediction) {
-    const auto& [flown, on_path_s, is_sighted, remaining_s, by_motion, cruise, power_ahead, landing, landing_s, rest,
-                 interval, battery] = prediction;
+    const auto& [flown, began_in_air, on_path_s, is_sighted, remaining_s, by_motion, cruise, power_ahead, landing,
+                 landing_s, rest, interval, battery] = prediction;
     const auto expected_w = is_expected(prediction) ? std::optional(cruise.expected_w) : std::nullopt;
     const auto gain = is_expected(prediction) ? std::optional(cruise.gain) : std::nullopt;
-    nlohmann::ordered_json json{{"flown_energy_wh", flown.energy_wh},
-                                {"remaining_energy_wh", rest.energy_wh},
-                                {"interval_95_wh", {interval.low_wh, interval.high_wh}},
-                                {"total_energy_wh", flown.energy_wh + rest.energy_wh},
-                                {"lift_off_s", flown.lift_off_s},
-                                {"until_s", flown.until_s},
-                                {"cruise",
-                                 {{"remaining_s", remaining_s},
-                                  {"energy_wh", cruise.energy.energy_wh},
-                                  {"flown_mean_w", cruise.flown_w},
-                                  {"expected_mean_w", optional_json(expected_w)},
-                                  {"remaining_mean_w", cruise.remaining_mean_w},
-                                  {by_motion ? "own_level" : "gain", optional_json(gain)}}},
-                                {"landing", {{"duration_s", landing_s}, {"energy_wh", landing.energy_wh}}}};
+    nlohmann::ordered_json json{
+        {"flown_energy_wh", flown.energy_wh},
+        {"remaining_energy_wh", rest.energy_wh},
+        {"interval_95_wh", {interval.low_wh, interval.high_wh}},
+        {"total_energy_wh", flown.energy_wh + rest.energy_wh},
+        {"lift_off_s", optional_json(began_in_air ? std::nullopt : std::optional(flown.lift_off_s))},
+        {"until_s", flown.until_s},
+        {"cruise",
+         {{"remaining_s", remaining_s},
+          {"energy_wh", cruise.energy.energy_wh},
+          {"flown_mean_w", cruise.flown_w},
+          {"expected_mean_w", optional_json(expected_w)},
+          {"remaining_mean_w", cruise.remaining_mean_w},
+          {by_motion ? "own_level" : "gain", optional_json(gain)}}},
+        {"landing", {{"duration_s", landing_s}, {"energy_wh", landing.energy_wh}}}};
     if (on_path_s) json["cruise"]["path"] = {{"at_s", *on_path_s}, {"by_position", is_sighted}};
     if (battery) {
         json["battery"] = {{"initial_soc_percent", battery->initial_soc_percent},

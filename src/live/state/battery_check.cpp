@@ -166,6 +166,18 @@ LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<do
     return result;
 }
 
+void look_at_counter(const PredictionBasis& basis, const flight::FlightSeries& series, LiveBattery& result) {
+    const auto charge = flight::chosen_track(series, "charge_ah");
+    if (!basis.initial_soc_percent || charge.empty() || result.soc_percent) return;
+    const double drawn_ah = charge.value.back();
+    const double left_percent = *basis.initial_soc_percent - units::percent_of(drawn_ah, basis.battery->capacity_ah);
+    if (!(drawn_ah > 0.0) || !(left_percent > 0.0)) return;  // it began anew, or counts another pack
+    result.drawn_ah = drawn_ah;
+    result.initial_soc_percent = *basis.initial_soc_percent;
+    result.soc_percent = left_percent;
+    result.state = battery::BatteryState{left_percent, 0.0};
+}
+
 std::optional<double> chance_below_reserve(const PredictionBasis& basis, const Prediction& prediction,
                                            const LiveBattery& now) {
     const auto& rest = prediction.rest;

@@ -13,6 +13,10 @@ namespace flightwatt::live {
 LiveBattery look_at_battery(const PredictionBasis& basis, const std::optional<double>& carried_percent,
                             const flight::ChosenTracks& tracks, std::optional<battery::DischargeRecord>& record);
 
+/// Of a series that begins in the air: where the state of charge at the flight's beginning is given, what the
+/// autopilot's counter has left of it.
+void look_at_counter(const PredictionBasis& basis, const flight::FlightSeries& series, LiveBattery& result);
+
 /// The state of charge at a time of the record.
 std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
                              double initial_soc_percent, double time_s);
