@@ -158,6 +158,20 @@ std::optional<std::filesystem::path> log_to_write(const cli::StageCall& call, co
     return beside;
 }
 
+/// The .log first: no text stands without its definitions. Where the text cannot be written no .log is left of it.
+void write_both(const cli::StageCall& call, const std::string& text,
+                const std::optional<std::filesystem::path>& log_file, const flight::FlightFile& file) {
+    std::error_code error;
+    const bool is_new = log_file && !std::filesystem::exists(*log_file, error);
+    if (log_file) write_file_atomically(*log_file, file.log_text().value());
+    try {
+        cli::write_result(call, text);
+    } catch (const OutputError&) {
+        if (is_new) std::filesystem::remove(*log_file, error);
+        throw;
+    }
+}
+
 void tell(const cli::StageCall& call, const flight::FlightFile& file, const ConvertedLog& log) {
     const auto& counts = log.counts;
     const auto times = log.start_s ? fmt::format(", {:.1f} to {:.1f} s", *log.start_s, log.end_s) : std::string();
@@ -188,8 +202,7 @@ int convert(const cli::StageCall& call) {
     }
     const auto converted = convert_log(file);
     file.require_unchanged();
-    if (log_file) write_file_atomically(*log_file, file.log_text().value());
-    cli::write_result(call, converted.text);
+    write_both(call, converted.text, log_file, file);
     auto warnings = warnings_of(converted, file.log_file().string());
     if (!file.log_fault().empty()) warnings.push_back(file.log_fault());
     for (const auto& warning : warnings) cli::warn(call, fmt::format("{}: {}", path.string(), warning));

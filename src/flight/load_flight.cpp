@@ -26,9 +26,8 @@ std::string census(const FlightFile& file) {
     const auto counts =
         file.framing() ? use_binary(file, [](const auto& log) { return telemetry::census_of_binary_messages(log); })
                        : telemetry::census_of_messages(file.text());
-    for (const auto& [name, count] : counts) {
-        names.push_back(fmt::format("{} {}", name, count));
-    }
+    names.reserve(counts.size());
+    for (const auto& [name, count] : counts) names.push_back(fmt::format("{} {}", name, count));
     constexpr std::size_t shown = 12;
     const bool more = names.size() > shown;
     names.resize(std::min(names.size(), shown));
