@@ -218,7 +218,8 @@ const std::set<std::string> no_files{"N",
                                      "DEVICE:BAUD",
                                      "DATE",
                                      "PATTERN",
-                                     "TARGET"};
+                                     "TARGET",
+                                     "WIDTH"};
 
 /// Options that name files to read; those that write have a command above.
 const std::set<std::string> reading{

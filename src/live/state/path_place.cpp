@@ -16,8 +16,8 @@ namespace flightwatt::live {
 namespace {
 
 // Chosen by what they mean; none was fitted to flights.
-constexpr double finest_s = 1.0;           // between places
-constexpr double most_places = 1200.0;     // on a path
+constexpr double finest_s = 2.0;           // between places
+constexpr double most_places = 600.0;      // on a path
 constexpr double off_path_m = 25.0;        // one deviation: satellite navigation, and a turn that cuts its corner
 constexpr double first_off_path_m = 60.0;  // while it is not known from where the path begins
 constexpr double origin_m = 60.0;          // one deviation of that: some seconds of the climb
@@ -145,14 +145,18 @@ class PlaceFilter {
           off_path_m_(off_path_m),
           origin_(origin),
           on_(places.of.size(), 0.0),
-          off_(places.of.size(), 0.0) {
+          off_(places.of.size(), 0.0),
+          next_on_(places.of.size(), 0.0),
+          next_off_(places.of.size(), 0.0) {
         on_[0] = 1.0 - leaves;
         off_[0] = leaves;
     }
 
     void go_on() {
-        std::vector<double> on(on_.size(), 0.0);
-        std::vector<double> off(off_.size(), 0.0);
+        auto& on = next_on_;
+        auto& off = next_off_;
+        std::ranges::fill(on, 0.0);
+        std::ranges::fill(off, 0.0);
         const auto last = static_cast<std::ptrdiff_t>(on_.size()) - 1;
         const auto to = [&](std::size_t from, std::ptrdiff_t places) {
             return static_cast<std::size_t>(
@@ -251,6 +255,8 @@ class PlaceFilter {
     Displacement origin_;
     std::vector<double> on_;
     std::vector<double> off_;
+    std::vector<double> next_on_;  ///< of go_on
+    std::vector<double> next_off_;
 };
 
 /// From where the path begins: what the positions are off it, across it, as far as that is known better than beforehand.
