@@ -141,8 +141,8 @@ Discharge guarded_step(const Step& step, double length_s, double cutoff_v) {
     StepStates states(step, length_s);
     if (const auto excess = first_excess(states)) {
         const double beyond_s = step.time_s + excess->first_s;
-        undeliverable = Undeliverable{beyond_s, step.power_w.at(beyond_s),
-                                      power_limit_w(step.battery, states.at(excess->first_s))};
+        undeliverable =
+            Undeliverable{beyond_s, step.power_w.at(beyond_s), power_limit_w(step.battery, states.at(excess->first_s))};
         // At once: nothing else comes before it.
         if (excess->first_s == 0.0) return {step.from, std::nullopt, std::nullopt, undeliverable};
         length_s = excess->last_before_s;

@@ -112,7 +112,7 @@ FlightProgress progress_in(const flight::ChosenTracks& known, const flight::Sort
         mean_cubed_airspeed_m3_per_s3(known["airspeed_m_per_s"], flown.cruise_start_s, until_s);
     flown.covariates = covariates_of(known, *sortie);
     flown.motion = motion_of(known, {{flight::Phase::takeoff, flown.lift_off_s, flown.cruise_start_s},
-                                      {flight::Phase::cruise, flown.cruise_start_s, until_s}});
+                                     {flight::Phase::cruise, flown.cruise_start_s, until_s}});
     return flown;
 }
 
