@@ -103,8 +103,11 @@ std::string remedy_line(const SimulatedMission& simulated, const MissionAnswer& 
     const auto& reach = answer.likely_reach ? answer.likely_reach : answer.reach;
     const double capacity_ah = simulated.mission.battery.capacity_ah;
     std::vector<std::string> ways;
-    if (simulated.planned && answer.likely_reach) ways.emplace_back("plan it with --probability 0.95");
-    if (reach && shorter_helps(simulated, *reach)) ways.push_back(fmt::format("fly {} at most", in_words(*reach)));
+    const bool shorter = reach && shorter_helps(simulated, *reach);
+    // Beyond what the least software reaches, no plan does.
+    const bool is_in_reach = answer.likely_reach && (!shorter || reach->unit != mission::ReachUnit::cruise_s);
+    if (simulated.planned && is_in_reach) ways.emplace_back("plan it with --probability 0.95");
+    if (shorter) ways.push_back(fmt::format("fly {} at most", in_words(*reach)));
     if (answer.capacity_ah && *answer.capacity_ah > capacity_ah)
         ways.push_back(fmt::format("take a battery of {:.2f} Ah (it has {:.4g})", *answer.capacity_ah, capacity_ah));
     if (ways.empty()) return "";

@@ -57,12 +57,24 @@ TEST(MissionAnswer, KnowsNoChanceWhereNothingSaysHowFlightsDiffer) {
     EXPECT_TRUE(to_json(simulated, answer)["probability_below_reserve"].is_null());
 }
 
-TEST(MissionAnswer, OffersAPlanWithAMarginToOneThatWasPlannedWithoutAny) {
-    const auto simulated = flown("plan");
-    EXPECT_EQ(verdict_of(simulated), Verdict::may_keep);
-    const auto answer = answer_for(simulated, reading_of("plan"));
-    EXPECT_TRUE(answer.is_unplanned);
-    EXPECT_THAT(card_lines(simulated, answer).back(), HasSubstr("plan it with --probability 0.95"));
+TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
+    const auto reading_with = [](double reserve_percent) -> mission::MissionOfReading {
+        return [reserve_percent](const mission::MissionReading& how) {
+            auto problem = std::get<mission::PlanningProblem>(reading_of("plan")(how));
+            problem.reserve_soc_percent = reserve_percent;
+            return mission::AnyMission(std::move(problem));
+        };
+    };
+    const auto last_line = [](const mission::MissionOfReading& reading) {
+        const auto simulated = simulate_for_report({reading({.may_lack_schedule = true})}).front();
+        EXPECT_EQ(verdict_of(simulated), Verdict::may_keep);
+        const auto answer = answer_for(simulated, reading);
+        EXPECT_TRUE(answer.is_unplanned);
+        return card_lines(simulated, answer).back();
+    };
+    EXPECT_THAT(last_line(reading_with(3.0)), HasSubstr("plan it with --probability 0.95"));
+    EXPECT_THAT(last_line(reading_of("plan")),
+                testing::AllOf(HasSubstr("fly 9 min 34 s of cruise at most"), testing::Not(HasSubstr("plan it with"))));
 }
 
 TEST(MissionAnswer, CountsCirclesOfAPath) {
