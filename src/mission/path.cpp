@@ -227,8 +227,9 @@ FlightPath there_and_back(const FlightPath& path, double return_after_m, const C
     FlightPath result;
     std::vector<PathElement> way_back;
     double left_m = return_after_m;
+    const double rounding_m = 1e-9 * return_after_m;  // of the sum of the legs
     for (auto element : path.elements) {
-        if ((left_m <= 0.0 && !result.elements.empty()) || element.is_way_home) break;
+        if ((left_m <= rounding_m && !result.elements.empty()) || element.is_way_home) break;
         if (auto* leg = std::get_if<Leg>(&element.shape)) {
             const double part = std::min(1.0, left_m / leg->length_m);
             leg->length_m *= part;

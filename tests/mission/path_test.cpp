@@ -220,5 +220,16 @@ TEST(Path, LeadsThereAndBack) {
     EXPECT_EQ(there_and_back(path, 300.0, {}).elements.size(), 2U);
 }
 
+TEST(Path, TurnsBackAtItsEndWhateverItsLengthsRoundTo) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> length_m(1.0, 2000.0);
+    for (int i = 0; i < 200; ++i) {
+        FlightPath path;
+        for (int leg = 0; leg < 5; ++leg) path.elements.push_back(element_of(Leg{length_m(random), 10.0 * leg}));
+        path.elements.push_back(element_of(Hold{60.0}));  // begins where the path turns back: is not flown
+        EXPECT_EQ(there_and_back(path, length_of_legs_m(path), {}).elements.size(), 10U) << i;
+    }
+}
+
 }  // namespace
 }  // namespace flightwatt::mission
