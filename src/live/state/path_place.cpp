@@ -16,8 +16,8 @@ namespace flightwatt::live {
 namespace {
 
 // Chosen by what they mean; none was fitted to flights.
-constexpr double finest_s = 2.0;           // between places
-constexpr double most_places = 600.0;      // on a path
+constexpr double finest_s = 1.0;           // between places
+constexpr double most_places = 1200.0;     // on a path
 constexpr double off_path_m = 25.0;        // one deviation: satellite navigation, and a turn that cuts its corner
 constexpr double first_off_path_m = 60.0;  // while it is not known from where the path begins
 constexpr double origin_m = 60.0;          // one deviation of that: some seconds of the climb
