@@ -162,7 +162,7 @@ Discharge quick_discharge(const Battery& battery, const Load& load, const Batter
         now = step.end;
         const auto end = run.ended(time_s, step, step_s);
         if (!end) continue;
-        if (step_s <= end_step_s) return *end;
+        if (step_s <= end_step_s * (1.0 + 1e-9)) return *end;  // by less the step is not parted any more
         // Looked at closely it may not end.
         const Load rest{load.power_w, time_s, std::min(time_s + step_s, load.end_s)};
         const auto closer =

@@ -52,6 +52,15 @@ TEST(QuickDischarge, ChangesNothingInNoTime) {
     EXPECT_FALSE(after.ended_at_s());
 }
 
+TEST(QuickDischarge, PartsNoStepForEver) {
+    std::mt19937_64 random(4713);
+    const auto pack = drawn_pack(random);
+    const double length_s =
+        0.5 * (1.0 + 4e-13);  // longer than the steps in which an end is looked for, but by rounding
+    const auto after = quick_discharge(pack, {[](double) { return 30.0; }, 0.0, length_s}, {50.0, 0.0}, {20.0, 13.0});
+    EXPECT_TRUE(after.ended_at_s()) << "below its cut-off from the start";
+}
+
 TEST(QuickDischarge, IsTheExactOneWithinItsTolerance) {
     std::mt19937_64 random(4711);
     std::size_t ended = 0;
