@@ -42,7 +42,7 @@ std::string wrapped(std::string line, std::size_t columns) {
         const auto blank = line.rfind(' ', columns);
         if (blank == std::string::npos || blank <= indent.size()) break;
         text += line.substr(0, blank) + "\n";
-        line = indent + line.substr(blank + 1);
+        line.replace(0, blank + 1, indent);
     }
     return text + line + "\n";
 }

@@ -20,8 +20,8 @@ auto ask(const Question& question, std::string* why = nullptr) -> std::optional<
         return question();
     } catch (const NoAnswerError& error) {
         if (why != nullptr) *why = error.what();
-    } catch (const InputError& error) {
-        if (why != nullptr) *why = error.what();
+    } catch (const InputError&) {
+        if (why != nullptr) *why = "its schedule does not say what runs in a longer cruise";
     }
     return std::nullopt;
 }
@@ -75,7 +75,7 @@ std::string now_flown(const SimulatedMission& simulated, const mission::Reach& r
 }
 
 std::string reach_line(const SimulatedMission& simulated, const MissionAnswer& answer) {
-    if (!answer.reach) return "How long it could fly has no answer: " + answer.no_reach;
+    if (!answer.reach) return "How long it could fly is not known: " + answer.no_reach;
     auto line = fmt::format("At most {}{} as modelled", in_words(*answer.reach), now_flown(simulated, *answer.reach));
     if (answer.likely_reach)
         line += fmt::format(", {} with a chance of {:.0f} %", in_words(*answer.likely_reach),
@@ -108,7 +108,7 @@ std::string remedy_line(const SimulatedMission& simulated, const MissionAnswer& 
     const bool is_in_reach = answer.likely_reach && (!shorter || reach->unit != mission::ReachUnit::cruise_s);
     if (simulated.planned && is_in_reach) ways.emplace_back("plan it with --probability 0.95");
     if (shorter) ways.push_back(fmt::format("fly {} at most", in_words(*reach)));
-    if (answer.capacity_ah && *answer.capacity_ah > capacity_ah)
+    if (answer.capacity_ah)
         ways.push_back(fmt::format("take a battery of {:.2f} Ah (it has {:.4g})", *answer.capacity_ah, capacity_ah));
     if (ways.empty()) return "";
     const auto aim = answer.likely_reach ? fmt::format("For a chance of {:.0f} %", units::percent_of(likely, 1.0))
@@ -133,15 +133,20 @@ nlohmann::ordered_json to_json(const std::optional<mission::Reach>& reach) {
 
 MissionAnswer answer_for(const SimulatedMission& simulated, const mission::MissionOfReading& mission_of) {
     MissionAnswer answer;
-    const auto mission = ask([&] { return mission_of({.may_lack_schedule = true}); }, &answer.no_reach);
-    if (!mission) return answer;
+    const auto mission = ask([&] { return mission_of({.may_lack_schedule = true}); });
+    if (!mission) {
+        answer.no_reach = "its file cannot be read again";
+        return answer;
+    }
     answer.is_unplanned = std::holds_alternative<mission::PlanningProblem>(*mission);
     answer.reach = ask([&] { return longest_reach(mission_of); }, &answer.no_reach);
     const bool knows_chance = simulated.simulation.summary.samples.has_value();
     if (answer.reach && knows_chance) answer.likely_reach = ask([&] { return longest_reach(mission_of, likely); });
     if (verdict_of(simulated) == Verdict::keeps) return answer;
     const auto chance = answer.likely_reach ? std::optional(likely) : std::nullopt;
-    answer.capacity_ah = ask([&] { return least_capacity_ah(*mission, chance); }).value_or(std::nullopt);
+    const auto capacity_ah = ask([&] { return least_capacity_ah(*mission, chance); }).value_or(std::nullopt);
+    // Of the least software, which may land with the pack as it is where what was planned may not.
+    if (capacity_ah && *capacity_ah > simulated.mission.battery.capacity_ah) answer.capacity_ah = capacity_ah;
     return answer;
 }
 

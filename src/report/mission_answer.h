@@ -19,7 +19,7 @@ struct MissionAnswer {
     std::optional<mission::Reach> reach;         ///< as modelled
     std::optional<mission::Reach> likely_reach;  ///< with which `likely` of the flights keep the reserve
     std::string no_reach;                        ///< why there is none
-    std::optional<double> capacity_ah;           ///< the least that keeps the reserve, of a mission that does not
+    std::optional<double> capacity_ah;           ///< the least that would keep the reserve, if more than it has
     bool is_unplanned = false;  ///< reach and capacity are those of the schedule that demands least energy
 };
 

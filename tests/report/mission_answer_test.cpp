@@ -97,7 +97,7 @@ TEST(MissionAnswer, SaysWhyThereIsNone) {
         throw InputError({"gone.toml"}, "it is gone", "look for it");
     });
     EXPECT_FALSE(answer.reach);
-    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("it is gone")));
+    EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("cannot be read again")));
 }
 
 }  // namespace
