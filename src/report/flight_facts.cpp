@@ -1,12 +1,12 @@
 #include "report/flight_facts.h"
 
 #include "flight/chosen_track.h"
+#include "flight/log_name.h"
 #include "flight/phase_statistics.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <regex>
 
 #include <boost/geometry/algorithms/distance.hpp>
 #include <boost/geometry/geometries/point.hpp>
@@ -16,19 +16,12 @@
 namespace flightwatt::report {
 namespace {
 
-/// Paparazzi's servers name a log by their clock: 20_07_03__12_17_45.
-std::string date_in(const std::string& name) {
-    static const std::regex pattern(R"((?:^|\D)(\d\d)_(\d\d)_(\d\d)__(\d\d)_(\d\d)_\d\d)");
-    std::smatch found;
-    if (!std::regex_search(name, found, pattern)) return "";
-    return fmt::format("20{}-{}-{} {}:{}", found[1].str(), found[2].str(), found[3].str(), found[4].str(),
-                       found[5].str());
-}
-
 std::string date_of(const ReportFlight& flight) {
     const auto& start_s = flight.series.start_clock_s;
-    if (!start_s || *start_s <= 0.0) return date_in(flight.name);
-    return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(*start_s)));
+    if (start_s && *start_s > 0.0)
+        return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(*start_s)));
+    const auto start = flight::start_in_name(flight.name);
+    return start ? fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::chrono::system_clock::to_time_t(*start))) : "";
 }
 
 using Place = boost::geometry::model::point<double, 2, boost::geometry::cs::geographic<boost::geometry::degree>>;

@@ -36,6 +36,13 @@ PredictorSetup wing_setup() {
     return setup;
 }
 
+PredictorSetup wing_setup_of_samples() {
+    auto setup = wing_setup();
+    setup.definitions_file.clear();
+    setup.input = PredictorInput::samples;
+    return setup;
+}
+
 std::vector<std::string> lines_until(double until_s) {
     std::vector<std::string> lines;
     std::istringstream text(read_file(test::sample(1)));
@@ -140,10 +147,7 @@ TEST(Predictor, TakesFramesOfALink) {
 }
 
 TEST(Predictor, SaysOfSamplesWhatItSaysOfTheirMessages) {
-    auto setup = wing_setup();
-    setup.definitions_file.clear();
-    setup.input = PredictorInput::samples;
-    const auto made = make_predictor(setup);
+    const auto made = make_predictor(wing_setup_of_samples());
     ASSERT_TRUE(made.predictor) << made.error;
     std::vector<std::string> kept;
     for (const auto& line : lines_until(400.0)) {
@@ -172,10 +176,7 @@ TEST(Predictor, SaysOfSamplesWhatItSaysOfTheirMessages) {
 
 /// Power is voltage times current where it is not known; what is never known is no error.
 TEST(Predictor, TakesSamplesThatLackSomething) {
-    auto setup = wing_setup();
-    setup.definitions_file.clear();
-    setup.input = PredictorInput::samples;
-    const auto made = make_predictor(setup);
+    const auto made = make_predictor(wing_setup_of_samples());
     ASSERT_TRUE(made.predictor) << made.error;
     for (int i = 0; i <= 300; ++i) {
         const double time_s = i;

@@ -227,6 +227,19 @@ TEST(Plan, IsWrittenAsAMission) {
     EXPECT_EQ(summary.utility, plan.summary.utility);
 }
 
+struct WrittenPlan {
+    MissionPlan plan;
+    std::string text;
+};
+
+/// Plans a mission whose text stands in missions/paper, and writes it into the folder of the sources.
+WrittenPlan planned_and_written(const std::string& text) {
+    const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
+    const auto problem = parse_mission(text, path, {.may_lack_schedule = true});
+    const auto plan = plan_mission(std::get<PlanningProblem>(problem));
+    return {plan, planned_mission_toml(text, path, plan.flown.compute, plan.flown.schedule, test::source_dir())};
+}
+
 TEST(Plan, KeepsCommentsAndNumbersOfTheFileThatItComesFrom) {
     const std::string text =
         "# A survey of the north field.\n"
@@ -252,10 +265,7 @@ TEST(Plan, KeepsCommentsAndNumbersOfTheFileThatItComesFrom) {
         "kind = \"static\"\n"
         "\n"
         "# An afterword.\n";
-    const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
-    const auto problem = parse_mission(text, path, {.may_lack_schedule = true});
-    const auto plan = plan_mission(std::get<PlanningProblem>(problem));
-    const auto written = planned_mission_toml(text, path, plan.flown.compute, plan.flown.schedule, test::source_dir());
+    const auto written = planned_and_written(text).text;
     const std::string kept =
         "# A survey of the north field.\n"
         "format = 1\n"
@@ -283,10 +293,7 @@ TEST(Plan, IsWrittenWhateverWayTheFileIsWritten) {
         "plan = { slot_s = 60, levels = { detection = { fps = [\n  5.8,\n  10 ] } } }\n"
         "components = { detection = { profile = \"\"\"../../fits/compute/tx2-detection.csv\"\"\", "
         "utility = { parameter = \"fps\" } } }\n";
-    const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
-    const auto problem = parse_mission(text, path, {.may_lack_schedule = true});
-    const auto plan = plan_mission(std::get<PlanningProblem>(problem));
-    const auto written = planned_mission_toml(text, path, plan.flown.compute, plan.flown.schedule, test::source_dir());
+    const auto [plan, written] = planned_and_written(text);
     const auto again = std::get<Mission>(parse_mission(written, test::source_dir() / "planned.toml"));
     EXPECT_EQ(simulate(again).summary.utility, plan.summary.utility);
 }

@@ -4,9 +4,11 @@
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
 #include "cli/output/flight_options.h"
+#include "flight/log_name.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -31,13 +33,13 @@ std::optional<Day> day_of(int year, int month, int day) {
 
 int number_of(const std::ssub_match& digits) { return std::stoi(digits.str()); }
 
-/// Of a log that the ground station named after its start: 20_07_05__10_26_44.
+/// Of a log that the ground station named after its start.
 std::optional<Day> day_of_flight(const std::string& flight) {
-    constexpr int century = 2000;
-    static const std::regex name("(^|[^0-9])([0-9]{2})_([0-9]{2})_([0-9]{2})__[0-9]{2}_[0-9]{2}_[0-9]{2}");
-    std::smatch match;
-    if (!std::regex_search(flight, match, name)) return std::nullopt;
-    return day_of(century + number_of(match[2]), number_of(match[3]), number_of(match[4]));
+    const auto start = flight::start_in_name(flight);
+    if (!start) return std::nullopt;
+    const std::chrono::year_month_day date{std::chrono::floor<std::chrono::days>(*start)};
+    return day_of(static_cast<int>(date.year()), static_cast<int>(static_cast<unsigned>(date.month())),
+                  static_cast<int>(static_cast<unsigned>(date.day())));
 }
 
 std::optional<Day> day_option(const StageCall& call, const std::string& option) {
