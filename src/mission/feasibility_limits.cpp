@@ -118,6 +118,7 @@ AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::o
     MarginSearch search(0.0);
     std::optional<AnswerWithMargin> last;
     std::optional<NoAnswerError> none;
+    std::optional<LandingChance> least_below;
     for (int round = 0; round < rounds && !search.is_exhausted(); ++round) {
         const double margin_percent = search.margin_percent();
         try {
@@ -125,9 +126,11 @@ AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::o
             const auto mission = question.mission_of(value);
             require_known_spread(mission);
             const auto landing = landing_chance(mission, find_spreads(mission), *probability);
+            if (!least_below || landing.below < least_below->below) least_below = landing;
             const double slack_percent = landing.spare_percent(*probability);
             search.learn(slack_percent, 0.0);
-            const bool is_close = std::abs(slack_percent) <= close_part * landing.sd_percent;
+            const bool is_close = std::abs(slack_percent) <= close_part * landing.sd_percent ||
+                                  std::abs(landing.below - (1.0 - *probability)) <= landing.resolution;
             if (slack_percent >= 0.0 || is_close)
                 last = {value, std::max(0.0, landing.stated_spare_percent - slack_percent)};
             if (is_close) break;
@@ -137,7 +140,12 @@ AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::o
         }
     }
     if (last) return *last;
-    throw none.value_or(NoAnswerError("no answer lands with the reserve often enough"));
+    if (!least_below) throw none.value_or(NoAnswerError("no answer lands with the reserve often enough"));
+    throw NoAnswerError(fmt::format(
+        "no answer lands with the reserve in {:.4g} % of flights: with the one that came nearest {:.3g} % do "
+        "not (standard error {:.2g} %)",
+        units::percent_of(*probability, 1.0), units::percent_of(least_below->below, 1.0),
+        units::percent_of(least_below->standard_error, 1.0)));
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ namespace {
 constexpr int max_reserve_rounds = 20;
 constexpr int max_search_rounds = 5;
 constexpr int max_margin_rounds = 8;
-constexpr double slack_part = 2e-3;  // of the flights' deviation: 0.0002 of a chance of 0.05
+constexpr int most_rounds_to_any = 24;  ///< until a plan is better than the one of least energy demand
+constexpr double slack_part = 2e-3;     // of the flights' deviation: 0.0002 of a chance of 0.05
 
 /// How far below `wanted_percent` a simulated mission ends [points], counting what it demanded after the
 /// battery ended as a part of what a full one holds. Negative if there is more.
@@ -160,7 +161,8 @@ MissionPlan plan_with_chance(const PlanningProblem& problem, double probability)
     bool is_least = true;
     LandingChance landing;
     Schedule last;
-    for (int round = 0; round < max_margin_rounds && !search.is_exhausted(); ++round) {
+    for (int round = 0; round < (is_least ? most_rounds_to_any : max_margin_rounds) && !search.is_exhausted();
+         ++round) {
         const double planned_percent = std::max(search.margin_percent(), 0.0);  // as stated, it keeps the reserve too
         auto stricter = problem;
         stricter.reserve_soc_percent += planned_percent;

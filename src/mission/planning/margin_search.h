@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <numeric>
 #include <optional>
 
@@ -16,7 +17,9 @@ class MarginSearch {
     void learn(double slack_percent, double wanted_percent) {
         auto& end_percent = slack_percent >= 0.0 ? enough_percent_ : too_little_percent_;
         end_percent = margin_percent_;
-        move_to(margin_percent_ - slack_percent + wanted_percent);
+        const double step = margin_per_slack(slack_percent);
+        last_ = {margin_percent_, slack_percent};
+        move_to(margin_percent_ + step * (wanted_percent - slack_percent));
     }
 
     /// There is no answer with so much.
@@ -31,6 +34,20 @@ class MarginSearch {
     }
 
   private:
+    struct Learnt {
+        double margin_percent;
+        double slack_percent;
+    };
+
+    /// How much more margin a point of slack takes, by the last two: chances that are not normal take more than one.
+    double margin_per_slack(double slack_percent) const {
+        constexpr double least = 0.5;
+        constexpr double most = 8.0;
+        if (!last_ || slack_percent == last_->slack_percent) return 1.0;
+        const double slope = (margin_percent_ - last_->margin_percent) / (slack_percent - last_->slack_percent);
+        return slope > 0.0 ? std::clamp(slope, least, most) : 1.0;
+    }
+
     void move_to(double margin_percent) {
         margin_percent_ = margin_percent;
         if (!too_little_percent_ || !enough_percent_) return;
@@ -39,6 +56,7 @@ class MarginSearch {
     }
 
     double margin_percent_;
+    std::optional<Learnt> last_;
     std::optional<double> too_little_percent_;
     std::optional<double> enough_percent_;
 };

@@ -5,8 +5,10 @@
 #include "mission/sampling/workers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <Eigen/QR>
@@ -16,9 +18,10 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr std::uint64_t seed_of_lines = 0x6c696e6573;
+constexpr std::uint64_t seed_of_flights = 0x666c6967687473;
 constexpr std::size_t first_lines = 64;
-constexpr double furthest = 9.0;     ///< deviations: beyond, nothing is as probable as 1e-18
-constexpr double resolution = 1e-4;  ///< of a threshold [deviations]: 3e-6 of a chance of 0.01
+constexpr double resolution = 1e-4;      ///< of a threshold [deviations]: 3e-6 of a chance of 0.01
+constexpr double tolerance_part = 1e-4;  ///< of the deviation of what is left
 constexpr int most_rounds = 60;
 
 double density(double deviations) {
@@ -29,14 +32,28 @@ double inner_product(const std::vector<double>& a, const std::vector<double>& b)
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// Between which flights of a line the first is that falls below `left_percent`.
-std::pair<double, double> bracket_of(const LineSearch& line, double left_percent) {
-    double above = -furthest;
+/// Of the flights of a line that were flown, those that keep `left_percent` with the next that do not beside them.
+struct KeptFlights {
+    double fails_before = -furthest_deviation;
+    double first = 0.0;
+    double last = 0.0;
+    double fails_behind = furthest_deviation;
+};
+
+std::optional<KeptFlights> kept_flights(const LineSearch& line, double left_percent) {
+    std::optional<KeptFlights> kept;
+    double fails_before = -furthest_deviation;
     for (const auto& [at, left] : line.left_percent) {
-        if (left <= left_percent) return {above, at};
-        above = at;
+        if (left > left_percent) {
+            if (!kept) kept = {fails_before, at, at, furthest_deviation};
+            kept->last = at;
+            kept->fails_behind = furthest_deviation;
+        } else {
+            fails_before = at;
+            if (kept && kept->fails_behind == furthest_deviation) kept->fails_behind = at;
+        }
     }
-    return {above, furthest};
+    return kept;
 }
 
 }  // namespace
@@ -99,6 +116,10 @@ double FlightLines::left_percent_of(std::span<const double> normals) const {
     return left_percent;
 }
 
+double FlightLines::drawn_left_percent(std::size_t flight) const {
+    return left_percent_of(draw_normals(worse_.size(), seed_of_flights, flight));
+}
+
 void FlightLines::set_direction(std::vector<double> direction) {
     const double length = std::sqrt(inner_product(direction, direction));
     if (!(length > 0.0)) return;
@@ -115,43 +136,106 @@ std::vector<double> FlightLines::across_of(std::size_t line) const {
     return across;
 }
 
-void FlightLines::find_threshold(std::size_t line, double left_percent, LineSearch& search) const {
-    const auto across = across_of(line);
-    std::vector<double> normals(across.size());
-    auto [above, below] = bracket_of(search, left_percent);
+double FlightLines::fly(std::size_t line, double at, LineSearch& search) const {
+    auto normals = across_of(line);
+    for (std::size_t k = 0; k < normals.size(); ++k) normals[k] += at * worse_[k];
+    return search.left_percent[at] = left_percent_of(normals);
+}
+
+double FlightLines::linear_threshold(double at, double spare_percent) const {
+    return normal_of_student(student_of_normal(at, degrees_of_freedom_) + spare_percent / sd_percent_,
+                             degrees_of_freedom_);
+}
+
+/// Flies until one flight keeps `left_percent`; false if the line seems to have none. The first steps go by the slope;
+/// where flights fail at once it tells nothing, and the next go out from the middle.
+bool FlightLines::find_kept(std::size_t line, double left_percent, LineSearch& search) const {
+    constexpr std::array beyond_slope{0.0, -0.2};  // deviations
+    constexpr std::array from_the_middle{0.0, -1.0, 1.0, -2.0, 2.0, -3.0, 3.0};
+    constexpr double least = -4.0;  // further out what is drawn together is
+    for (const double beyond : beyond_slope) {
+        if (kept_flights(search, left_percent)) return true;
+        double& at = search.threshold;
+        if (search.left_percent.contains(at)) break;
+        at = std::max(least, beyond + linear_threshold(at, fly(line, at, search) - left_percent));
+    }
+    for (const double at : from_the_middle) {
+        if (kept_flights(search, left_percent)) return true;
+        if (!search.left_percent.contains(at)) fly(line, at, search);
+    }
+    return kept_flights(search, left_percent).has_value();
+}
+
+void FlightLines::find_thresholds(std::size_t line, double left_percent, LineSearch& search) const {
+    const double kept_percent = left_percent - tolerance_part * sd_percent_;
+    search.better_threshold = -furthest_deviation;
+    if (!find_kept(line, kept_percent, search)) {
+        search.threshold = -furthest_deviation;
+        return;
+    }
+    find_worse_threshold(line, left_percent, search);
+    find_better_threshold(line, kept_percent, search);
+}
+
+/// From a line's last flight that keeps `left_percent`.
+void FlightLines::find_worse_threshold(std::size_t line, double left_percent, LineSearch& search) const {
+    const double tolerance_percent = tolerance_part * sd_percent_;
+    const auto kept = kept_flights(search, left_percent - tolerance_percent).value();
+    double above = kept.last;
+    double below = kept.fails_behind;
     double& at = search.threshold;
+    double spare_percent = search.left_percent.at(above) - left_percent;
+    if (!(at > above && at < below)) at = linear_threshold(above, spare_percent);
     for (int round = 0; round < most_rounds && below - above > resolution; ++round) {
-        const bool is_slow = round % 4 == 3 && above > -furthest && below < furthest;  // at a jump
+        if (std::abs(spare_percent) <= tolerance_percent) break;
+        const bool is_slow = round % 4 == 3 && below < furthest_deviation;  // at a jump
         if (!(at > above && at < below) || is_slow) at = std::midpoint(above, below);
-        for (std::size_t k = 0; k < normals.size(); ++k) normals[k] = across[k] + at * worse_[k];
-        const double left = left_percent_of(normals);
-        search.left_percent[at] = left;
-        const double spare_percent = left - left_percent;
-        if (std::abs(spare_percent) <= 1e-4 * sd_percent_) return;
+        spare_percent = fly(line, at, search) - left_percent;
         (spare_percent > 0.0 ? above : below) = at;
-        // What is left falls evenly with a Student t.
-        at = normal_of_student(student_of_normal(at, degrees_of_freedom_) + spare_percent / sd_percent_,
-                               degrees_of_freedom_);
+        if (std::abs(spare_percent) > tolerance_percent) at = linear_threshold(at, spare_percent);
     }
     at = std::clamp(at, above, below);
+}
+
+/// From its first, by bisection: most lines have none.
+void FlightLines::find_better_threshold(std::size_t line, double left_percent, LineSearch& search) const {
+    constexpr double far_enough = -4.25;        // one of 100,000 flights lies beyond
+    constexpr double chance_resolution = 1e-5;  // as much
+    const auto known = kept_flights(search, left_percent).value();
+    double below = known.fails_before;
+    double above = known.first;
+    if (above <= far_enough) return;
+    if (below < far_enough) {
+        if (fly(line, far_enough, search) > left_percent) return;
+        below = far_enough;
+    }
+    while (chance_beyond(-above) - chance_beyond(-below) > chance_resolution) {
+        const double at = std::midpoint(below, above);
+        (fly(line, at, search) > left_percent ? above : below) = at;
+    }
+    search.better_threshold = below;
 }
 
 void FlightLines::turn_to_beyond(const std::vector<LineSearch>& searches) {
     std::vector<double> sum(worse_.size());
     for (std::size_t line = 0; line < searches.size(); ++line) {
-        const double at = searches[line].threshold;
         const auto across = across_of(line);
-        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += chance_beyond(at) * across[k] + density(at) * worse_[k];
+        const double along = density(searches[line].threshold) - density(searches[line].better_threshold);
+        for (std::size_t k = 0; k < sum.size(); ++k)
+            sum[k] += chance_below(searches[line]) * across[k] + along * worse_[k];
     }
     set_direction(std::move(sum));
+}
+
+double chance_below(const LineSearch& line) {
+    return chance_beyond(line.threshold) + chance_beyond(-line.better_threshold);
 }
 
 ChanceBelow::ChanceBelow(const FlightLines& lines, double left_percent)
     : lines_(&lines),
       left_percent_(left_percent),
       searches_(first_lines, {normal_of_student((lines.stated_percent() - left_percent) / lines.sd_percent(),
-                                                lines.degrees_of_freedom()),
-                              {}}) {
+                                                lines.degrees_of_freedom())}) {
     solve(0);
 }
 
@@ -159,7 +243,7 @@ void ChanceBelow::double_lines() {
     const auto before = searches_.size();
     const double sum = std::accumulate(searches_.begin(), searches_.end(), 0.0,
                                        [](double so_far, const auto& search) { return so_far + search.threshold; });
-    searches_.resize(2 * before, {sum / static_cast<double>(before), {}});
+    searches_.resize(2 * before, {.threshold = sum / static_cast<double>(before)});
     solve(before);
 }
 
@@ -181,13 +265,13 @@ double ChanceBelow::standard_error() const {
 
 void ChanceBelow::solve(std::size_t from) {
     for_each_index(searches_.size() - from,
-                   [&](std::size_t i) { lines_->find_threshold(from + i, left_percent_, searches_[from + i]); });
+                   [&](std::size_t i) { lines_->find_thresholds(from + i, left_percent_, searches_[from + i]); });
 }
 
 std::vector<double> ChanceBelow::of_pairs() const {
     std::vector<double> chances;
     for (std::size_t i = 0; i + 1 < searches_.size(); i += 2)
-        chances.push_back((chance_beyond(searches_[i].threshold) + chance_beyond(searches_[i + 1].threshold)) / 2.0);
+        chances.push_back((chance_below(searches_[i]) + chance_below(searches_[i + 1])) / 2.0);
     return chances;
 }
 

@@ -10,11 +10,18 @@
 
 namespace flightwatt::mission {
 
-/// A line's threshold for some state of charge, and what its flights so far were left with, by where they are.
+/// Beyond, nothing is as probable as 1e-18 [deviations].
+inline constexpr double furthest_deviation = 9.0;
+
+/// Between which of its flights a line keeps some state of charge, and what those that were flown were left with.
 struct LineSearch {
-    double threshold = 0.0;  ///< [deviations]
-    std::map<double, double> left_percent;
+    double threshold = 0.0;                         ///< [deviations]: beyond, flights fall below it
+    double better_threshold = -furthest_deviation;  ///< and before: where better in one is far out in others
+    std::map<double, double> left_percent{};        ///< by where they are
 };
+
+/// The chance of the flights of a line that fall below.
+double chance_below(const LineSearch& line);
 
 /// Lines of flights, each from the best to the worst: parallel to where flights lose most, and so far beside each other
 /// as normal numbers are. The flights are distributed as those that flight_of makes of `mission`, which has to outlive
@@ -31,8 +38,12 @@ class FlightLines {
     bool some_fail() const { return some_fail_; }  ///< of those that were flown
     std::size_t flown() const { return flown_; }   ///< flights
 
-    /// Where a line falls below `left_percent`, from the threshold that the search says.
-    void find_threshold(std::size_t line, double left_percent, LineSearch& search) const;
+    /// Where a line falls below `left_percent`, from the threshold that the search says: on both of its sides, since
+    /// what is drawn together is far out together. Between them all flights keep more.
+    void find_thresholds(std::size_t line, double left_percent, LineSearch& search) const;
+
+    /// What flight number `flight` is left with, drawn without regard to lines.
+    double drawn_left_percent(std::size_t flight) const;
 
     /// From now on along where the flights beyond the thresholds of lines are, by their chance.
     void turn_to_beyond(const std::vector<LineSearch>& searches);
@@ -40,6 +51,12 @@ class FlightLines {
   private:
     double left_percent_of(std::span<const double> normals) const;
     std::vector<double> across_of(std::size_t line) const;
+    double fly(std::size_t line, double at, LineSearch& search) const;
+    /// Where nothing is spare if so much is at `at`, as what is left falls evenly with a Student t.
+    double linear_threshold(double at, double spare_percent) const;
+    bool find_kept(std::size_t line, double left_percent, LineSearch& search) const;
+    void find_worse_threshold(std::size_t line, double left_percent, LineSearch& search) const;
+    void find_better_threshold(std::size_t line, double left_percent, LineSearch& search) const;
     void set_direction(std::vector<double> direction);
     double lost_percent_along(std::size_t normal) const;
     void find_scale();

@@ -2,12 +2,14 @@
 
 #include "base/statistics.h"
 #include "mission/sampling/flight_lines.h"
+#include "mission/sampling/workers.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 namespace flightwatt::mission {
 namespace {
@@ -73,6 +75,50 @@ ChanceBelow turned(FlightLines& lines, double left_percent, const IsKnown& is_kn
     return below;
 }
 
+/// Whether lines will tell a chance no better than as many flights drawn at random: their direction may hold little of
+/// why flights fail at once.
+bool are_lines_poor(const FlightLines& lines, const ChanceBelow& below, double wanted) {
+    if (!lines.some_fail()) return false;
+    const double times_flights = static_cast<double>(most_flights) / static_cast<double>(lines.flown());
+    const double times_lines = static_cast<double>(most_lines) / static_cast<double>(below.lines());
+    const double chance = std::clamp(below.chance(), wanted, 0.5);
+    return below.standard_error() / std::sqrt(std::max(1.0, std::min(times_flights, times_lines))) >
+           std::sqrt(chance * (1.0 - chance) / static_cast<double>(most_flights));
+}
+
+/// What so many flights are left with, from flight number `from` on.
+void draw_until(std::size_t flights, const FlightLines& lines, std::vector<double>& left_percent) {
+    const auto from = left_percent.size();
+    left_percent.resize(flights);
+    for_each_index(flights - from, [&](std::size_t i) { left_percent[from + i] = lines.drawn_left_percent(from + i); });
+}
+
+/// By flights drawn at random, as many as tell on which side of `wanted` the chance is, or all.
+void find_by_drawn_flights(const FlightLines& lines, double left_percent, double wanted, LandingChance& result) {
+    constexpr std::size_t first_flights = 1250;
+    std::vector<double> drawn_percent;
+    for (std::size_t flights = first_flights; flights <= most_flights; flights *= 2) {
+        draw_until(flights, lines, drawn_percent);
+        const auto falls_below = [&](double percent) { return percent < left_percent; };
+        const double below = static_cast<double>(std::ranges::count_if(drawn_percent, falls_below));
+        const double all = static_cast<double>(flights);
+        result.below = below / all;
+        result.resolution = 1.0 / all;
+        const double likely = (below + 1.0) / (all + 2.0);  // none of a few is not never
+        result.standard_error = std::sqrt(likely * (1.0 - likely) / all);
+        if (std::abs(result.below - wanted) > far_in_standard_errors * result.standard_error) return;
+    }
+}
+
+/// The quantile of all that are drawn.
+double drawn_quantile(const FlightLines& lines, double wanted) {
+    std::vector<double> drawn_percent;
+    draw_until(most_flights, lines, drawn_percent);
+    const auto seldom = drawn_percent.begin() + static_cast<std::ptrdiff_t>(wanted * static_cast<double>(most_flights));
+    std::ranges::nth_element(drawn_percent, seldom);
+    return *seldom;
+}
+
 }  // namespace
 
 double LandingChance::spare_percent(double probability) const {
@@ -98,6 +144,10 @@ LandingChance chance_of(const Mission& mission, const FlightSpreads& spreads, do
     const double wanted = 1.0 - probability;
     const auto is_known = [&](const ChanceBelow& below) { return is_known_of(below, wanted, lines); };
     auto below = turned(lines, mission.reserve_soc_percent, is_known);
+    if (!is_known(below) && are_lines_poor(lines, below, wanted)) {
+        find_by_drawn_flights(lines, mission.reserve_soc_percent, wanted, result);
+        return result;
+    }
     while (!is_known(below) && below.lines() < most_lines_flown && lines.flown() < most_flights) below.double_lines();
     result.below = below.chance();
     result.standard_error = below.standard_error();
@@ -137,12 +187,16 @@ LandingQuantile landing_quantile(const Mission& mission, const FlightSpreads& sp
     ChanceBelow first(lines, first_percent);
     move_to_chance(wanted, lines, first);
     auto below = turned(lines, first.left_percent(), is_exact);
-    for (;;) {
-        move_to_chance(wanted, lines, below);
-        if (is_exact(below) || below.lines() >= most_lines || lines.flown() >= most_flights) break;
-        below.double_lines();
+    if (!is_exact(below) && are_lines_poor(lines, below, wanted)) {
+        quantile.left_percent = drawn_quantile(lines, wanted);
+    } else {
+        for (;;) {
+            move_to_chance(wanted, lines, below);
+            if (is_exact(below) || below.lines() >= most_lines || lines.flown() >= most_flights) break;
+            below.double_lines();
+        }
+        quantile.left_percent = below.left_percent();
     }
-    quantile.left_percent = below.left_percent();
     quantile.margin_percent = lines.stated_percent() - quantile.left_percent;
     return quantile;
 }

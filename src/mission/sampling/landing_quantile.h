@@ -16,6 +16,7 @@ struct LandingQuantile {
 struct LandingChance {
     double below = 0.0;
     double standard_error = 0.0;  ///< of `below`, as it is computed
+    double resolution = 0.0;      ///< of `below`: one flight of those drawn; 0 by lines
     double sd_percent = 0.0;      ///< the flights' unit of Student's t, to first order
     double degrees_of_freedom = as_if_known;
     double stated_spare_percent = 0.0;  ///< what the flight as stated keeps above the reserve
@@ -28,8 +29,8 @@ struct LandingChance {
 /// The chance that flights of `mission`, drawn as flight_of says, land with less than its reserve, by line sampling
 /// (docs/methods.md, Eq. 34): no Gaussian is fitted, and what is not linear is flown. Exact to a tenth of the standard
 /// error of 20,000 flights; where flights fail at once, as at a cut-off, to what it takes to know on which side of
-/// 1 - `probability` it is, or to what 512 lines or 20,000 flights tell: see `standard_error`. Flights are drawn
-/// independently of any --samples. Throws std::invalid_argument for a probability not from 0.5 to below 1.
+/// 1 - `probability` it is, or to what 512 lines or 20,000 flights tell: see `standard_error`. Where lines tell less than
+/// flights drawn at random, it is by such flights. Flights are drawn independently of any --samples. Throws std::invalid_argument for a probability not from 0.5 to below 1.
 LandingChance landing_chance(const Mission& mission, const FlightSpreads& spreads, double probability);
 
 /// The same from few lines, 64 or 128: on which side of 1 - `probability` it is, but for missions near that or whose

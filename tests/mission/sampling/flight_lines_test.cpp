@@ -35,7 +35,7 @@ TEST(FlightLines, FindWhereFlightsFallBelow) {
     EXPECT_NEAR(lines.sd_percent(), 1.0 / 0.36, 1e-9);
     EXPECT_FALSE(lines.some_fail());
     LineSearch search;
-    lines.find_threshold(0, lines.stated_percent() - 3.0 * lines.sd_percent(), search);
+    lines.find_thresholds(0, lines.stated_percent() - 3.0 * lines.sd_percent(), search);
     EXPECT_NEAR(search.threshold, 3.0, 1e-3);
 }
 

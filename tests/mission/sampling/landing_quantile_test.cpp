@@ -1,11 +1,13 @@
 #include "mission/sampling/landing_quantile.h"
 
 #include "base/statistics.h"
+#include "helpers/generated_missions.h"
 #include "helpers/new_flights.h"
 #include "helpers/steady_mission.h"
 #include "mission/sampled_flights.h"
 
 #include <cmath>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -107,6 +109,56 @@ TEST(LandingChance, AgreesWithDrawnFlightsThatAreCutOff) {
     EXPECT_LT(chance.below, 0.3);
     const double error = std::sqrt(chance.below * (1.0 - chance.below) / 20000.0) + chance.standard_error;
     EXPECT_NEAR(flights.probability_below_reserve, chance.below, 4.0 * error);
+}
+
+/// A mission of few known flights, with a pack so weak that `failing` of its flights are cut off at once in take-off, and
+/// with much to spare in all others.
+Mission weak_in_takeoff(unsigned seed, double failing) {
+    auto mission = with_minimum_energy_schedule(test::generated_mission(seed).problem);
+    auto& battery = mission.battery;
+    battery.capacity_ah *= 3.0;
+    battery.resistance_ohm = 0.08;
+    mission.reserve_soc_percent = 10.0;
+    mission.mechanical->flights.resize(3);
+    for (const auto phase : flight::all_phases) {
+        auto& part = mission.mechanical->phases[phase];
+        part.flights = 3;
+        const double spread_w = (phase == flight::Phase::takeoff ? 0.25 : 0.05) * part.fourier.a0_w;
+        part.level_spread = mechanical::LevelSpread{3, spread_w, 0.1, 20.0};
+        for (std::size_t k = 0; k < 3; ++k)
+            mission.mechanical->flights[k].phases[phase] = mechanical::PhaseContribution{
+                1.0 / 3.0, part.duration_s * (0.9 + 0.1 * static_cast<double>(k)), 1.0, 100};
+    }
+    mission.uncertainty.level_sd_percent = {};
+    const auto too_few_fail = [&](double cutoff_voltage_v) {
+        mission.cutoff_voltage_v = cutoff_voltage_v;
+        return sample_flights(prepare(mission), {}, {2000, 5, 0}).probability_battery_failure < failing;
+    };
+    double low_v = 6.0;
+    double high_v = 12.5;
+    while (high_v - low_v > 0.02)
+        (too_few_fail(std::midpoint(low_v, high_v)) ? low_v : high_v) = std::midpoint(low_v, high_v);
+    mission.cutoff_voltage_v = low_v;
+    return mission;
+}
+
+/// Levels of three flights are Student t with two degrees of freedom: far out in one way, a flight is far out in others
+/// too, so that lines of flights fail on both of their sides.
+TEST(LandingChance, AgreesWithDrawnFlightsOfWeakPacks) {
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+        const double failing = seed % 3 == 0 ? 0.1 : seed % 3 == 1 ? 0.02 : 0.04;
+        const auto mission = weak_in_takeoff(seed, failing);
+        for (const double part : {1.0, 0.01}) {
+            auto flown = mission;
+            flown.duration_s[flight::Phase::cruise] *= part;
+            flown.schedule = rescale_to_flown_durations(mission.schedule, mission.duration_s, flown.duration_s);
+            const auto chance = landing_chance(flown, find_spreads(flown), 0.95);
+            const auto flights = sample_flights(prepare(flown), {}, {20000, 3, 0});
+            const double drawn = flights.probability_below_reserve;
+            const double error = std::sqrt(drawn * (1.0 - drawn) / 20000.0) + chance.standard_error;
+            EXPECT_NEAR(drawn, chance.below, 4.0 * error) << "seed " << seed << ", cruise times " << part;
+        }
+    }
 }
 
 TEST(LandingQuantile, NeedsNoMarginWhereNothingDiffers) {
