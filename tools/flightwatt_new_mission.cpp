@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,12 @@ std::string component_name(const std::filesystem::path& profile, const std::vect
     return name;
 }
 
+/// As a user types it.
+std::string typed_in_shell(const std::string& file) {
+    if (file.find_first_of(" \t\n'\"\\$`&;|<>()*?[]#~!{}") == std::string::npos) return file;
+    return "'" + std::regex_replace(file, std::regex("'"), R"('\'')") + "'";
+}
+
 int write_new_mission(const cli::StageCall& call) {
     const auto mechanical = required_file(call, "mechanical", "batch");
     const auto pack = required_file(call, "battery", "battery");
@@ -50,12 +57,14 @@ int write_new_mission(const cli::StageCall& call) {
         throw OutputError(fmt::format("{} is there already and stays as it is: give another name", file.string()));
     }
     const auto folder = std::filesystem::absolute(file).parent_path();
+    if (!std::filesystem::is_directory(folder, none))
+        throw OutputError(fmt::format("{}: there is no folder {}: make it first", file.string(), folder.string()));
     mission::NewMission fresh;
     fresh.name = call.maybe<std::string>("name").value_or(file.stem().string());
     fresh.mechanical = named_from(folder, mechanical);
     fresh.model = mechanical::read_mechanical_model(mechanical);
     fresh.battery = named_from(folder, pack);
-    fresh.capacity_ah = battery::read_battery(pack).capacity_ah;
+    fresh.pack = battery::read_battery(pack);
     fresh.is_planned = call.has("plan");
     for (const auto& profile : call.maybe<std::vector<std::string>>("profile").value_or(std::vector<std::string>())) {
         fresh.components.push_back({component_name(profile, fresh.components), named_from(folder, profile),
@@ -76,8 +85,8 @@ int write_new_mission(const cli::StageCall& call) {
         json["planned"] = fresh.is_planned;
         cli::print(cli::json_text(json));
     } else if (call.output) {
-        cli::note(call, fmt::format("{0} is written; next: flightwatt {1} {0}", file.string(),
-                                    fresh.is_planned ? "plan" : "simulate"));
+        cli::note(call, fmt::format("{} is written; next: flightwatt {} {}", file.string(),
+                                    fresh.is_planned ? "plan" : "simulate", typed_in_shell(file.string())));
     }
     return cli::ok;
 }

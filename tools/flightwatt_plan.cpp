@@ -90,9 +90,9 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
     const auto text = describe(plan, *problem);
     // The files that the result names are found from where it will stand.
     const auto folder = std::filesystem::absolute(call.output.value_or("result")).parent_path();
-    cli::write_result(call,
-                      fmt::format("# {}\n", cli::one_line(text)) +
-                          planned_mission_toml(file.text, file.path, problem->compute, plan.flown.schedule, folder));
+    const auto planned = planned_mission_toml(file.text, file.path, problem->compute, plan.flown.schedule, folder);
+    cli::write_result(call, fmt::format("# {}\n", cli::one_line(text)) + planned.text);
+    cli::warn_of_lost_comments(call, planned);
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(plan, *problem)));
     } else {

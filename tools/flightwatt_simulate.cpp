@@ -24,8 +24,9 @@ void write_schedule(const cli::StageCall& call, const std::string& text, const m
     if (!file) return;
     const auto folder = std::filesystem::absolute(*file).parent_path();
     const auto heading = fmt::format("# {}\n", cli::one_line(describe(flight.simulation.summary)));
-    write_file_atomically(*file, heading + planned_mission_toml(text, call.inputs.front(), prepared.setup.compute,
-                                                                flight.schedule, folder));
+    const auto flown = planned_mission_toml(text, call.inputs.front(), prepared.setup.compute, flight.schedule, folder);
+    write_file_atomically(*file, heading + flown.text);
+    cli::warn_of_lost_comments(call, flown);
 }
 
 /// Draws flights if they were asked for.

@@ -71,6 +71,16 @@ std::optional<Mission> if_it_fits(const MissionOfCruise& mission_of, double crui
     }
 }
 
+/// A schedule that was planned says what runs for as long as it was planned, and no longer.
+void require_fit(const MissionOfCruise& mission_of, double cruise_s) {
+    try {
+        with_minimum_energy_schedule(mission_of(cruise_s));
+    } catch (const InputError& error) {
+        throw InputError(error.where(), "the schedule says what runs for one length of the cruise alone",
+                         "ask the mission that it was planned from, or add an entry with `otherwise = true`");
+    }
+}
+
 /// A cruise short enough to land with the reserve, below `too_long_s`.
 double short_enough_s(const MissionOfCruise& mission_of, double too_long_s) {
     double fits_s = too_long_s;
@@ -189,6 +199,7 @@ double longest_cruise_s_of(const MissionOfCruise& mission_of) {
     // From a length that fits: schedules may need so much, never so little.
     double fits_s = shortest_cruise_s;
     while (fits_s < longest_cruise_s && !if_it_fits(mission_of, fits_s)) fits_s *= 2.0;
+    require_fit(mission_of, fits_s);
     Bracket bracket{0.0, fits_s};
     if (spare_of(fits_s) < 0.0)
         bracket.good = short_enough_s(mission_of, fits_s);

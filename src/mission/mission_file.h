@@ -29,13 +29,18 @@ AnyMission read_mission(const std::filesystem::path& path, const MissionReading&
 /// The same from text; `path` names it and is where relative paths start.
 AnyMission parse_mission(std::string_view text, const std::filesystem::path& path, const MissionReading& reading = {});
 
+/// A mission file with another schedule.
+struct PlannedMissionText {
+    std::string text;
+    bool lost_comments = false;  ///< the keys are sorted and stand without what was said of them
+};
+
 /// The mission file `text` (of `path`) with `schedule` in the place of its [plan], [policy] and [[schedule]];
-/// everything else stands as it was written, with its comments (of a text that does not allow that, its keys sorted and
-/// without). `compute` is the mission's. The
-/// files that it names are found from `folder`, where the result is to stand.
-std::string planned_mission_toml(std::string_view text, const std::filesystem::path& path,
-                                 const compute::ComputeModel& compute, const Schedule& schedule,
-                                 const std::filesystem::path& folder);
+/// everything else stands as it was written, with its comments, if the text allows that: lines end as Unix ends them.
+/// `compute` is the mission's. The files that it names are found from `folder`, where the result is to stand.
+PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
+                                        const compute::ComputeModel& compute, const Schedule& schedule,
+                                        const std::filesystem::path& folder);
 
 /// A component of a mission that is yet to be written.
 struct NewComponent {
@@ -50,7 +55,7 @@ struct NewMission {
     std::string mechanical;
     mechanical::MechanicalModel model;  ///< that file's
     std::string battery;
-    double capacity_ah = 0.0;  ///< that file's
+    battery::Battery pack;  ///< that file's
     std::vector<NewComponent> components = {};
     bool is_planned = false;  ///< the schedule is left to `flightwatt plan`
 };

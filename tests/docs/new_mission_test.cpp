@@ -47,7 +47,7 @@ class NewMissions : public testing::Test {
         fresh.mechanical = model;
         fresh.model = mechanical::read_mechanical_model(folder / model);
         fresh.battery = "paper.toml";
-        fresh.capacity_ah = battery::read_battery(folder / "paper.toml").capacity_ah;
+        fresh.pack = battery::read_battery(folder / "paper.toml");
         fresh.components.push_back(
             {"detection", "tx2-detection.csv", compute::read_power_profile(folder / "tx2-detection.csv")});
         fresh.is_planned = is_planned;

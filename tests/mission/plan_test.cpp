@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <random>
+#include <regex>
 
 #include <gtest/gtest.h>
 
@@ -218,7 +219,7 @@ TEST(Plan, IsWrittenAsAMission) {
     mission.plan.choices[1].may_be_off = true;
     const auto plan = plan_mission(mission);
     const auto folder = test::scratch_dir();
-    const auto text = planned_mission_toml(read_file(path), path, plan.flown.compute, plan.flown.schedule, folder);
+    const auto text = planned_mission_toml(read_file(path), path, plan.flown.compute, plan.flown.schedule, folder).text;
     const auto again = std::get<Mission>(parse_mission(text, folder / "planned.toml"));
     EXPECT_EQ(again.name, "plan");
     EXPECT_EQ(again.reserve_soc_percent, paper_problem("plan").reserve_soc_percent);
@@ -230,6 +231,7 @@ TEST(Plan, IsWrittenAsAMission) {
 struct WrittenPlan {
     MissionPlan plan;
     std::string text;
+    bool lost_comments = false;
 };
 
 /// Plans a mission whose text stands in missions/paper, and writes it into the folder of the sources.
@@ -237,7 +239,8 @@ WrittenPlan planned_and_written(const std::string& text) {
     const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
     const auto problem = parse_mission(text, path, {.may_lack_schedule = true});
     const auto plan = plan_mission(std::get<PlanningProblem>(problem));
-    return {plan, planned_mission_toml(text, path, plan.flown.compute, plan.flown.schedule, test::source_dir())};
+    const auto written = planned_mission_toml(text, path, plan.flown.compute, plan.flown.schedule, test::source_dir());
+    return {plan, written.text, written.lost_comments};
 }
 
 TEST(Plan, KeepsCommentsAndNumbersOfTheFileThatItComesFrom) {
@@ -265,7 +268,8 @@ TEST(Plan, KeepsCommentsAndNumbersOfTheFileThatItComesFrom) {
         "kind = \"static\"\n"
         "\n"
         "# An afterword.\n";
-    const auto written = planned_and_written(text).text;
+    const auto [plan, written, lost_comments] = planned_and_written(text);
+    EXPECT_FALSE(lost_comments);
     const std::string kept =
         "# A survey of the north field.\n"
         "format = 1\n"
@@ -285,6 +289,8 @@ TEST(Plan, KeepsCommentsAndNumbersOfTheFileThatItComesFrom) {
     EXPECT_EQ(written.substr(0, kept.size()), kept);
     EXPECT_EQ(written.find("[plan]"), std::string::npos);
     EXPECT_NO_THROW(parse_mission(written, test::source_dir() / "planned.toml"));
+    const auto of_windows = "\xEF\xBB\xBF" + std::regex_replace(text, std::regex("\n"), "\r\n");
+    EXPECT_EQ(planned_and_written(of_windows).text, written);
 }
 
 TEST(Plan, IsWrittenWhateverWayTheFileIsWritten) {
@@ -293,7 +299,9 @@ TEST(Plan, IsWrittenWhateverWayTheFileIsWritten) {
         "plan = { slot_s = 60, levels = { detection = { fps = [\n  5.8,\n  10 ] } } }\n"
         "components = { detection = { profile = \"\"\"../../fits/compute/tx2-detection.csv\"\"\", "
         "utility = { parameter = \"fps\" } } }\n";
-    const auto [plan, written] = planned_and_written(text);
+    const auto [plan, written, lost_comments] = planned_and_written(text);
+    EXPECT_FALSE(lost_comments) << "there are none";
+    EXPECT_TRUE(planned_and_written("# A survey.\n" + text).lost_comments);
     const auto again = std::get<Mission>(parse_mission(written, test::source_dir() / "planned.toml"));
     EXPECT_EQ(simulate(again).summary.utility, plan.summary.utility);
 }

@@ -71,6 +71,13 @@ struct FlightChoice {
     std::vector<std::string> patterns;
 };
 
+/// fnmatch takes a bracket that is not closed for a letter, and no pattern for one that no flight has.
+void require_pattern(const std::string& pattern) {
+    const auto open = pattern.find('[');
+    if (pattern.empty() || (open != std::string::npos && pattern.find(']', open + 2) == std::string::npos))
+        throw UsageError(fmt::format("--glob '{}': expected a pattern as '20_07_*', each [ closed by ]", pattern));
+}
+
 /// Why a flight is left out; empty for one that is used.
 std::string why_left_out(const FlightChoice& choice, const std::string& flight) {
     const auto fits = [&](const auto& pattern) { return matches(pattern, flight); };
@@ -113,6 +120,7 @@ void add_choice_options(boost::program_options::options_description& options) {
 
 std::vector<bool> chosen_flights(const StageCall& call, const std::vector<std::string>& flights) {
     const FlightChoice choice{day_option(call, "since"), day_option(call, "until"), texts_of(call, "glob")};
+    std::ranges::for_each(choice.patterns, require_pattern);
     if (choice.since && choice.until && *choice.since > *choice.until)
         throw UsageError("--since is after --until: no flight is of both");
     std::vector<bool> chosen;

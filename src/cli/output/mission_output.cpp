@@ -65,6 +65,13 @@ std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, con
     return file ? mission::read_disturbances(*file, mission.duration_s) : std::vector<mission::Disturbance>();
 }
 
+void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written) {
+    if (written.lost_comments)
+        warn(call,
+             "the mission's comments and order are not in the result: they are kept where [plan], [policy] and "
+             "[[schedule]] are tables of their own, not inline or dotted");
+}
+
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission) {
     auto warnings = battery_warnings(mission.battery);
     if (mission.mechanical) std::ranges::copy(model_warnings(*mission.mechanical), std::back_inserter(warnings));

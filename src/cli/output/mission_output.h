@@ -4,6 +4,7 @@
 #include "cli/terminal.h"
 #include "mission/disturbance.h"
 #include "mission/feasibility_limits.h"
+#include "mission/mission_file.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
 
@@ -28,6 +29,9 @@ std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, con
 
 /// Warns of what no drone has: negative power of the model or of a profile, a battery of another unit.
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission);
+
+/// If a mission that was written with another schedule has lost its comments.
+void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written);
 
 /// What differs between flights and what does not, as "drawn" and "not_drawn".
 void add_sources(const mission::DrawnSources& sources, nlohmann::ordered_json& json);

@@ -100,6 +100,16 @@ std::string joined(const std::vector<Line>& lines) {
 
 }  // namespace
 
+std::string plain_text(std::string_view text) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    std::string plain;
+    plain.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i)
+        if (!text.substr(i).starts_with("\r\n")) plain += text[i];
+    return plain;
+}
+
 std::optional<std::string> kept_text(std::string_view text, const toml::table& read, const toml::table& wanted) {
     auto lines = lines_of(text);
     rename_files(lines, read, wanted);

@@ -78,7 +78,18 @@ mechanical = {}
         toml_string(mission.mechanical), durations, airspeed_of(mission.model));
 }
 
+/// Of LiPo cells, by the voltage of a full pack, or by the paper's constant one.
+int cells_of(const battery::Battery& pack) {
+    constexpr double full_v = 4.2;
+    constexpr double usual_v = 3.7;
+    const double cells =
+        pack.thevenin ? pack.thevenin->open_circuit.voltage_v.back() / full_v : pack.voltage_v / usual_v;
+    return std::max(1, static_cast<int>(std::lround(cells)));
+}
+
 std::string battery(const NewMission& mission) {
+    constexpr double least_v_per_cell = 3.0;
+    const int cells = cells_of(mission.pack);
     return fmt::format(
         R"(# The battery, from `flightwatt battery`; or {{ voltage_v = 11.1, resistance_ohm = 0.05, capacity_ah = 5 }}.
 battery = {}
@@ -86,15 +97,16 @@ battery = {}
 #initial_soc_percent = 98
 # What this pack holds [Ah], instead of what the battery's file says.
 #capacity_ah = {:.3g}
-# The flight ends when the voltage at the terminals falls below this [V]: 3.0 to 3.5 V a cell.
-#cutoff_voltage_v = 3.0
+# The flight ends when the voltage at the terminals falls below this [V]: 3.0 to 3.5 V a cell{}.
+#cutoff_voltage_v = {:.1f}
 # Charge to land with [%]. 20 % spares the pack.
 reserve_soc_percent = 20
 # Power below 0 is meant (sun, regeneration), and charges the battery.
 #may_charge = true
 
 )",
-        toml_string(mission.battery), mission.capacity_ah);
+        toml_string(mission.battery), mission.pack.capacity_ah,
+        cells == 1 ? "" : fmt::format(", and this pack has about {}", cells), least_v_per_cell * cells);
 }
 
 /// Of each condition what it is, and a value for models that follow another.

@@ -69,10 +69,11 @@ std::string toml_inline_table(const std::vector<std::string>& pairs) {
     return pairs.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(pairs, ", "));
 }
 
-std::string planned_mission_toml(std::string_view text, const std::filesystem::path& path,
-                                 const compute::ComputeModel& compute, const Schedule& schedule,
-                                 const std::filesystem::path& folder) {
-    const auto read = toml::parse(text, path.string());
+PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
+                                        const compute::ComputeModel& compute, const Schedule& schedule,
+                                        const std::filesystem::path& folder) {
+    const auto plain = plain_text(text);
+    const auto read = toml::parse(plain, path.string());
     auto root = read;
     root.insert_or_assign("format", format_version);
     root.erase("plan");
@@ -88,10 +89,10 @@ std::string planned_mission_toml(std::string_view text, const std::filesystem::p
     if (auto* cruise = root.get_as<toml::table>("path"))
         for (const std::string_view key : {"waypoints", "flight_plan"}) move_path(*cruise, key, from, to);
     const auto schedule_below = schedule_text(compute, schedule);
-    if (const auto kept = kept_text(text, read, root)) return *kept + schedule_below;
+    if (const auto kept = kept_text(plain, read, root)) return {*kept + schedule_below, false};
     std::ostringstream out;
     out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};
-    return out.str() + "\n" + schedule_below;
+    return {out.str() + "\n" + schedule_below, plain.find('#') != std::string::npos};
 }
 
 }  // namespace flightwatt::mission

@@ -164,7 +164,7 @@ TEST(PathToml, APlannedMissionFindsItsWaypoints) {
     const auto mission = std::get<Mission>(parse_mission(text, folder / "m.toml"));
     std::filesystem::create_directories(folder / "below");
     const auto planned =
-        planned_mission_toml(text, folder / "m.toml", mission.compute, mission.schedule, folder / "below");
+        planned_mission_toml(text, folder / "m.toml", mission.compute, mission.schedule, folder / "below").text;
     EXPECT_NE(planned.find("../w.csv"), std::string::npos) << planned;
     const auto again = std::get<Mission>(parse_mission(planned, folder / "below" / "p.toml"));
     EXPECT_EQ(again.duration_s[Phase::cruise], mission.duration_s[Phase::cruise]);
