@@ -1,6 +1,7 @@
 """How logs get damaged: each function takes a random generator and a Log, and damages it as real ones are.
 
-A Log holds the lines of a .data file and the text of its .log (None without one). Used by scripts/mutate_logs.
+A Log holds the lines of a .data file and the text of its .log (None without one); of a binary one also the frames of its
+lines. Used by scripts/mutate_logs.
 """
 
 import re
@@ -14,6 +15,7 @@ OTHER_MESSAGES = (b"ESTIMATOR", b"GPS", b"GPS_INT", b"ROTORCRAFT_FP", b"AIR_DATA
 class Log:
     lines: list  # of bytes, with their line breaks
     definitions: str | None
+    frames: list | None = None  # of bytes
 
 
 def words_of(line):

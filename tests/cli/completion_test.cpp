@@ -108,8 +108,8 @@ class ManPages : public testing::Test {
 
     void SetUp() override {
         const auto made = test::run_shell(test::shell_quoted(test::source_dir() / "scripts" / "make_man") +
-                                              " --programs " + test::shell_quoted(test::binary_dir() / "bin") +
-                                              " --into " + test::shell_quoted(folder / "man"),
+                                              " --programs " + test::shell_quoted(test::programs_dir()) + " --into " +
+                                              test::shell_quoted(folder / "man"),
                                           folder);
         ASSERT_EQ(made.code, 0) << made.err;
     }

@@ -8,14 +8,11 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/udp.hpp>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -99,15 +96,6 @@ class WatchLinks : public testing::Test {
     Json expected;
 };
 
-/// Somebody has the port.
-bool is_taken(std::uint16_t port) {
-    boost::asio::io_context context;
-    boost::system::error_code error;
-    boost::asio::ip::udp::socket socket(context, boost::asio::ip::udp::v4());
-    socket.bind({boost::asio::ip::udp::v4(), port}, error);
-    return static_cast<bool>(error);
-}
-
 TEST_F(WatchLinks, OverAnIvyBusWithItsTimesItIsTheSame) {
     const auto bus = fmt::format("127.255.255.255:{}", test::free_udp_port());
     expect_near(watch("--ivy " + bus + " --log flown.log", "ivy:" + bus, 400, [] { return true; }), 1e-5);
@@ -118,7 +106,7 @@ TEST_F(WatchLinks, OverUdpItIsTheSameButForTimesOfArrival) {
     const auto source =
         fmt::format("--udp {} --messages flown.log --clock-factor 100 --serve {}", port, test::free_udp_port());
     // Of arrivals some come late by milliseconds, of a busy machine by tens, which are seconds at this speed.
-    expect_near(watch(source, fmt::format("udp:127.0.0.1:{}", port), 100, [&] { return is_taken(port); }), 0.05);
+    expect_near(watch(source, fmt::format("udp:127.0.0.1:{}", port), 100, [&] { return test::is_taken(port); }), 0.05);
 }
 
 }  // namespace

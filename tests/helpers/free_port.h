@@ -14,4 +14,13 @@ inline std::uint16_t free_udp_port() {
     return socket.local_endpoint().port();
 }
 
+/// Somebody has the port.
+inline bool is_taken(std::uint16_t port) {
+    boost::asio::io_context context;
+    boost::system::error_code error;
+    boost::asio::ip::udp::socket socket(context, boost::asio::ip::udp::v4());
+    socket.bind({boost::asio::ip::udp::v4(), port}, error);
+    return static_cast<bool>(error);
+}
+
 }  // namespace flightwatt::test

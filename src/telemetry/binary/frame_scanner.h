@@ -33,8 +33,10 @@ struct Gap {
     bool is_cut_off = false;  ///< begins where a frame should, of which there is too little
 };
 
-/// What header and fields are; without a message where there are too few bytes for the header.
-inline FoundFrame read_message_header(const Frame& frame, LinkVersion version, const MessageDictionary& dictionary) {
+/// What header and fields are; without a message where there are too few bytes for the header. Of every frame, and short:
+/// a call and a copy of the result would be a tenth of the time that a log takes.
+[[gnu::always_inline]] inline FoundFrame read_message_header(const Frame& frame, LinkVersion version,
+                                                             const MessageDictionary& dictionary) {
     FoundFrame found;
     const auto& bytes = frame.message;
     const std::size_t header = version == LinkVersion::v1 ? 2 : 4;
@@ -154,7 +156,10 @@ class FrameScanner {
 
     /// `counts`: whether the frame tells which version this is.
     FoundFrame read(const Frame& frame, bool counts) {
-        if (version_) return read_message_header(frame, *version_, *dictionary_);
+        return version_ ? read_message_header(frame, *version_, *dictionary_) : read_of_any_version(frame, counts);
+    }
+
+    FoundFrame read_of_any_version(const Frame& frame, bool counts) {
         const auto v1 = read_message_header(frame, LinkVersion::v1, *dictionary_);
         const auto v2 = read_message_header(frame, LinkVersion::v2, *dictionary_);
         if (counts && v1.fits != v2.fits) ++(v1.fits ? fit_v1_ : fit_v2_);

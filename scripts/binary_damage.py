@@ -1,0 +1,188 @@
+"""Binary logs out of text logs, and how they get damaged: as scripts/log_damage.py, of a Log whose `frames` are those of
+its lines. Used by scripts/mutate_logs.
+"""
+
+import re
+import struct
+import xml.etree.ElementTree
+
+NUMBERS = {"uint8": "B", "int8": "b", "uint16": "H", "int16": "h", "uint32": "I", "int32": "i", "float": "f", "double": "d"}
+SECTOR = 512  # bytes: what a card writes at once
+
+
+def wire_messages(definitions):
+    """Name -> class, id and the fields' types, of a .log; empty where it is no XML."""
+    try:
+        root = xml.etree.ElementTree.fromstring(definitions)
+    except xml.etree.ElementTree.ParseError:
+        return {}
+    messages = {}
+    for group in root.iter("msg_class"):
+        for message in group.iter("message"):
+            of = {key.upper(): value for key, value in message.attrib.items()}
+            fields = [{key.upper(): value for key, value in field.attrib.items()} for field in message.iter("field")]
+            name, number = of.get("NAME"), of.get("ID", "")
+            if name and number.isdigit() and all("TYPE" in field for field in fields):
+                kind = int({key.upper(): value for key, value in group.attrib.items()}.get("ID", "1"))
+                messages.setdefault(name, (kind, int(number), [field["TYPE"] for field in fields]))
+    return messages
+
+
+def wire_value(kind, word):
+    if kind.startswith("char"):
+        return word.strip('"').encode("latin-1")[:255]
+    number = float(word)
+    if NUMBERS[kind] in "fd":
+        return struct.pack("<" + NUMBERS[kind], number)
+    size = struct.calcsize(NUMBERS[kind])
+    return (int(number) % (1 << 8 * size)).to_bytes(size, "little")
+
+
+def payload_of(types, words):
+    """The fields' bytes. Throws ValueError or KeyError where a word is not of its type."""
+    payload = b""
+    for kind, word in zip(types, words):
+        base, array, count = re.fullmatch(r"(\w+)(\[(\d*)\])?", kind).groups()
+        values = [word] if base == "char" or not array else word.split(",") if word else []
+        parts = b"".join(wire_value(base, value) for value in values)
+        if array and not count:
+            payload += bytes([len(parts) if base == "char" else len(values)])
+        payload += parts
+    return payload
+
+
+def card_frame(message, time_100us):
+    body = struct.pack("<BBI", len(message), 0, time_100us % (1 << 32)) + message
+    return b"\x99" + body + bytes([sum(body) & 255])
+
+
+def frames_of(lines, definitions, version):
+    """A card's frame of each line, pprzlink 1 or 2; empty where a line cannot be one: of the ground, or not defined."""
+    messages = wire_messages(definitions)
+    frames = []
+    for line in lines:
+        words = re.findall(r'"[^"]*"|\S+', line.decode("latin-1"))
+        try:
+            kind, number, types = messages[words[2]]
+            if len(words) != len(types) + 3:
+                raise ValueError
+            header = (int(words[1]), number) if version == 1 else (int(words[1]), 255, kind, number)
+            message = bytes(header) + payload_of(types, words[3:])
+            frames.append(card_frame(message, round(float(words[0]) * 1e4)))
+        except (ValueError, KeyError, IndexError, OverflowError, struct.error, AttributeError):
+            frames.append(b"")
+    return frames
+
+
+def whole(log, data):
+    """The log is these bytes from now on; their lines are still about what they were."""
+    log.frames = [data]
+
+
+def frames_cut_off(random, log):
+    last = random.randrange(len(log.frames))
+    log.lines = log.lines[: last + 1]
+    frame = log.frames[last]
+    log.frames = log.frames[:last] + [frame[: random.randrange(len(frame) + 1)]]
+
+
+def frames_begun_late(random, log):
+    first = random.randrange(len(log.frames))
+    log.lines = log.lines[first:]
+    frame = log.frames[first]
+    log.frames = [frame[random.randrange(len(frame) + 1) :]] + log.frames[first + 1 :]
+
+
+def frames_flipped(random, log):
+    data = bytearray(b"".join(log.frames))
+    for _ in range(random.choice((1, 10, 100, 1000))):
+        data[random.randrange(len(data))] ^= 1 << random.randrange(8)
+    whole(log, bytes(data))
+
+
+def bytes_of_frames_lost(random, log):
+    data = b"".join(log.frames)
+    for _ in range(random.choice((1, 20, 200))):
+        at = random.randrange(len(data))
+        data = data[:at] + data[at + random.randrange(1, 40) :]
+    whole(log, data)
+
+
+def bytes_between_frames(random, log):
+    data = b"".join(log.frames)
+    for _ in range(random.choice((1, 20, 200))):
+        at = random.randrange(len(data))
+        kinds = (b"\0" * random.randrange(1, 64), b"\x99", b"\x99\x08", random.randbytes(random.randrange(1, 40)))
+        data = data[:at] + random.choice(kinds) + data[at:]
+    whole(log, data)
+
+
+def sectors(random, data):
+    """Some of the card's sectors: where they begin, and where they end."""
+    first = random.randrange(len(data) // SECTOR + 1) * SECTOR
+    return first, first + random.choice((1, 4, 16)) * SECTOR
+
+
+def sectors_zeroed(random, log):
+    data = b"".join(log.frames)
+    for _ in range(random.choice((1, 5))):
+        begin, end = sectors(random, data)
+        data = data[:begin] + bytes(len(data[begin:end])) + data[end:]
+    whole(log, data)
+
+
+def sectors_of_another_file(random, log):
+    data = b"".join(log.frames)
+    begin, end = sectors(random, data)
+    whole(log, data[:begin] + random.randbytes(len(data[begin:end])) + data[end:])
+
+
+def sectors_moved(random, log):
+    data = b"".join(log.frames)
+    begin, end = sectors(random, data)
+    rest = data[:begin] + data[end:]
+    at = random.randrange(len(rest) // SECTOR + 1) * SECTOR
+    whole(log, rest[:at] + data[begin:end] + rest[at:])
+
+
+def sectors_doubled(random, log):
+    data = b"".join(log.frames)
+    begin, end = sectors(random, data)
+    whole(log, data[:end] + data[begin:end] + data[end:])
+
+
+def lengths_changed(random, log):
+    frames = list(log.frames)
+    for _ in range(random.choice((1, 10, 100))):
+        i = random.randrange(len(frames))
+        if frames[i]:
+            frames[i] = frames[i][:1] + bytes([random.randrange(256)]) + frames[i][2:]
+    log.frames = frames
+
+
+def contents_changed(random, log):
+    """A byte of a message, whose checksum is right nevertheless: it came so."""
+    frames = list(log.frames)
+    for _ in range(random.choice((1, 10, 100))):
+        i = random.randrange(len(frames))
+        if frames[i]:
+            frame = bytearray(frames[i])
+            frame[random.randrange(7, len(frame) - 1)] = random.randrange(256)
+            frame[-1] = sum(frame[1:-1]) & 255
+            frames[i] = bytes(frame)
+    log.frames = frames
+
+
+DAMAGES = [
+    frames_cut_off,
+    frames_begun_late,
+    frames_flipped,
+    bytes_of_frames_lost,
+    bytes_between_frames,
+    sectors_zeroed,
+    sectors_of_another_file,
+    sectors_moved,
+    sectors_doubled,
+    lengths_changed,
+    contents_changed,
+]
