@@ -4,8 +4,10 @@
 #include "helpers/watched_logs.h"
 #include "live/live_flight.h"
 
+#include <cstdint>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -219,6 +221,62 @@ TEST(DisturbedLiveFlight, WhatArrivesWithoutATimeGetsItsArrivals) {
         untimed.receive(message, arrival_s);
     }
     EXPECT_EQ(timed.look().prediction->rest.energy_wh, untimed.look().prediction->rest.energy_wh);
+}
+
+/// Of a clean stream: some lost, some doubled, some a little late, and lines of any bytes between them.
+std::vector<IncomingMessage> damaged_stream(std::vector<IncomingMessage> messages, std::mt19937& random) {
+    std::vector<IncomingMessage> stream;
+    for (auto& message : messages) {
+        const auto draw = random() % 100;
+        if (draw < 10) continue;
+        if (draw < 20) stream.push_back(message);
+        if (draw < 25) {
+            IncomingMessage garbage{message.time_s, std::string(random() % 60, ' ')};
+            for (auto& c : garbage.text) c = static_cast<char>(random() % 256);
+            stream.push_back(std::move(garbage));
+        }
+        stream.push_back(std::move(message));
+        if (draw >= 90 && stream.size() > 4) std::swap(stream.back(), stream[stream.size() - 2 - random() % 3]);
+    }
+    return stream;
+}
+
+TEST(DisturbedLiveFlight, ADamagedStreamNeitherEndsItNorInventsAnything) {
+    const auto log = test::sample(2);
+    const auto clean = test::messages_of(log, 350.0);
+    const auto whole = test::predicted(log, 349.0, test::wing_basis());
+    for (std::uint32_t seed = 31; seed <= 36; ++seed) {
+        std::mt19937 random(seed);
+        LiveFlight flight(test::options_of(log), test::wing_basis(), nullptr);
+        test::receive_all(flight, damaged_stream(clean, random));
+        const auto state = flight.look();
+        ASSERT_TRUE(state.prediction) << seed << ": " << state.waits_for;
+        EXPECT_EQ(state.aircraft_id, "7");
+        EXPECT_EQ(state.sortie, 1U) << seed;
+        EXPECT_EQ(state.restarts, 0U) << seed;
+        EXPECT_NEAR(state.prediction->flown.lift_off_s, whole.flown.lift_off_s, 2.0) << seed;
+        EXPECT_NEAR(state.prediction->flown.energy_wh, whole.flown.energy_wh, 0.03 * whole.flown.energy_wh) << seed;
+        EXPECT_TRUE(whole.interval.contains(state.prediction->rest.energy_wh)) << seed;
+    }
+}
+
+TEST(DisturbedLiveFlight, GarbageAloneIsNoFlight) {
+    for (std::uint32_t seed = 41; seed <= 44; ++seed) {
+        std::mt19937 random(seed);
+        LiveFlight flight(test::options_of(test::sample(2)), test::wing_basis(), nullptr);
+        for (int i = 0; i < 3000; ++i) {
+            std::string text(random() % 80, ' ');
+            for (auto& c : text) c = static_cast<char>(random() % 256);
+            flight.receive({0.1 * i, std::move(text)}, 0.1 * i);
+            if (i % 500 == 0) flight.look();
+        }
+        const auto state = flight.look();
+        EXPECT_FALSE(state.prediction);
+        EXPECT_FALSE(state.phase);
+        EXPECT_FALSE(state.energy_wh);
+        EXPECT_EQ(state.sortie, 0U);
+        EXPECT_FALSE(state.waits_for.empty());
+    }
 }
 
 }  // namespace
