@@ -62,8 +62,8 @@ std::optional<telemetry::MessageDictionary> log_definitions(const cli::StageCall
 /// Lines to the standard output, each at once.
 class OutputTarget : public live::PlaybackTarget {
   public:
-    std::string_view send(double time_s, std::string_view text) override {
-        has_reader_ = cli::print_at_once(fmt::format("{} {}\n", time_s, text));
+    std::string_view send(const live::PlayedMessage& message) override {
+        has_reader_ = cli::print_at_once(fmt::format("{} {}\n", message.time, message.text));
         return {};
     }
     bool has_reader() const { return has_reader_; }

@@ -12,8 +12,6 @@ namespace {
 
 constexpr double part_s = 30.0;
 constexpr double track_every_s = 1.0;
-constexpr double metres_per_degree =
-    111195.0;                         // of a sphere as large as the earth: it only decides how fine places are
 constexpr double look_every_s = 0.5;  // faster than airspeed is logged
 
 constexpr double bend_m = 3.0;  // about what satellite navigation is off
@@ -95,8 +93,8 @@ GroundTrack ground_track(const FlightSeries& series, bool is_geographic, double 
     track.first = required_at(series, is_geographic ? "latitude_deg" : "east_m", track.time_s);
     track.second = required_at(series, is_geographic ? "longitude_deg" : "north_m", track.time_s);
     if (is_geographic) {
-        track.metres_per_first = metres_per_degree;
-        track.metres_per_second = metres_per_degree * std::cos(track.first.front() / units::degree_per_rad);
+        track.metres_per_first = units::metre_per_degree;  // it only decides how fine places are
+        track.metres_per_second = units::metre_per_degree * std::cos(track.first.front() / units::degree_per_rad);
     }
     return track;
 }

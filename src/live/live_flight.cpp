@@ -9,6 +9,7 @@
 #include "live/state/battery_check.h"
 #include "live/state/flight_clock.h"
 #include "live/state/flight_from_air.h"
+#include "live/state/path_place.h"
 #include "live/state/sender_clocks.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
@@ -41,14 +42,17 @@ class LiveFlight::Watch {
           schedule_(std::move(schedule)),
           store_(options_.flight, std::move(options_.configuration),
                  {.bank = basis_ && (basis_->path || basis_->motion), .places = basis_ && basis_->path}),
-          choice_(options_.aircraft_id) {}
+          choice_(options_.aircraft_id) {
+        if (basis_ && basis_->path && !basis_->remaining_s && basis_->path->flown().duration_s > 0.0)
+            places_.emplace(*basis_->path);
+    }
 
     void receive(const IncomingMessage& message, double arrival_s) {
         ++messages_;
         choice_.count(message.text);
         std::vector<ClockFilter::Line> believed;
         const auto anew =
-            clocks_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed);
+            clocks_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed, arrival_s);
         const bool is_restart = anew == SenderClocks::Anew::all ||
                                 (anew == SenderClocks::Anew::sender && clocks_.is_followed(sender_of(message.text)));
         if (anew != SenderClocks::Anew::none) store_pending();
@@ -75,7 +79,7 @@ class LiveFlight::Watch {
   private:
     void take(const std::vector<ClockFilter::Line>& believed, bool anew) {
         const auto begin = pending_.size();
-        for (const auto& [time_s, text] : believed) pending_ += fmt::format("{} {}\n", time_s, text);
+        for (const auto& line : believed) pending_ += fmt::format("{} {}\n", line.time_s, line.text);
         if (options_.on_lines && !believed.empty()) options_.on_lines(std::string_view(pending_).substr(begin), anew);
         constexpr std::size_t most_pending_bytes = 1'000'000;
         if (pending_.size() > most_pending_bytes) store_pending();
@@ -113,6 +117,7 @@ class LiveFlight::Watch {
     TelemetryStore store_;
     SenderClocks clocks_;
     AircraftChoice choice_;
+    std::optional<PathPlaceFinder> places_;  ///< where the path is to go on from
     std::string pending_;
     std::size_t messages_ = 0;
     std::size_t restarts_ = 0;
@@ -161,6 +166,9 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     if (const auto steps = clocks_.steps_back(); steps > 0)
         state.warnings.push_back(
             fmt::format("the clock of the telemetry went back {} time{}", steps, steps == 1 ? "" : "s"));
+    if (const double set_s = clocks_.set_ahead_s(); set_s > 0.0)
+        state.warnings.push_back(fmt::format(
+            "the clock of the telemetry was set ahead by {:.0f} s: as seen by the arrival of its lines", set_s));
     for (const auto& [message, stride] : store_.thinned())
         state.warnings.push_back(fmt::format("of {} every {}th row is kept", message, stride));
     state.alarms = alarms_of(state, basis_, options_.silence_s);
@@ -222,8 +230,9 @@ void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
     Remarks remarks;
     try {
         if (state.began_in_air) {
-            state.prediction = predict_from_air(*basis_, tracks.series(), phases_.sorties.back(),
-                                                state.battery ? &*state.battery : nullptr, remarks);
+            state.prediction =
+                predict_from_air(*basis_, tracks.series(), phases_.sorties.back(),
+                                 state.battery ? &*state.battery : nullptr, places_ ? &*places_ : nullptr, remarks);
             state.expected_power_w = power_ahead(*state.prediction).front().power_w;
             state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
             return;
@@ -231,7 +240,9 @@ void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
         const auto flown = mechanical::progress_in(tracks, sortie, now_s);
         state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
-        auto energy = predict_energy(*basis_, flown, sighting_of(*basis_, flown, tracks.series()), remarks);
+        std::optional<PathSighting> sighting;
+        if (places_) sighting = places_->find(tracks, flown.cruise_start_s, flown.until_s);
+        auto energy = predict_energy(*basis_, flown, sighting, remarks);
         if (record && state.battery && state.battery->soc_percent) {
             energy.battery = BatteryPrediction{};
             energy.battery->limits = basis_->limits;

@@ -92,7 +92,8 @@ class LiveFlight {
     LiveFlight(LiveOptions options, std::optional<PredictionBasis> basis, std::unique_ptr<LiveSchedule> schedule);
     ~LiveFlight();
 
-    /// Takes a message; `arrival_s` is its time if its source has none.
+    /// Takes a message; `arrival_s` is its time if its source has none, and tells a clock that was set ahead from a gap
+    /// where it goes on as the times do.
     void receive(const IncomingMessage& message, double arrival_s);
     /// The time of the latest message that is believed; none before the first.
     std::optional<double> clock_s() const;

@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace flightwatt::live {
 namespace {
 
@@ -55,14 +57,14 @@ class Player {
         if (times > 0) report_.left_out[reason] += times;
     }
     /// Waits until the message is due, and sends it.
-    void play(double time_s, std::string_view text) {
+    void play(const PlayedMessage& message) {
         if (report_.stopped) return;
-        const auto due =
-            begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(clock_.advance_to(time_s, report_) / speed_));
+        const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(
+                                      Seconds(clock_.advance_to(message.time_s, report_) / speed_));
         report_.stopped = !wait_for(due, target_, stop_);
         if (report_.stopped) return;
         report_.latest_s = std::max(report_.latest_s, Seconds(Clock::now() - due).count());
-        const auto why_not = target_.send(time_s, text);
+        const auto why_not = target_.send(message);
         if (why_not.empty()) {
             ++report_.messages;
         } else {
@@ -89,7 +91,7 @@ void play_text(std::string_view text, Player& player) {
         rest.remove_prefix(std::min(line.size() + 1, rest.size()));
         if (line.ends_with('\r')) line.remove_suffix(1);
         if (const auto message = message_of_line(line)) {
-            player.play(*message->time_s, message->text);
+            player.play({*message->time_s, line.substr(0, line.find(' ')), message->text});
         } else {
             player.leave_out("they are no messages with a time", 1);
         }
@@ -102,7 +104,7 @@ void play_binary(const telemetry::BinaryLog& log, Player& player) {
     const auto sink = [&](const telemetry::LinkMessage& message) {
         if (message.class_id != telemetry::MessageDictionary::telemetry_class) return player.leave_out(other_class, 1);
         if (!message.time_s) return player.leave_out("they are no messages with a time", 1);
-        player.play(*message.time_s, message.text);
+        player.play({*message.time_s, fmt::to_string(*message.time_s), message.text});
     };
     constexpr std::size_t piece = 4096;
     for (auto rest = log.bytes; !rest.empty() && !player.is_stopped();

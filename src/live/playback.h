@@ -15,6 +15,12 @@
 
 namespace flightwatt::live {
 
+struct PlayedMessage {
+    double time_s = 0.0;
+    std::string_view time;  ///< as the log writes it
+    std::string_view text;  ///< behind the time
+};
+
 /// Where a log is played to.
 class PlaybackTarget {
   public:
@@ -26,7 +32,7 @@ class PlaybackTarget {
     /// Whether there is somebody to play to; waits for that at most so long.
     virtual bool is_heard(std::chrono::milliseconds) { return true; }
     /// One message. Returns why it cannot be sent, and an empty text else. Throws OutputError where nothing can be.
-    virtual std::string_view send(double time_s, std::string_view text) = 0;
+    virtual std::string_view send(const PlayedMessage& message) = 0;
     /// Until then nothing is sent.
     virtual void wait_until(std::chrono::steady_clock::time_point then);
     /// Whether all that was sent is out.

@@ -1,6 +1,7 @@
 #include "live/prediction_basis.h"
 
 #include "base/error.h"
+#include "mission/sampled_flights.h"
 
 #include <memory>
 #include <utility>
@@ -33,6 +34,7 @@ PredictionBasis basis_of(const mission::MissionSetup& setup) {
 /// The mission's own battery; and where a schedule is all that the mission can tell, that and why.
 void add_mission_battery(const mission::MissionSetup& setup, const std::string& file, PredictionBasis& basis) {
     basis.battery = setup.battery;
+    basis.battery->intervals.capacity_ah = capacity_interval_ah(setup);
     basis.battery_file = file;
     if (!setup.battery.thevenin) basis.initial_soc_percent = setup.initial_soc_percent;
     try {

@@ -7,7 +7,8 @@
 
 namespace flightwatt::live {
 
-/// What a mission lets predict: its model, its path or else the time of its cruise, its battery and limits. Where its
+/// What a mission lets predict: its model, its path or else the time of its cruise, its battery (its capacity as
+/// uncertain as in the mission's drawn flights) and limits. Where its
 /// model does not allow a prediction, `cannot_predict` says why. The setup has a mechanical model; `file` names the
 /// mission in errors. Throws InputError for a path that cannot be flown.
 PredictionBasis mission_basis(const mission::MissionSetup& setup, const std::string& file);

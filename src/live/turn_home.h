@@ -13,6 +13,8 @@ namespace flightwatt::live {
 struct Displacement {
     double east_m = 0.0;
     double north_m = 0.0;
+
+    friend bool operator==(const Displacement&, const Displacement&) = default;
 };
 
 /// Where a place of a path lies. A hold moves nothing, as the path goes on from where it was planned to, but where it

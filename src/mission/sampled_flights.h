@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ bool has_spread(const MissionSetup& mission);
 
 /// Throws InputError, which says what is missing and how to get it, where nothing does.
 void require_spread(const MissionSetup& mission);
+
+/// How much the battery holds in 95 of 100 flights: as [uncertainty] states it, else as the battery's file has it. None
+/// where the mission states the capacity alone, or nothing says.
+std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& mission);
 
 /// Draws flights (sampling/flight_draws.h) and flies them, an adaptive policy each anew, under the disturbances, which
 /// happen at the same part of each flight. Flights depend on the seed and their own number alone, so the

@@ -38,9 +38,9 @@ std::filesystem::path write_log(const std::string& text) {
 /// Keeps what it is sent.
 class KeepingTarget : public PlaybackTarget {
   public:
-    std::string_view send(double time_s, std::string_view text) override {
-        if (text.ends_with("UNSENDABLE")) return "they cannot be sent";
-        lines.push_back(fmt::format("{} {}", time_s, text));
+    std::string_view send(const PlayedMessage& message) override {
+        if (message.text.ends_with("UNSENDABLE")) return "they cannot be sent";
+        lines.push_back(fmt::format("{} {}", message.time, message.text));
         return {};
     }
     std::vector<std::string> lines;
@@ -55,11 +55,11 @@ std::string log_of(const std::vector<std::string>& lines) {
 }
 
 TEST(Playback, SendsAllMessagesInOrderAndCountsTheOthers) {
-    const auto log =
-        write_log("10.5 20 PONG \r\nnonsense\n\n10.5 20 A 1\n11.5 20 UNSENDABLE\n3 20 A 2\n5000 20 A 3\n5001 20 LAST");
+    const auto log = write_log(
+        "10.500 20 PONG \r\nnonsense\n\n10.5 20 A 1\n11.5 20 UNSENDABLE\n3 20 A 2\n5000 20 A 3\n5001 20 LAST");
     KeepingTarget target;
     const auto report = play(log, 1e5, target, never);
-    EXPECT_THAT(target.lines, ElementsAre("10.5 20 PONG ", "10.5 20 A 1", "3 20 A 2", "5000 20 A 3", "5001 20 LAST"));
+    EXPECT_THAT(target.lines, ElementsAre("10.500 20 PONG ", "10.5 20 A 1", "3 20 A 2", "5000 20 A 3", "5001 20 LAST"));
     EXPECT_EQ(report.messages, 5U);
     EXPECT_EQ(report.left_out.at("they are no messages with a time"), 2U);
     EXPECT_EQ(report.left_out.at("they cannot be sent"), 1U);
@@ -115,7 +115,7 @@ TEST(Playback, ASerialLineThatNobodyReadsEndsNothing) {
         open_playback_target("serial:" + (folder / "line").string(), {.definitions = test::small_dictionary()});
     const auto text = test::energy_lines(1).front();
     std::string_view why_not;
-    for (int i = 0; i < 50'000 && why_not.empty(); ++i) why_not = target->send(0.0, text);
+    for (int i = 0; i < 50'000 && why_not.empty(); ++i) why_not = target->send({0.0, "0", text});
     EXPECT_THAT(std::string(why_not), testing::HasSubstr("slower than what is played"));
     EXPECT_FALSE(target->is_idle());
     const auto begin = std::chrono::steady_clock::now();

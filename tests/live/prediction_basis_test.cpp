@@ -31,6 +31,20 @@ TEST(PredictionBasis, HoldsWhatAMissionSays) {
     EXPECT_FALSE(path_basis(setup, "survey-path.toml").battery);
 }
 
+/// As in drawn flights: what the mission states is known, unless it says how far it is not.
+TEST(PredictionBasis, TheCapacityIsAsUncertainAsTheMissionSays) {
+    auto setup = setup_in("missions/synthetic/survey-path.toml");
+    const auto interval_of = [&] { return mission_basis(setup, "m.toml").battery->intervals.capacity_ah; };
+    setup.capacity_is_stated = false;
+    setup.battery.intervals.capacity_ah = battery::Interval{0.9, 1.2};
+    EXPECT_EQ(interval_of()->low, 0.9);
+    setup.capacity_is_stated = true;
+    EXPECT_FALSE(interval_of());
+    setup.uncertainty.capacity_sd_percent = 3.0;
+    EXPECT_NEAR(interval_of()->high, setup.battery.capacity_ah * (1.0 + 1.96 * 0.03), 1e-12);
+    EXPECT_NEAR(interval_of()->low, setup.battery.capacity_ah * (1.0 - 1.96 * 0.03), 1e-12);
+}
+
 TEST(PredictionBasis, SaysWhyAPublishedModelPredictsNothing) {
     const auto setup = setup_in("missions/paper/phased.toml");
     const auto basis = mission_basis(setup, "phased.toml");

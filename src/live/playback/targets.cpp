@@ -36,9 +36,9 @@ class UdpTarget : public PlaybackTarget {
         socket_.set_option(boost::asio::socket_base::broadcast(true));
     }
 
-    std::string_view send(double, std::string_view text) override {
+    std::string_view send(const PlayedMessage& message) override {
         frame_.clear();
-        const auto why_not = encoder_.append_frame(text, frame_);
+        const auto why_not = encoder_.append_frame(message.text, frame_);
         if (!why_not.empty()) return why_not;
         boost::system::error_code error;
         socket_.send_to(boost::asio::buffer(frame_), to_, 0, error);
@@ -65,9 +65,9 @@ class SerialTarget : public PlaybackTarget {
         if (const auto error = open_serial_line(line_, port_)) refuse_serial_line(line_, error);
     }
 
-    std::string_view send(double, std::string_view text) override {
+    std::string_view send(const PlayedMessage& message) override {
         frame_.clear();
-        const auto why_not = encoder_.append_frame(text, frame_);
+        const auto why_not = encoder_.append_frame(message.text, frame_);
         if (!why_not.empty()) return why_not;
         write();
         constexpr std::size_t most_waiting_bytes = 1'000'000;
@@ -129,7 +129,8 @@ class IvyTarget : public PlaybackTarget {
         }
         return agent_.ready_peers() > 0;
     }
-    std::string_view send(double time_s, std::string_view text) override {
+    std::string_view send(const PlayedMessage& message) override {
+        const auto text = message.text;
         context_.poll();
         if (as_aircraft_) {
             agent_.send(text);
@@ -138,7 +139,7 @@ class IvyTarget : public PlaybackTarget {
         const auto sender = text.substr(0, text.find(' '));
         if (parse_unsigned(sender)) {
             agent_.send(fmt::format("replay{}", text));
-            agent_.send(fmt::format("time{} {:f}", sender, time_s));
+            agent_.send(fmt::format("time{} {:f}", sender, message.time_s));
         } else {
             agent_.send(text);
         }
@@ -164,8 +165,8 @@ class LineTarget : public PlaybackTarget {
     }
     ~LineTarget() override { ::close(file_); }
 
-    std::string_view send(double time_s, std::string_view text) override {
-        line_ = fmt::format("{} {}\n", time_s, text);
+    std::string_view send(const PlayedMessage& message) override {
+        line_ = fmt::format("{} {}\n", message.time, message.text);
         for (std::string_view rest = line_; !rest.empty();) {
             const auto written = ::write(file_, rest.data(), rest.size());
             if (written < 0 && errno != EINTR) refuse();

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace flightwatt::live {
 
-bool ClockFilter::push(double time_s, std::string text, std::vector<Line>& believed) {
-    Line line{time_s + offset_s_, std::move(text)};
+bool ClockFilter::push(double time_s, std::string text, std::vector<Line>& believed, std::optional<double> arrival_s) {
+    Line line{time_s + offset_s_, std::move(text), arrival_s};
     const double ahead_s = line.time_s - latest_s_;
     if (started_ && (ahead_s > most_ahead_s || ahead_s < -most_step_s)) return hold(std::move(line), believed);
     unconfirmed_ += held_.size();
@@ -17,8 +16,13 @@ bool ClockFilter::push(double time_s, std::string text, std::vector<Line>& belie
     started_ = true;
     is_guess_ = false;
     look_at_late(line);
-    believed.push_back(std::move(line));
+    believe(std::move(line), believed);
     return false;
+}
+
+void ClockFilter::believe(Line line, std::vector<Line>& believed) {
+    if (line.arrival_s) pace_.add(line.time_s, *line.arrival_s);
+    believed.push_back(std::move(line));
 }
 
 void ClockFilter::look_at_late(Line& line) {
@@ -48,14 +52,29 @@ bool ClockFilter::hold(Line line, std::vector<Line>& believed) {
     if (anew) {
         for (auto& held : held_) held.time_s -= offset_s_;
         offset_s_ = 0.0;
+        pace_ = {};
+    } else if (!is_guess_) {
+        take_back_step();
     }
     latest_s_ = std::ranges::max(held_, {}, &Line::time_s).time_s;
     late_ = 0;
     is_guess_ = false;
     near_latest_ = agreeing;
-    std::ranges::move(held_, std::back_inserter(believed));
+    for (auto& held : held_) believe(std::move(held), believed);
     held_.clear();
     return anew;
+}
+
+/// Of lines that are ahead of the latest one.
+void ClockFilter::take_back_step() {
+    const auto& first = held_.front();
+    const auto before_s = pace_.last_arrival_s();
+    if (!before_s || !first.arrival_s) return;
+    const double step_s = first.time_s - latest_s_ - (*first.arrival_s - *before_s);
+    if (step_s <= most_ahead_s) return;
+    for (auto& held : held_) held.time_s -= step_s;
+    offset_s_ -= step_s;
+    set_ahead_s_ += step_s;
 }
 
 void ClockFilter::flush(std::vector<Line>& believed) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "live/state/receipt_pace.h"
+
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,7 +13,9 @@ namespace flightwatt::live {
 /// What to believe of the times that come in. A time more than 10 s ahead of the latest one, or a minute behind it,
 /// counts when four more behind it agree (a single one is a damaged line): forwards it is a gap, backwards the log or the
 /// aircraft began anew. Ten lines in a row more than 2 s behind the latest say that the clock went back: it goes on from
-/// where it was; or, where fewer than five lines had come near the latest, that the latest was damaged.
+/// where it was; or, where fewer than five lines had come near the latest, that the latest was damaged. Where lines
+/// arrive as fast as their clock goes, a clock that runs more than 10 s further ahead than the arrivals was set: it goes
+/// on after as long as nothing arrived.
 class ClockFilter {
   public:
     static constexpr double most_step_s = 60.0;
@@ -22,6 +27,7 @@ class ClockFilter {
     struct Line {
         double time_s = 0.0;  ///< on a clock that never goes back
         std::string text;     ///< behind the time
+        std::optional<double> arrival_s = {};
     };
 
     ClockFilter() = default;
@@ -29,8 +35,8 @@ class ClockFilter {
     explicit ClockFilter(double about_s) : started_(true), is_guess_(true), latest_s_(about_s) {}
 
     /// Takes a line, and appends those that are believed now. True where the first of them belongs to a clock that began
-    /// anew.
-    bool push(double time_s, std::string text, std::vector<Line>& believed);
+    /// anew. `arrival_s`: on a clock that nobody sets; none where it says nothing.
+    bool push(double time_s, std::string text, std::vector<Line>& believed, std::optional<double> arrival_s = {});
     /// Whether a line of that time would be late.
     bool is_late(double time_s) const { return started_ && time_s + offset_s_ < latest_s_ - late_s; }
     /// Nothing more will come: what was held ahead of the latest is believed.
@@ -38,12 +44,16 @@ class ClockFilter {
 
     std::size_t unconfirmed() const { return unconfirmed_; }
     std::size_t steps_back() const { return steps_back_; }
+    /// [s] by which the clock was set ahead, in all.
+    double set_ahead_s() const { return set_ahead_s_; }
     bool started() const { return started_; }
     double latest_s() const { return latest_s_; }
 
   private:
     bool hold(Line line, std::vector<Line>& believed);
     void look_at_late(Line& line);
+    void take_back_step();
+    void believe(Line line, std::vector<Line>& believed);
 
     bool started_ = false;
     bool is_guess_ = false;  ///< `latest_s_`, of no line
@@ -54,6 +64,8 @@ class ClockFilter {
     std::vector<Line> held_;
     std::size_t unconfirmed_ = 0;
     std::size_t steps_back_ = 0;
+    ReceiptPace pace_;
+    double set_ahead_s_ = 0.0;
 };
 
 }  // namespace flightwatt::live

@@ -58,7 +58,8 @@ void add_unknown_time(double time_s, Prediction& prediction) {
 }  // namespace
 
 Prediction predict_from_air(const PredictionBasis& basis, const flight::FlightSeries& series,
-                            const flight::Sortie& sortie, const LiveBattery* battery, Remarks& remarks) {
+                            const flight::Sortie& sortie, const LiveBattery* battery, PathPlaceFinder* places,
+                            Remarks& remarks) {
     const auto flown = progress_from_air(series, sortie);
     auto ahead = basis;
     if (!ahead.level) ahead.level = mechanical::LevelSource::constant;  // where on the curve it is, is not known
@@ -72,7 +73,9 @@ Prediction predict_from_air(const PredictionBasis& basis, const flight::FlightSe
             "may be left; half of that is expected, and the interval holds all of it",
             unknown_s));
     }
-    const auto sighting = saw_cruise_begin ? sighting_of(ahead, flown, series) : std::nullopt;
+    std::optional<PathSighting> sighting;
+    if (saw_cruise_begin && places != nullptr)
+        sighting = places->find(flight::ChosenTracks(series), flown.cruise_start_s, flown.until_s);
     auto prediction = predict_energy(ahead, flown, sighting, remarks);
     prediction.began_in_air = true;
     if (unknown_s > 0.0) add_unknown_time(unknown_s, prediction);

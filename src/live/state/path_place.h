@@ -2,16 +2,66 @@
 
 #include "flight/chosen_track.h"
 #include "live/prediction.h"
+#include "live/state/path_places.h"
+#include "live/state/place_filter.h"
 #include "mission/remaining_path.h"
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace flightwatt::live {
 
-/// Where a flight is on its path by the positions of its cruise, from its start until a moment: a forward filter over
-/// places on the path (docs/methods.md, Flight along a path), which takes nothing later into account. The path begins where the cruise
-/// does. std::nullopt
-/// where no positions tell.
+/// From where a path begins: what positions are off it, across it, as far as that is known better than beforehand.
+class PathOrigin {
+  public:
+    void add(const Displacement& off, const Displacement& course);
+    Displacement value() const;
+
+  private:
+    static constexpr double sd_m = 60.0;  ///< beforehand: some seconds of the climb
+    double ee_ = 1.0 / (sd_m * sd_m);
+    double en_ = 0.0;
+    double nn_ = 1.0 / (sd_m * sd_m);
+    double e_ = 0.0;
+    double n_ = 0.0;
+};
+
+/// Where a flight is on its path, by the positions of its cruise from its start until a moment: two forward filters over
+/// places on the path (docs/methods.md, Flight along a path), the first for where the path begins. Nothing later is
+/// taken into account. The first goes on from moment to moment; where positions changed since, it begins anew, so that
+/// the answers depend on the series alone.
+class PathPlaceFinder {
+  public:
+    /// `path` takes some time.
+    explicit PathPlaceFinder(const mission::PathForecast& path);
+    PathPlaceFinder(const PathPlaceFinder&) = delete;
+    PathPlaceFinder& operator=(const PathPlaceFinder&) = delete;
+
+    /// The path begins where the cruise does. std::nullopt where no positions tell.
+    std::optional<PathSighting> find(const flight::ChosenTracks& tracks, double cruise_start_s, double until_s);
+
+  private:
+    /// From where the path begins, by the first filter.
+    struct Beginning {
+        PlaceFilter filter;
+        PathOrigin origin = {};
+    };
+
+    void forget_changed();
+    void learn(std::size_t until, Beginning& beginning) const;
+    PathSighting sighting(double cruise_start_s, double until_s) const;
+
+    Places places_;
+    double duration_s_ = 0.0;
+    Observations seen_;
+    Observations seen_before_;
+    Beginning settled_;  ///< by observations that are settled
+    Beginning now_;      ///< by all
+    PlaceFilter second_;
+};
+
+/// The same of one moment; std::nullopt of a path that takes no time, too.
 std::optional<PathSighting> sighted_on_path(const mission::PathForecast& path, const flight::FlightSeries& series,
                                             double cruise_start_s, double until_s);
 

@@ -19,7 +19,7 @@ SenderClocks::Clock& SenderClocks::clock_of(std::string_view sender) {
 }
 
 SenderClocks::Anew SenderClocks::push(double time_s, std::string text, bool restarted,
-                                      std::vector<ClockFilter::Line>& believed) {
+                                      std::vector<ClockFilter::Line>& believed, std::optional<double> arrival_s) {
     const std::string sender(sender_of(text));
     const bool all = restarted && started() && clock_of(sender).filter.is_late(time_s);
     if (all) {
@@ -28,7 +28,7 @@ SenderClocks::Anew SenderClocks::push(double time_s, std::string text, bool rest
         others_s_ = 0.0;
     }
     auto& clock = clock_of(sender);
-    const bool anew = clock.filter.push(time_s, std::move(text), believed);
+    const bool anew = clock.filter.push(time_s, std::move(text), believed, arrival_s);
     if (!believed.empty()) go_on(sender, anew, clock);
     return all ? Anew::all : anew ? Anew::sender : Anew::none;
 }
@@ -69,6 +69,11 @@ std::size_t SenderClocks::unconfirmed() const {
 std::size_t SenderClocks::steps_back() const {
     const auto followed = clocks_.find(followed_);
     return followed == clocks_.end() ? 0 : followed->second.filter.steps_back();
+}
+
+double SenderClocks::set_ahead_s() const {
+    const auto followed = clocks_.find(followed_);
+    return followed == clocks_.end() ? 0.0 : followed->second.filter.set_ahead_s();
 }
 
 }  // namespace flightwatt::live

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +21,9 @@ class SenderClocks {
     enum class Anew { none, sender, all };
 
     /// Takes a line, and appends those that are believed now. Whether the clock of their sender began anew before them, or
-    /// all did: `restarted` says that the source of the line began anew, so that no other lines have to agree.
-    Anew push(double time_s, std::string text, bool restarted, std::vector<ClockFilter::Line>& believed);
+    /// all did: `restarted` says that the source of the line began anew, so that no other lines have to agree. `arrival_s`: as ClockFilter.
+    Anew push(double time_s, std::string text, bool restarted, std::vector<ClockFilter::Line>& believed,
+              std::optional<double> arrival_s = {});
     /// Nothing more will come.
     void flush(std::vector<ClockFilter::Line>& believed);
 
@@ -38,6 +40,7 @@ class SenderClocks {
     std::size_t unconfirmed() const;
     /// Of the followed sender.
     std::size_t steps_back() const;
+    double set_ahead_s() const;
 
   private:
     struct Clock {

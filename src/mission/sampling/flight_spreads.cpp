@@ -3,6 +3,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/prediction.h"
+#include "mission/sampled_flights.h"
 #include "mission/sampling/level_deviation.h"
 #include "mission/sampling/student.h"
 
@@ -155,15 +156,11 @@ void find_compute(const MissionSetup& mission, FlightSpreads& spreads) {
 void find_capacity(const MissionSetup& mission, FlightSpreads& spreads) {
     auto& interval = spreads.battery.capacity_ah;
     std::string basis = interval ? "the battery's interval" : "the battery's file has no interval";
-    if (const auto percent = mission.uncertainty.capacity_sd_percent) {
-        const double reach_ah = sd_per_half_95 * units::part_of(mission.battery.capacity_ah, *percent);
-        interval.reset();
-        if (*percent > 0.0) interval = {mission.battery.capacity_ah - reach_ah, mission.battery.capacity_ah + reach_ah};
+    if (const auto percent = mission.uncertainty.capacity_sd_percent)
         basis = fmt::format("sd {:.4g} %, stated", *percent);
-    } else if (mission.capacity_is_stated) {
-        interval.reset();
+    else if (mission.capacity_is_stated)
         basis = "fixed, as the mission states capacity_ah without capacity_sd_percent";
-    }
+    interval = capacity_interval_ah(mission);
     note_source(spreads, interval.has_value(), "battery capacity", basis);
 }
 
@@ -188,6 +185,15 @@ void find_battery(const MissionSetup& mission, FlightSpreads& spreads) {
 }
 
 }  // namespace
+
+std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& mission) {
+    const auto percent = mission.uncertainty.capacity_sd_percent;
+    if (!percent) return mission.capacity_is_stated ? std::nullopt : mission.battery.intervals.capacity_ah;
+    if (!(*percent > 0.0)) return std::nullopt;
+    const double capacity_ah = mission.battery.capacity_ah;
+    const double reach_ah = sd_per_half_95 * units::part_of(capacity_ah, *percent);
+    return battery::Interval{capacity_ah - reach_ah, capacity_ah + reach_ah};
+}
 
 FlightSpreads find_spreads(const MissionSetup& mission) {
     FlightSpreads spreads;

@@ -52,6 +52,45 @@ TEST(ClockFilter, AGapIsBelievedWhenFiveLinesAgree) {
     EXPECT_EQ(filter.unconfirmed(), 0U);
 }
 
+/// Lines of ten a second, each with its arrival.
+struct Link {
+    ClockFilter filter;
+    std::vector<ClockFilter::Line> believed;
+    double arrival_s = 1000.0;
+    void go_on(double clock_s, double for_s, double pace = 1.0) {
+        for (double t = 0.0; t < for_s; t += 0.1) filter.push(clock_s + t, "20 PONG", believed, arrival_s + pace * t);
+        arrival_s += pace * for_s;
+    }
+};
+
+TEST(ClockFilter, AClockThatIsSetAheadIsToldFromAGapByTheArrivals) {
+    Link link;
+    link.go_on(10.0, 70.0);
+    link.arrival_s += 4.0;
+    link.go_on(3680.0, 20.0);
+    EXPECT_NEAR(link.filter.latest_s(), 10.0 + 70.0 + 4.0 + 20.0, 0.3);
+    EXPECT_NEAR(link.filter.set_ahead_s(), 3596.0, 0.3);
+    link.arrival_s += 22.0;
+    link.go_on(3722.0, 10.0);
+    EXPECT_NEAR(link.filter.latest_s(), 10.0 + 70.0 + 4.0 + 20.0 + 22.0 + 10.0, 0.3) << "a gap stays one";
+    EXPECT_NEAR(link.filter.set_ahead_s(), 3596.0, 0.3);
+}
+
+TEST(ClockFilter, ArrivalsOfALogThatIsReadAtOnceSayNothing) {
+    Link link;
+    link.go_on(10.0, 70.0, 0.01);
+    link.go_on(500.0, 20.0, 0.01);
+    EXPECT_NEAR(link.filter.latest_s(), 520.0, 0.3);
+    EXPECT_EQ(link.filter.set_ahead_s(), 0.0);
+    Link bursts;
+    for (double clock_s = 10.0; clock_s < 90.0; clock_s += 8.0) {
+        bursts.go_on(clock_s, 8.0, 0.0);
+        bursts.arrival_s += 8.0;
+    }
+    bursts.go_on(130.0, 8.0, 0.0);
+    EXPECT_NEAR(bursts.filter.latest_s(), 138.0, 0.3) << "of a file that is written in bursts";
+}
+
 TEST(ClockFilter, ItsEndBelievesWhatLiesAhead) {
     ClockFilter filter;
     pushed(filter, {10.0, 500.0, 501.0});

@@ -1,12 +1,13 @@
 #include "live/state/path_place.h"
 
+#include "flight/chosen_track.h"
 #include "helpers/path_missions.h"
 #include "live/turn_home.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -176,6 +177,58 @@ TEST(PathPlace, NothingLaterIsLookedAt) {
     const auto known = sighted_on_path(plan, cut_series(flown.series, until_s), begin_s, until_s);
     ASSERT_TRUE(whole && known);
     EXPECT_NEAR(whole->on_path_s.value(), known->on_path_s.value(), 1.0);
+}
+
+Conditions made_up_conditions(std::mt19937& random) {
+    std::uniform_real_distribution<double> part(0.0, 1.0);
+    Conditions conditions;
+    conditions.true_wind = {8.0 * part(random), 360.0 * part(random)};
+    conditions.noise_m = 1.0 + 11.0 * part(random);
+    conditions.origin = {80.0 * part(random) - 40.0, 80.0 * part(random) - 40.0};
+    if (part(random) < 0.5) {
+        conditions.detour_at_s = 60.0 + 120.0 * part(random);
+        conditions.detour_s = 40.0 + 100.0 * part(random);
+    }
+    return conditions;
+}
+
+TEST(PathPlace, GoingOnFromMomentToMomentIsTheSameAsBeginningAnew) {
+    const auto path = survey();
+    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    std::mt19937 random(2024);
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        const auto flown = fly(path, made_up_conditions(random), seed);
+        PathPlaceFinder finder(plan);
+        for (double time_s = begin_s + 5.0; time_s < flown.end_s; time_s += 11.3) {
+            const auto series = cut_series(flown.series, time_s);
+            const auto found = finder.find(flight::ChosenTracks(series), begin_s, time_s);
+            const auto anew = sighted_on_path(plan, series, begin_s, time_s);
+            ASSERT_TRUE(found && anew);
+            EXPECT_EQ(found->on_path_s, anew->on_path_s) << seed << " " << time_s;
+            EXPECT_EQ(found->is_on_path, anew->is_on_path);
+            EXPECT_EQ(found->off_m, anew->off_m);
+        }
+    }
+}
+
+/// As when rows are thinned, or a late message comes in.
+TEST(PathPlace, WhatChangedBeforeIsTakenAnew) {
+    const auto path = survey();
+    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const auto flown = fly(path, {}, 4);
+    const double until_s = begin_s + 200.0;
+    auto changed = cut_series(flown.series, until_s);
+    PathPlaceFinder finder(plan);
+    ASSERT_TRUE(finder.find(flight::ChosenTracks(changed), begin_s, until_s)->on_path_s);
+    for (auto& track : changed.tracks)
+        for (std::size_t i = 0; i < track.value.size(); ++i) track.value[i] += i < 400 ? 6.0 : 0.0;
+    const auto found = finder.find(flight::ChosenTracks(changed), begin_s, until_s);
+    EXPECT_EQ(found->on_path_s, sighted_on_path(plan, changed, begin_s, until_s)->on_path_s);
+    const auto earlier = cut_series(changed, until_s - 50.0);
+    EXPECT_EQ(finder.find(flight::ChosenTracks(earlier), begin_s, until_s - 50.0)->on_path_s,
+              sighted_on_path(plan, earlier, begin_s, until_s - 50.0)->on_path_s);
+    EXPECT_FALSE(finder.find(flight::ChosenTracks(flight::FlightSeries{}), begin_s, until_s));
+    EXPECT_EQ(finder.find(flight::ChosenTracks(changed), begin_s, until_s)->on_path_s, found->on_path_s);
 }
 
 }  // namespace

@@ -1,0 +1,154 @@
+#include "live/state/place_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+
+namespace flightwatt::live {
+namespace {
+
+// Chosen by what they mean; none was fitted to flights.
+constexpr double course_weight = 2.0;
+constexpr double off_sds = 3.5;  // from there on it is likelier that the path was left
+constexpr double negligible = 1e-15;
+
+struct Advance {
+    std::ptrdiff_t places = 0;
+    double chance = 0.0;
+};
+// In the time that a place takes as planned; off the path a flight goes on where it left it, or elsewhere.
+constexpr std::array advances_on_path{Advance{0, 0.25}, Advance{1, 0.45}, Advance{2, 0.22}, Advance{3, 0.08}};
+constexpr std::array advances_off_path{Advance{0, 0.7},     Advance{1, 0.2},      Advance{2, 0.07},
+                                       Advance{3, 0.029},   Advance{-30, 0.0002}, Advance{30, 0.0005},
+                                       Advance{100, 0.0003}};
+constexpr double leaves = 0.02;
+constexpr double comes_back = 0.05;
+
+}  // namespace
+
+PlaceFilter::PlaceFilter(const Places& places) : places_(&places) {
+    for (auto* of : {&on_, &off_, &next_on_, &next_off_}) of->resize(places.of.size());
+}
+
+void PlaceFilter::begin(double off_path_m, const Displacement& origin) {
+    off_path_m_ = off_path_m;
+    origin_ = origin;
+    taken_ = 0;
+    known_s_ = 0.0;
+    seen_on_path_s_ = 0.0;
+    std::ranges::fill(on_, 0.0);
+    std::ranges::fill(off_, 0.0);
+    on_[0] = 1.0 - leaves;
+    off_[0] = leaves;
+    on_path_ = on_[0];
+}
+
+void PlaceFilter::take(const Observation& seen) {
+    if (taken_ > 0) go_on();
+    ++taken_;
+    if (!seen.is_known) return;
+    look(seen);
+    known_s_ += places_->step_s;
+    if (is_on_path()) seen_on_path_s_ += places_->step_s;
+}
+
+void PlaceFilter::go_on() {
+    std::ranges::fill(next_on_, 0.0);
+    std::ranges::fill(next_off_, 0.0);
+    const auto last = static_cast<std::ptrdiff_t>(on_.size()) - 1;
+    const auto to = [&](std::size_t from, std::ptrdiff_t places) {
+        return static_cast<std::size_t>(
+            std::clamp(static_cast<std::ptrdiff_t>(from) + places, std::ptrdiff_t{0}, last));
+    };
+    for (std::size_t i = 0; i < on_.size(); ++i) {
+        if (on_[i] > negligible) {
+            for (const auto& [places, chance] : advances_on_path)
+                next_on_[to(i, places_->of[i].is_anywhere ? 1 : places)] += on_[i] * chance * (1.0 - leaves);
+            next_off_[i] += on_[i] * leaves;
+        }
+        if (off_[i] > negligible) {
+            for (const auto& [places, chance] : advances_off_path)
+                next_off_[to(i, places)] += off_[i] * chance * (1.0 - comes_back);
+            next_on_[i] += off_[i] * comes_back;
+        }
+    }
+    on_.swap(next_on_);
+    off_.swap(next_off_);
+    on_path_ = std::accumulate(on_.begin(), on_.end(), 0.0);
+}
+
+void PlaceFilter::look(const Observation& seen) {
+    last_seen_ = seen;
+    const double off_chance = std::exp(-news_part * 0.5 * off_sds * off_sds);
+    double on_path = 0.0;
+    double off_path = 0.0;
+    for (std::size_t i = 0; i < on_.size(); ++i) {
+        if (on_[i] > negligible) on_[i] *= std::exp(news_part * logarithm(i));
+        off_[i] *= off_chance;
+        on_path += on_[i];
+        off_path += off_[i];
+    }
+    const double sum = on_path + off_path;
+    for (std::size_t i = 0; i < on_.size(); ++i) {
+        on_[i] /= sum;
+        off_[i] /= sum;
+    }
+    on_path_ = on_path / sum;
+}
+
+double PlaceFilter::logarithm(std::size_t i) const {
+    constexpr double anywhere = -0.5;
+    const auto& point = places_->of[i];
+    if (point.is_anywhere) return anywhere;
+    const auto& seen = last_seen_;
+    const auto off = minus(minus(seen.at, origin_), point.at);
+    const bool have_courses = product(point.course, point.course) > 0.0 && product(seen.course, seen.course) > 0.0;
+    const double turned = have_courses ? 1.0 - product(point.course, seen.course) : 0.0;
+    return -0.5 * product(off, off) / (off_path_m_ * off_path_m_) - course_weight * turned;
+}
+
+double PlaceFilter::place() const {
+    const auto& of = is_on_path() ? on_ : off_;
+    const double half = 0.5 * std::accumulate(of.begin(), of.end(), 0.0);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < of.size(); ++i) {
+        if (sum + of[i] >= half && of[i] > 0.0) return static_cast<double>(i) - 0.5 + (half - sum) / of[i];
+        sum += of[i];
+    }
+    return static_cast<double>(of.size()) - 1.0;
+}
+
+double PlaceFilter::nearest_place() const {
+    constexpr double about = 4.0;
+    constexpr double prior_part = 0.1;
+    const double middle = place();
+    double best = -std::numeric_limits<double>::infinity();
+    auto nearest = index_of(middle);
+    for (std::size_t i = 0; i < on_.size(); ++i) {
+        if (!(on_[i] > negligible) || std::abs(static_cast<double>(i) - middle) > about) continue;
+        const double score = logarithm(i) + prior_part * std::log(on_[i]);
+        if (score <= best) continue;
+        best = score;
+        nearest = i;
+    }
+    const auto& point = places_->of[nearest];
+    if (point.is_anywhere) return middle;
+    const double ahead_m = product(minus(minus(last_seen_.at, origin_), point.at), point.course);
+    const auto step = minus(places_->of[std::min(nearest + 1, on_.size() - 1)].at, point.at);
+    const double step_m = std::max(1.0, std::hypot(step.east_m, step.north_m));
+    return static_cast<double>(nearest) + std::clamp(ahead_m / step_m, -0.5, 0.5);
+}
+
+Displacement PlaceFilter::off(double place) const { return minus(minus(last_seen_.at, origin_), point_of(place).at); }
+
+const PathPoint& PlaceFilter::point_of(double place) const { return places_->of[index_of(place)]; }
+
+std::size_t PlaceFilter::index_of(double place) const {
+    const double last = static_cast<double>(on_.size()) - 1.0;
+    return static_cast<std::size_t>(std::clamp(std::round(place), 0.0, last));
+}
+
+}  // namespace flightwatt::live

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "live/state/path_places.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace flightwatt::live {
+
+/// How likely a flight at each place of a path is, on the path and off it, by its observations one after the other.
+class PlaceFilter {
+  public:
+    static constexpr double news_part = 0.5;  ///< of a position: it is off as the one before was
+
+    /// The path lasts as long as the filter.
+    explicit PlaceFilter(const Places& places);
+
+    /// From the beginning of the path, which lies `origin` off the first observation. `off_path_m`: one deviation of
+    /// positions from the path.
+    void begin(double off_path_m, const Displacement& origin);
+    void take(const Observation& seen);
+
+    /// Observations since the beginning.
+    std::size_t taken() const { return taken_; }
+    /// Seconds of planned time that were seen, and those of them on the path.
+    double known_s() const { return known_s_; }
+    double seen_on_path_s() const { return seen_on_path_s_; }
+
+    bool is_on_path() const { return on_path_ >= 0.5; }
+    /// The middle of what is likely, in places.
+    double place() const;
+    /// The place nearest to the last position that was seen, of those about the middle: the filter lags behind a flight
+    /// that is faster or slower than planned.
+    double nearest_place() const;
+    /// What the last position that was seen is off a place.
+    Displacement off(double place) const;
+    const PathPoint& point_of(double place) const;
+
+  private:
+    void go_on();
+    void look(const Observation& seen);
+    double logarithm(std::size_t i) const;
+    std::size_t index_of(double place) const;
+
+    const Places* places_;
+    double off_path_m_ = 0.0;
+    Displacement origin_;
+    Observation last_seen_;
+    std::size_t taken_ = 0;
+    double known_s_ = 0.0;
+    double seen_on_path_s_ = 0.0;
+    std::vector<double> on_;
+    std::vector<double> off_;
+    double on_path_ = 0.0;         ///< sum of `on_`
+    std::vector<double> next_on_;  ///< of go_on
+    std::vector<double> next_off_;
+};
+
+}  // namespace flightwatt::live

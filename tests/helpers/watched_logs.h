@@ -1,0 +1,76 @@
+#pragma once
+
+#include "base/atomic_file.h"
+#include "flight/load_flight.h"
+#include "helpers/test_paths.h"
+#include "live/live_flight.h"
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+/// Logs through the live watch.
+namespace flightwatt::test {
+
+inline live::PredictionBasis wing_basis(double remaining_s = 300.0) {
+    live::PredictionBasis basis;
+    basis.model = mechanical::read_mechanical_model(source_dir() / "fits/mechanical/synthetic-wing.toml");
+    basis.landing_s = basis.model.phases[flight::Phase::landing].duration_s;
+    basis.remaining_s = remaining_s;
+    basis.battery = battery::read_battery(source_dir() / "fits/battery/synthetic-3s.toml");
+    basis.initial_soc_percent = 90.0;
+    return basis;
+}
+
+/// The messages of a log until a time.
+inline std::vector<live::IncomingMessage> messages_of(const std::filesystem::path& log, double until_s,
+                                                      double from_s = 0.0) {
+    std::vector<live::IncomingMessage> messages;
+    std::istringstream text(read_file(log));
+    for (std::string line; std::getline(text, line);) {
+        auto message = live::message_of_line(line);
+        if (message && message->time_s >= from_s && message->time_s <= until_s) messages.push_back(std::move(*message));
+    }
+    return messages;
+}
+
+inline live::LiveOptions options_of(const std::filesystem::path& log) {
+    live::LiveOptions options;
+    options.flight = telemetry::flight_name(log);
+    auto definitions = log;
+    options.configuration = telemetry::read_log_configuration(definitions.replace_extension(".log"));
+    return options;
+}
+
+inline void receive_all(live::LiveFlight& flight, const std::vector<live::IncomingMessage>& messages) {
+    for (const auto& message : messages) flight.receive(message, 0.0);
+}
+
+/// What predict says of the log at a moment.
+inline live::Prediction predicted(const std::filesystem::path& log, double until_s,
+                                  const live::PredictionBasis& basis) {
+    const auto series = cut_series(flight::read_flight(log), until_s);
+    live::Remarks remarks;
+    return predict_flight(basis, mechanical::progress_at(series, until_s), series, remarks);
+}
+
+inline void expect_same(const live::Prediction& watched, const live::Prediction& expected) {
+    EXPECT_EQ(watched.flown.lift_off_s, expected.flown.lift_off_s);
+    EXPECT_EQ(watched.flown.cruise_start_s, expected.flown.cruise_start_s);
+    EXPECT_EQ(watched.flown.energy_wh, expected.flown.energy_wh);
+    EXPECT_EQ(watched.rest.energy_wh, expected.rest.energy_wh);
+    EXPECT_EQ(watched.interval.low_wh, expected.interval.low_wh);
+    EXPECT_EQ(watched.interval.high_wh, expected.interval.high_wh);
+    ASSERT_EQ(watched.battery.has_value(), expected.battery.has_value());
+    if (!watched.battery) return;
+    EXPECT_EQ(watched.battery->expected.soc_now_percent, expected.battery->expected.soc_now_percent);
+    EXPECT_EQ(watched.battery->expected.soc_percent, expected.battery->expected.soc_percent);
+    EXPECT_EQ(watched.battery->expected.voltage_v, expected.battery->expected.voltage_v);
+    EXPECT_EQ(watched.battery->worst.soc_percent, expected.battery->worst.soc_percent);
+}
+
+}  // namespace flightwatt::test
