@@ -48,6 +48,7 @@ constexpr StageLine stages[] = {
     {"path", "the path of a mission leg by leg; of a log as waypoints"},
     {"play", "a log once more as it came in, over the links that watch listens to"},
     {"report", "flights, model and missions as one page, and figures for papers"},
+    {"export", "flights, models and missions for other programs: maps, plots, autopilots, LaTeX"},
     {"synthesize", "synthetic Paparazzi logs of flights after a model"},
 };
 

@@ -41,6 +41,71 @@ TextTable without_controls(TextTable table) {
     return table;
 }
 
+/// The character at the beginning of a UTF-8 text; U+FFFD and one byte for what is none.
+struct DecodedCharacter {
+    unsigned code = 0xFFFD;
+    std::size_t bytes = 1;
+};
+
+DecodedCharacter first_character(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
+    if (byte(0) < 0x80) return {byte(0), 1};
+    const std::size_t bytes = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : byte(0) >= 0xC2 ? 2 : 1;
+    if (bytes == 1 || text.size() < bytes) return {};
+    unsigned code = byte(0) & (0x7Fu >> bytes);
+    for (std::size_t i = 1; i < bytes; ++i) {
+        if ((byte(i) & 0xC0) != 0x80) return {};
+        code = code << 6 | (byte(i) & 0x3F);
+    }
+    return {code, bytes};
+}
+
+/// How LaTeX spells an ASCII character that it would read otherwise; empty for those that stand for themselves. '[' and
+/// '*' behind the end of a row would be that command's.
+std::string_view latex_of(char c) {
+    switch (c) {
+        case '\\':
+            return "\\textbackslash{}";
+        case '~':
+            return "\\textasciitilde{}";
+        case '^':
+            return "\\textasciicircum{}";
+        case '<':
+            return "\\textless{}";
+        case '>':
+            return "\\textgreater{}";
+        case '|':
+            return "\\textbar{}";
+        case '"':
+            return "\\textquotedbl{}";
+        case '[':
+            return "{[}";
+        case '*':
+            return "{*}";
+        case '&':
+            return "\\&";
+        case '%':
+            return "\\%";
+        case '$':
+            return "\\$";
+        case '#':
+            return "\\#";
+        case '_':
+            return "\\_";
+        case '{':
+            return "\\{";
+        case '}':
+            return "\\}";
+        default:
+            return "";
+    }
+}
+
+std::string latex_cell(std::string_view cell) {
+    if (cell == "-") return "--";
+    return parse_number(cell) ? fmt::format("${}$", latex_number(cell)) : latex_escaped(cell);
+}
+
 std::string padded(const std::string& cell, std::size_t width, bool right) {
     const std::string blanks(width - std::min(width, width_of(cell)), ' ');
     return right ? blanks + cell : cell + blanks;
@@ -104,6 +169,57 @@ std::string to_csv(const TextTable& table) {
     auto text = line_of(table.header);
     for (const auto& row : table.rows) text += line_of(row);
     return text;
+}
+
+std::string latex_escaped(std::string_view text) {
+    constexpr unsigned first_latin = 0xA0;
+    constexpr unsigned last_latin = 0x17F;
+    constexpr unsigned fixed_hyphen = 0x2011;
+    std::string result;
+    while (!text.empty()) {
+        const auto [code, bytes] = first_character(text);
+        const char c = text.front();
+        if (code >= first_latin && code <= last_latin) {
+            result += text.substr(0, bytes);
+        } else if (code == fixed_hyphen) {
+            result += '-';
+        } else if (code > 0x7E || code < 0x20) {
+            result += code == '\t' || code == '\n' ? ' ' : '?';
+        } else {
+            const auto spelt = latex_of(c);
+            result += spelt.empty() ? std::string_view(&c, 1) : spelt;
+        }
+        text.remove_prefix(bytes);
+    }
+    return result;
+}
+
+std::string latex_number(std::string_view number) {
+    const auto e = number.find('e');
+    if (e == std::string_view::npos) return std::string(number);
+    const auto exponent = parse_number(number.substr(e + (number.substr(e + 1).starts_with('+') ? 2 : 1)));
+    return fmt::format("{} \\times 10^{{{:g}}}", number.substr(0, e), exponent.value_or(0.0));
+}
+
+std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label) {
+    constexpr std::size_t columns_that_fit = 3;
+    const bool scaled = table.header.size() > columns_that_fit;
+    std::string columns;
+    for (std::size_t column = 0; column < table.header.size(); ++column)
+        columns += is_numeric_column(table, column) ? 'r' : 'l';
+    const auto row_of = [](const std::vector<std::string>& cells, const auto& spell) {
+        std::vector<std::string> spelt;
+        std::ranges::transform(cells, std::back_inserter(spelt), spell);
+        return fmt::format("{} \\\\\n", fmt::join(spelt, " & "));
+    };
+    std::string text = fmt::format(
+        "% needs \\usepackage{{booktabs}}{}\n\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\label{{{}}}\n",
+        scaled ? " and \\usepackage{graphicx}" : "", latex_escaped(caption), label);
+    if (scaled) text += "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n";
+    text += fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n", columns);
+    text += row_of(table.header, latex_escaped) + "\\midrule\n";
+    for (const auto& row : table.rows) text += row_of(row, latex_cell);
+    return text + "\\bottomrule\n\\end{tabular}" + (scaled ? "}" : "") + "\n\\end{table}\n";
 }
 
 }  // namespace flightwatt

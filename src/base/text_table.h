@@ -2,11 +2,12 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt {
 
-/// A small table for people: the same cells as aligned text, Markdown or CSV.
+/// A small table for people: the same cells as aligned text, Markdown, CSV or LaTeX.
 struct TextTable {
     std::vector<std::string> header;
     std::vector<std::vector<std::string>> rows;  ///< each as long as the header
@@ -20,5 +21,15 @@ std::string fixed(const std::optional<double>& number, int decimals);
 std::string to_text(const TextTable& table);
 std::string to_markdown(const TextTable& table);
 std::string to_csv(const TextTable& table);
+
+/// Text in which TeX's own characters stand for themselves. What is neither ASCII nor Latin becomes '?'.
+std::string latex_escaped(std::string_view text);
+
+/// A number as mathematical mode takes it: 1.5 \times 10^{-5} for "1.5e-05".
+std::string latex_number(std::string_view number);
+
+/// A table environment with the rules of the package booktabs; a comment says what packages it needs. Columns that are
+/// all numbers, or '-', stand to the right. A table that is wider than a page's text is scaled to it.
+std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label);
 
 }  // namespace flightwatt

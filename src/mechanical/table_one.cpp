@@ -79,27 +79,6 @@ void add_column(TextTable& table, const std::string& name, const std::vector<std
     for (std::size_t i = 0; i < cells.size(); ++i) table.rows[i].push_back(cells[i]);
 }
 
-/// Text in which TeX's own characters stand for themselves.
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        if (std::string_view("&%$#_{}").find(c) != std::string_view::npos) result += '\\';
-        result += c == '\\'  ? "\\textbackslash{}"
-                  : c == '~' ? "\\textasciitilde{}"
-                  : c == '^' ? "\\textasciicircum{}"
-                             : std::string(1, c);
-    }
-    return result;
-}
-
-/// "1.5e-05" as 1.5 \times 10^{-5}, for mathematical mode.
-std::string number_text(std::string_view text) {
-    const auto e = text.find('e');
-    if (e == std::string_view::npos) return std::string(text);
-    const auto exponent = parse_number(text.substr(e + 1));
-    return fmt::format("{} \\times 10^{{{:g}}}", text.substr(0, e), exponent.value_or(0.0));
-}
-
 constexpr std::string_view interval_heading = "95 %";
 
 bool is_interval(std::string_view heading) { return heading.ends_with(interval_heading); }
@@ -107,11 +86,11 @@ bool is_interval(std::string_view heading) { return heading.ends_with(interval_h
 std::string cell(std::string_view text, std::string_view heading) {
     if (text == "-") return "--";
     if (const auto split = text.find(between_ends); is_interval(heading) && split != std::string_view::npos) {
-        return fmt::format("$[{},\\, {}]$", number_text(text.substr(0, split)),
-                           number_text(text.substr(split + between_ends.size())));
+        return fmt::format("$[{},\\, {}]$", latex_number(text.substr(0, split)),
+                           latex_number(text.substr(split + between_ends.size())));
     }
-    if (!parse_number(text)) return escaped(text);
-    return fmt::format("${}$", number_text(text));
+    if (!parse_number(text)) return latex_escaped(text);
+    return fmt::format("${}$", latex_number(text));
 }
 
 /// a0 as $a_0$, xi as $\xi$; other rows as they are called.
@@ -119,16 +98,16 @@ std::string row_name(std::string_view name) {
     if (name == "xi") return "$\\xi$";
     const bool coefficient =
         name.size() > 1 && (name[0] == 'a' || name[0] == 'b') && parse_unsigned(name.substr(1)).has_value();
-    return coefficient ? fmt::format("${}_{{{}}}$", name[0], name.substr(1)) : escaped(name);
+    return coefficient ? fmt::format("${}_{{{}}}$", name[0], name.substr(1)) : latex_escaped(name);
 }
 
 /// A heading of two words on two lines: numbers are narrower than "take-off regenerated".
 std::string heading_cell(std::string_view heading) {
     if (is_interval(heading)) return "";
     const auto space = heading.rfind(' ');
-    if (space == std::string_view::npos) return escaped(heading);
-    return fmt::format("\\shortstack[r]{{{}\\\\{}}}", escaped(heading.substr(0, space)),
-                       escaped(heading.substr(space + 1)));
+    if (space == std::string_view::npos) return latex_escaped(heading);
+    return fmt::format("\\shortstack[r]{{{}\\\\{}}}", latex_escaped(heading.substr(0, space)),
+                       latex_escaped(heading.substr(space + 1)));
 }
 
 }  // namespace
@@ -173,18 +152,19 @@ TextTable table_one_beside(const MechanicalModel& published, const MechanicalMod
 
 std::string to_latex(const TextTable& table) {
     const bool intervals = std::ranges::any_of(table.header, is_interval);
-    std::string text = "\\begin{table}\n\\centering\n\\caption{Constants for the mechanical energy model";
+    std::string text =
+        "% needs \\usepackage{booktabs}\n\\begin{table}\n\\centering\n\\caption{Constants for the mechanical energy model";
     if (intervals) text += " (in brackets: 95\\,\\% intervals)";
     text += "}\n\\label{tab:mechanical-energy-model}\n";
     // Beside published constants, or with intervals, the columns are wider than a page's text.
     constexpr std::size_t columns_that_fit = 4;
     const bool scaled = table.header.size() > columns_that_fit;
     if (scaled) text = "% needs \\usepackage{graphicx}\n" + text + "\\resizebox{\\linewidth}{!}{%\n";
-    text += fmt::format("\\begin{{tabular}}{{l{}}}\n\\hline\n", std::string(table.header.size() - 1, 'r'));
+    text += fmt::format("\\begin{{tabular}}{{l{}}}\n\\toprule\n", std::string(table.header.size() - 1, 'r'));
     for (std::size_t column = 1; column < table.header.size(); ++column) {
         text += " & " + heading_cell(table.header[column]);
     }
-    text += " \\\\\n\\hline\n";
+    text += " \\\\\n\\midrule\n";
     for (const auto& row : table.rows) {
         text += row_name(row[0]);
         for (std::size_t column = 1; column < row.size(); ++column) {
@@ -192,7 +172,7 @@ std::string to_latex(const TextTable& table) {
         }
         text += " \\\\\n";
     }
-    return text + "\\hline\n\\end{tabular}" + (scaled ? "}" : "") + "\n\\end{table}\n";
+    return text + "\\bottomrule\n\\end{tabular}" + (scaled ? "}" : "") + "\n\\end{table}\n";
 }
 
 }  // namespace flightwatt::mechanical

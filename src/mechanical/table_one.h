@@ -22,7 +22,7 @@ TextTable table_one_beside(const MechanicalModel& published, const MechanicalMod
                            TableIntervals intervals = TableIntervals::absent);
 
 /// Table I as a LaTeX table environment like the paper's: its caption on top, coefficients as $a_0$ ...
-/// $\xi$, numbers in mathematical mode, 95 % intervals in brackets. Needs no package.
+/// $\xi$, numbers in mathematical mode, 95 % intervals in brackets. Needs the package booktabs (a comment says so).
 std::string to_latex(const TextTable& table);
 
 }  // namespace flightwatt::mechanical

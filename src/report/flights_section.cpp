@@ -91,24 +91,16 @@ std::vector<std::string> flight_ids(std::span<const ReportFlight> flights) {
     return ids;
 }
 
-/// One row a sortie of the flights that were not rejected.
 std::string flights_table_html(std::span<const ReportFlight> flights, const std::vector<std::string>& ids) {
-    TextTable table{{"flight", "aircraft", "date", "distance [km]", "height [m]", "take\u2011off [s]", "cruise [s]",
-                     "landing [s]", "take\u2011off [W]", "cruise [W]", "landing [W]", "energy [Wh]", "counter [Wh]",
-                     "closure [%]", "gaps", "warnings", "fitted"},
-                    {}};
     HtmlTableOptions options{"Flights: durations, mean power, energy, closure, gaps and warnings", true};
     options.minor = {"sortie",      "gaps",          "counter [Wh]",      "closure [%]", "fitted",
                      "height [m]",  "distance [km]", "take\u2011off [W]", "landing [W]", "take\u2011off [s]",
                      "landing [s]", "date",          "aircraft",          "warnings"};
     for (std::size_t f = 0; f < flights.size(); ++f) {
         if (!flights[f].rejected.empty()) continue;
-        for (std::size_t s = 0; s < flights[f].phases.sorties.size(); ++s) {
-            table.rows.push_back(cells_of(flights[f], s));
-            options.links.push_back(ids[f]);
-        }
+        options.links.insert(options.links.end(), flights[f].phases.sorties.size(), ids[f]);
     }
-    return table_html(table, options);
+    return table_html(flights_table(flights), options);
 }
 
 /// Every reason once, with the flights that it holds for, in their order.
@@ -171,6 +163,18 @@ void add_flight(Section& section, const ReportFlight& flight, const std::optiona
 }
 
 }  // namespace
+
+TextTable flights_table(std::span<const ReportFlight> flights) {
+    TextTable table{{"flight", "aircraft", "date", "distance [km]", "height [m]", "take\u2011off [s]", "cruise [s]",
+                     "landing [s]", "take\u2011off [W]", "cruise [W]", "landing [W]", "energy [Wh]", "counter [Wh]",
+                     "closure [%]", "gaps", "warnings", "fitted"},
+                    {}};
+    for (const auto& flight : flights) {
+        if (!flight.rejected.empty()) continue;
+        for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) table.rows.push_back(cells_of(flight, s));
+    }
+    return table;
+}
 
 Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model,
                         const std::map<std::string, PredictedFlight>& predicted) {

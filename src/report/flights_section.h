@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/text_table.h"
 #include "mechanical/mechanical_model.h"
 #include "report/batch_content.h"
 #include "report/html.h"
@@ -11,6 +12,9 @@
 #include <string>
 
 namespace flightwatt::report {
+
+/// One row a sortie of the flights that were not rejected: durations, power, energy, closure, gaps, warnings.
+TextTable flights_table(std::span<const ReportFlight> flights);
 
 /// All flights as a table (durations, power, energy, closure of integral and counter, gaps, warnings), those
 /// that are excluded with their reasons, and a part a flight that is drawn when it is opened, with what would have

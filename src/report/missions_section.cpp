@@ -91,7 +91,6 @@ TextTable ranking_of(std::vector<mission::MissionSummary> summaries) {
 Section schedule_section(Missions missions, const PublishedFigures& published) {
     Section section{"schedules", "Schedules"};
     add_figure(section, schedule_figure(missions, published, "schedules-soc"));
-    std::vector<mission::MissionSummary> summaries;
     std::vector<std::string> failures;
     std::vector<std::string> sources;
     for (const auto& simulated : missions) {
@@ -100,14 +99,12 @@ Section schedule_section(Missions missions, const PublishedFigures& published) {
         if (summary.undeliverable) failures.push_back(describe(summary));
         if (summary.samples)
             sources.push_back(fmt::format("{}: {}", simulated.title, describe(summary.samples->sources)));
-        summaries.push_back(std::move(summary));
     }
-    section.html +=
-        table_html(ranking_of(std::move(summaries)), {"Missions ranked by final state of charge",
-                                                      true,
-                                                      {},
-                                                      {"mechanical [Wh]", "computing [Wh]", "duration [s]",
-                                                       "cut off at [s]", "empty at [s]", "energy [Wh]", "utility"}});
+    section.html += table_html(ranking_table(missions), {"Missions ranked by final state of charge",
+                                                         true,
+                                                         {},
+                                                         {"mechanical [Wh]", "computing [Wh]", "duration [s]",
+                                                          "cut off at [s]", "empty at [s]", "energy [Wh]", "utility"}});
     section.html += paragraph(
         "Energies are what the whole mission demands, also where the battery is empty before its end. The "
         "chance is that of 1000 flights drawn a mission, from what its models and its [uncertainty] say of "
@@ -165,22 +162,6 @@ std::optional<double> gap_percent(const SimulatedMission& simulated) {
     return std::max(0.0, units::percent_of(planned.bound - *utility, planned.bound));
 }
 
-TextTable plans_table(Missions missions) {
-    TextTable table{
-        {"mission", "schedule", "utility", "proven bound", "gap [%]", "final SoC [%]", "reserve [%]", "reserve kept"},
-        {}};
-    for (const auto& simulated : missions) {
-        if (!simulated.planned) continue;
-        const auto& summary = simulated.simulation.summary;
-        const auto& planned = *simulated.planned;
-        table.rows.push_back({simulated.title, to_string(summary.schedule), fixed(summary.utility, 4),
-                              planned.feasible ? fixed(planned.bound, 4) : "-", fixed(gap_percent(simulated), 4),
-                              fixed(summary.final_soc_percent, 4), fixed(summary.reserve_soc_percent, 4),
-                              summary.keeps_reserve ? "yes" : "no"});
-    }
-    return table;
-}
-
 TextTable running_table(const mission::Mission& mission) {
     TextTable table{{"from [s]", "to [s]", "component", "runs", "power [W]"}, {}};
     for (const auto& running : running_times(mission)) {
@@ -221,6 +202,31 @@ void add_plan(Section& section, const SimulatedMission& planned, Missions missio
 }
 
 }  // namespace
+
+TextTable plans_table(Missions missions) {
+    TextTable table{
+        {"mission", "schedule", "utility", "proven bound", "gap [%]", "final SoC [%]", "reserve [%]", "reserve kept"},
+        {}};
+    for (const auto& simulated : missions) {
+        if (!simulated.planned) continue;
+        const auto& summary = simulated.simulation.summary;
+        const auto& planned = *simulated.planned;
+        table.rows.push_back({simulated.title, to_string(summary.schedule), fixed(summary.utility, 4),
+                              planned.feasible ? fixed(planned.bound, 4) : "-", fixed(gap_percent(simulated), 4),
+                              fixed(summary.final_soc_percent, 4), fixed(summary.reserve_soc_percent, 4),
+                              summary.keeps_reserve ? "yes" : "no"});
+    }
+    return table;
+}
+
+TextTable ranking_table(Missions missions) {
+    std::vector<mission::MissionSummary> summaries;
+    for (const auto& simulated : missions) {
+        summaries.push_back(simulated.simulation.summary);
+        summaries.back().mission = simulated.title;
+    }
+    return ranking_of(std::move(summaries));
+}
 
 Section plan_section(Missions missions) {
     Section section{"plan", "Plan"};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/text_table.h"
 #include "report/figures/published_figures.h"
 #include "report/html.h"
 #include "report/simulated_mission.h"
@@ -9,6 +10,12 @@
 #include <vector>
 
 namespace flightwatt::report {
+
+/// The missions ranked by final state of charge, under their titles.
+TextTable ranking_table(std::span<const SimulatedMission> missions);
+
+/// Those whose schedules were planned, with the proven bound; without rows where none was.
+TextTable plans_table(std::span<const SimulatedMission> missions);
 
 /// The missions' mechanical models and profiled software, each once, the model of the flights that the page shows
 /// already (`shown`) not again; their schedules as Fig. 3 with the ranking; and the map over the quality of service as

@@ -22,6 +22,42 @@ TEST(TextTable, KeepsOddNamesFromBreakingTheTable) {
     EXPECT_EQ(to_markdown(odd), "| name |\n|---|\n| two lines \\| one |\n");
 }
 
+TEST(TextTable, IsLatexWithTheRulesOfBooktabs) {
+    EXPECT_EQ(to_latex(table, "Flights & power", "tab:flights"),
+              R"(% needs \usepackage{booktabs}
+\begin{table}
+\centering
+\caption{Flights \& power}
+\label{tab:flights}
+\begin{tabular}{lr}
+\toprule
+flight & power\_w \\
+\midrule
+a, b & $1.5$ \\
+Ünal & -- \\
+\bottomrule
+\end{tabular}
+\end{table}
+)");
+    const TextTable wide{{"1", "2", "3", "4", "5", "6", "7"}, {}};
+    EXPECT_NE(to_latex(wide, "", "").find("\\resizebox"), std::string::npos);
+    EXPECT_EQ(to_latex(table, "", "").find("graphicx"), std::string::npos);
+}
+
+TEST(Latex, LeavesNoCharacterThatTexReadsOtherwise) {
+    EXPECT_EQ(latex_escaped("a_b & 50 % {x} #1 $ ~ ^ \\"),
+              "a\\_b \\& 50 \\% \\{x\\} \\#1 \\$ \\textasciitilde{} \\textasciicircum{} \\textbackslash{}");
+    EXPECT_EQ(latex_escaped("[km] * <a> |\""), "{[}km] {*} \\textless{}a\\textgreater{} \\textbar{}\\textquotedbl{}");
+    EXPECT_EQ(latex_escaped("take\u2011off \xC3\xA9 \u6c34 \xFF\n\x01"), "take-off \xC3\xA9 ? ? ?");
+    EXPECT_EQ(latex_escaped("cut \xE6\xB0"), "cut ??") << "a character that ends too early";
+}
+
+TEST(Latex, SpellsExponents) {
+    EXPECT_EQ(latex_number("-1.5e-05"), "-1.5 \\times 10^{-5}");
+    EXPECT_EQ(latex_number("2e+06"), "2 \\times 10^{6}");
+    EXPECT_EQ(latex_number("0.25"), "0.25");
+}
+
 TEST(Fixed, IsADashForWhatIsNotKnown) {
     EXPECT_EQ(fixed(1.25, 3), "1.250");
     EXPECT_EQ(fixed(std::nullopt, 3), "-");

@@ -113,6 +113,13 @@ std::vector<Command> commands() {
          "--mechanical " + model + " --battery fits/battery/paper.toml --profile fits/compute/tx2-detection.csv",
          {model, "fits/battery/paper.toml", "fits/compute/tx2-detection.csv"},
          "--output"},
+        {"export", "a.data --format gpx", {"a.data", "a.log"}, "--output"},
+        {"export", "s.series.csv --format csv", {"s.series.csv"}, "--output"},
+        {"export", mission + " missions/paper/plan.toml --format latex", mission_files, "--output"},
+        {"export",
+         "fits/mechanical/synthetic-wing.toml fits/battery/synthetic-3s.toml --format paparazzi",
+         {"fits/mechanical/synthetic-wing.toml", "fits/battery/synthetic-3s.toml"},
+         "--output"},
         {"init", "home", {}, "--output"},  // it reads nothing
         {"compare", simulate, disturbed, "--output"},
         {"replay", "a.data s.series.csv --model " + model + " --mission " + mission, flight_files + mission_files,

@@ -164,6 +164,8 @@ TEST(WrittenKeys, OfFlightsAreDocumented) {
     expect_summary("validate", logs(), folder);
     expect_summary("validate", logs() + Words{"--until", "300"}, folder);
     expect_summary("battery", logs() + Words{"-o", "pack.toml"}, folder);
+    expect_summary("export", {log_file, "-o", "track.kml"}, folder);
+    expect_summary("export", {log_file, "-o", "columns.csv"}, folder);
     expect_summary("synthesize", {published, "--flights", "1", "--cruise", "60", "-o", "made"}, folder);
 }
 

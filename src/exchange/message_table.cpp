@@ -1,0 +1,172 @@
+#include "exchange/message_table.h"
+
+#include "base/csv.h"
+#include "base/error.h"
+#include "flight/series_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::exchange {
+namespace {
+
+using units::Quantity;
+
+std::string_view suffix_of(Quantity quantity) {
+    switch (quantity) {
+        case Quantity::volt:
+            return "_v";
+        case Quantity::ampere:
+            return "_a";
+        case Quantity::watt:
+            return "_w";
+        case Quantity::ampere_hour:
+            return "_ah";
+        case Quantity::watt_hour:
+            return "_wh";
+        case Quantity::metre:
+            return "_m";
+        case Quantity::metre_per_second:
+            return "_m_per_s";
+        case Quantity::second:
+            return "_s";
+        case Quantity::percent:
+            return "_percent";
+        case Quantity::degree:
+            return "_deg";
+        case Quantity::celsius:
+            return "_c";
+    }
+    return "";
+}
+
+/// The fields of a message in the .log's order; of a log without one, of every layout that is known.
+std::vector<std::string> fields_of(const std::optional<telemetry::LogConfiguration>& configuration,
+                                   const std::string& message) {
+    std::vector<telemetry::MessageDefinition> layouts;
+    if (!configuration) {
+        layouts = telemetry::builtin_definitions(message);
+        std::ranges::stable_sort(layouts, std::greater<>(), [](const auto& layout) { return layout.fields.size(); });
+    } else if (const auto found = configuration->messages.find(message); found != configuration->messages.end()) {
+        layouts.push_back(found->second);
+    }
+    std::vector<std::string> fields;
+    for (const auto& layout : layouts)
+        for (const auto& field : layout.fields)
+            if (std::ranges::find(fields, field.name) == fields.end()) fields.push_back(field.name);
+    return fields;
+}
+
+telemetry::TelemetryLog read_message(const flight::FlightFile& file,
+                                     std::optional<telemetry::LogConfiguration> configuration,
+                                     const telemetry::MessageRequest& wanted) {
+    if (!file.framing()) return parse_telemetry(file.text(), file.path(), std::move(configuration), {wanted});
+    return flight::use_binary(file, [&](const telemetry::BinaryLog& log) {
+        return parse_binary_telemetry(log, std::move(configuration).value(), {wanted});
+    });
+}
+
+[[noreturn]] void refuse_absent(const flight::FlightFile& file, const std::string& message, bool is_defined) {
+    std::vector<std::string> names;
+    const auto counts = file.framing()
+                            ? flight::use_binary(file, [](const auto& log) { return census_of_binary_messages(log); })
+                            : telemetry::census_of_messages(file.text());
+    bool is_there = false;
+    for (const auto& [name, count] : counts) {
+        is_there = is_there || name == message;
+        names.push_back(fmt::format("{} {}", name, count));
+    }
+    if (is_there && !is_defined) {
+        throw InputError({file.path().string()}, fmt::format("has no definition of {}", message),
+                         "put the .log beside the log, or give --messages FILE");
+    }
+    throw InputError({file.path().string()}, fmt::format("holds no readable {}", message),
+                     "it holds " + short_list(names));
+}
+
+const telemetry::SenderLog& sender_of(const telemetry::TelemetryLog& log, const std::string& message,
+                                      const std::optional<std::string>& sender) {
+    std::vector<std::string> ids;
+    const telemetry::SenderLog* chosen = nullptr;
+    for (const auto& candidate : log.senders) {
+        const auto* table = candidate.table(message);
+        if (table == nullptr || table->empty()) continue;
+        ids.push_back(candidate.id);
+        if (!sender || candidate.id == *sender) chosen = &candidate;
+    }
+    if (chosen == nullptr) {
+        throw InputError({log.data_file.string()}, fmt::format("aircraft {} sent no {}", *sender, message),
+                         "it was sent by " + short_list(ids));
+    }
+    if (!sender && ids.size() > 1) {
+        throw InputError({log.data_file.string()},
+                         fmt::format("{} senders sent {}: {}", ids.size(), message, short_list(ids)),
+                         "choose one with --aircraft ID");
+    }
+    return *chosen;
+}
+
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
+
+bool has_numbers(const telemetry::Column& column) {
+    return std::ranges::any_of(column.values, [](double value) { return std::isfinite(value); });
+}
+
+MessageTable as_csv(const telemetry::MessageTable& table) {
+    MessageTable result;
+    std::vector<const telemetry::Column*> columns;
+    std::vector<std::string> header{"time_s"};
+    for (const auto& column : table.columns) {
+        if (!has_numbers(column)) {
+            result.left_out.push_back(column.field);
+            continue;
+        }
+        columns.push_back(&column);
+        auto name = column.field;
+        if (column.quantity && !name.ends_with(suffix_of(*column.quantity))) name += suffix_of(*column.quantity);
+        header.push_back(csv_cell(name));
+    }
+    result.csv = fmt::format("{}\n", fmt::join(header, ","));
+    for (std::size_t row = 0; row < table.time_s.size(); ++row) {
+        result.csv += cell(table.time_s[row]);
+        for (const auto* column : columns) result.csv += "," + cell(column->values[row]);
+        result.csv += '\n';
+    }
+    result.rows = table.time_s.size();
+    return result;
+}
+
+}  // namespace
+
+MessageTable message_table(const flight::FlightFile& file, const std::string& message,
+                           const std::optional<std::string>& sender) {
+    if (file.is_series()) {
+        throw InputError({file.path().string()}, "is a series, which holds tracks and no messages",
+                         "give the log that it was made from, or leave --message out");
+    }
+    std::optional<telemetry::LogConfiguration> configuration;
+    if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
+    const auto fields = fields_of(configuration, message);
+    if (fields.empty()) refuse_absent(file, message, false);
+    const auto log = read_message(file, std::move(configuration), {message, fields});
+    file.require_unchanged();
+    const auto sent = [&](const telemetry::SenderLog& sender_log) {
+        const auto* table = sender_log.table(message);
+        return table != nullptr && !table->empty();
+    };
+    if (std::ranges::none_of(log.senders, sent)) refuse_absent(file, message, true);
+    return as_csv(*sender_of(log, message, sender).table(message));
+}
+
+std::string series_table(const flight::FlightSeries& series) {
+    auto text = to_csv(series);
+    std::size_t start = 0;
+    while (start < text.size() && text[start] == '#') start = text.find('\n', start) + 1;
+    return text.substr(start);
+}
+
+}  // namespace flightwatt::exchange

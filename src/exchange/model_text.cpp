@@ -1,0 +1,181 @@
+#include "exchange/model_text.h"
+
+#include "base/number.h"
+
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <toml++/toml.h>
+
+namespace flightwatt::exchange {
+namespace {
+
+/// TOML of ours as JSON: numbers as they are, whole numbers whole.
+std::string json_of(const std::string& toml_text) {
+    std::ostringstream stream;
+    stream << toml::json_formatter(toml::parse(toml_text));
+    return nlohmann::json::parse(stream.str()).dump(2) + "\n";
+}
+
+bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// A number that C reads as a double, to its last digit.
+std::string c_number(double value) {
+    auto text = fmt::format("{}", value);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text;
+}
+
+std::string c_numbers(const std::vector<double>& values) {
+    std::vector<std::string> texts;
+    texts.reserve(values.size());
+    for (const double value : values) texts.push_back(c_number(value));
+    return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// What no compiler takes for the comment's end, for one within it, or for a trigraph.
+std::string comment_text(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        const bool is_plain = static_cast<unsigned char>(c) >= 0x20 && static_cast<unsigned char>(c) < 0x7F;
+        result += is_plain && c != '*' && c != '?' ? c : '.';
+    }
+    return result;
+}
+
+std::string upper(std::string text) {
+    std::ranges::transform(text, text.begin(),
+                           [](char c) { return is_letter(c) ? static_cast<char>(c - 'a' + 'A') : c; });
+    return text;
+}
+
+std::string heading(const mechanical::MechanicalModel& model, const std::string& prefix) {
+    std::vector<std::string> flights;
+    for (const auto& flight : model.flights) flights.push_back(comment_text(flight.flight));
+    return fmt::format(
+        "/* Electrical power of an aircraft over its flight: model {0}.\n"
+        " * {1}\n"
+        "{2}"
+        " * Written by flightwatt export " FLIGHTWATT_VERSION
+        ". C99, needs <math.h> alone. Powers in W, energies in J, times in s\n"
+        " * since the phase began, speeds in m/s, angles in rad. */\n"
+        "#ifndef {3}_MODEL_H\n#define {3}_MODEL_H\n\n#include <math.h>\n\n"
+        "enum {4}_phase {{ {3}_TAKEOFF, {3}_CRUISE, {3}_LANDING }};\n\n",
+        comment_text(model.name), comment_text(model.description),
+        flights.empty() ? "" : fmt::format(" * Flights: {}.\n", fmt::join(flights, ", ")), upper(prefix), prefix);
+}
+
+std::size_t highest_order(const mechanical::MechanicalModel& model) {
+    std::size_t order = 1;  // C has no arrays of length 0
+    for (const auto phase : flight::all_phases) order = std::max(order, model.phases[phase].fourier.cos_w.size());
+    return order;
+}
+
+/// One row a phase, filled up with zeros.
+std::string rows(const mechanical::MechanicalModel& model, std::vector<double> mechanical::FourierModel::*member,
+                 std::size_t order) {
+    std::vector<std::string> lines;
+    for (const auto phase : flight::all_phases) {
+        auto values = model.phases[phase].fourier.*member;
+        values.resize(order, 0.0);
+        lines.push_back("        {" + c_numbers(values) + "}");
+    }
+    return fmt::format("{{\n{}}}", fmt::join(lines, ",\n"));
+}
+
+template <typename Get>
+std::string a_phase(const mechanical::MechanicalModel& model, const Get& get) {
+    std::vector<double> values;
+    values.reserve(flight::all_phases.size());
+    for (const auto phase : flight::all_phases) values.push_back(get(model.phases[phase]));
+    return "{" + c_numbers(values) + "}";
+}
+
+/// The constants, which each function holds for itself: a header's own would be unused in some files.
+std::string constants(const mechanical::MechanicalModel& model, std::size_t order) {
+    using mechanical::FourierModel;
+    using mechanical::PhaseModel;
+    return fmt::format(
+        "    static const double omega_rad_per_s[3] = {};\n    static const double a0_w[3] = {};\n"
+        "    static const double cos_w[3][{}] = {};\n    static const double sin_w[3][{}] = {};\n    int n;\n",
+        a_phase(model, [](const PhaseModel& phase) { return phase.fourier.omega_rad_per_s; }),
+        a_phase(model, [](const PhaseModel& phase) { return phase.fourier.a0_w; }), order,
+        rows(model, &FourierModel::cos_w, order), order, rows(model, &FourierModel::sin_w, order));
+}
+
+std::string curve_functions(const mechanical::MechanicalModel& model, const std::string& prefix) {
+    const auto order = highest_order(model);
+    const auto values = constants(model, order);
+    const auto durations = a_phase(model, [](const mechanical::PhaseModel& phase) { return phase.duration_s; });
+    return fmt::format(
+        "/* How long the model's flights took for the phase. */\n"
+        "static inline double {0}_duration_s(enum {0}_phase phase) {{\n"
+        "    static const double duration_s[3] = {1};\n    return duration_s[phase];\n}}\n\n"
+        "/* a0 + sum of a_n cos(n omega t) + b_n sin(n omega t). */\n"
+        "static inline double {0}_power_w(enum {0}_phase phase, double time_s) {{\n{2}"
+        "    double power_w = a0_w[phase];\n"
+        "    for (n = 0; n < {3}; ++n) {{\n"
+        "        const double angle_rad = (n + 1) * omega_rad_per_s[phase] * time_s;\n"
+        "        power_w += cos_w[phase][n] * cos(angle_rad) + sin_w[phase][n] * sin(angle_rad);\n"
+        "    }}\n    return power_w;\n}}\n\n"
+        "/* The same where the phase takes flown_s, above 0: the curve is stretched to it. */\n"
+        "static inline double {0}_flown_power_w(enum {0}_phase phase, double time_s, double flown_s) {{\n"
+        "    return {0}_power_w(phase, time_s * {0}_duration_s(phase) / flown_s);\n}}\n\n"
+        "/* The integral of the power from the phase's begin. */\n"
+        "static inline double {0}_energy_j(enum {0}_phase phase, double time_s) {{\n{2}"
+        "    double energy_j = a0_w[phase] * time_s;\n"
+        "    for (n = 0; n < {3}; ++n) {{\n"
+        "        const double rate = (n + 1) * omega_rad_per_s[phase];\n"
+        "        const double half = sin(rate * time_s / 2.0); /* 1 - cos(x) = 2 sin^2(x/2) */\n"
+        "        energy_j += (cos_w[phase][n] * sin(rate * time_s) + sin_w[phase][n] * 2.0 * half * half) / rate;\n"
+        "    }}\n    return energy_j;\n}}\n\n",
+        prefix, durations, values, order);
+}
+
+std::string motion_function(const mechanical::PhysicalModel& physical, const std::string& prefix) {
+    using mechanical::PowerTerm;
+    const auto& c = physical.coefficients;
+    return fmt::format(
+        "/* Of a motion through the air: airspeed above 0, climb rate (below 0: descending), load factor 1 / cos(bank).\n"
+        " * Flown: {1:.1f} to {2:.1f} m/s, climbing {3:.1f} to {4:.1f} m/s; beyond, it is extrapolated. */\n"
+        "static inline double {0}_motion_power_w(double airspeed, double climb, double load_factor) {{\n"
+        "    const double power_w = {5} * airspeed * airspeed * airspeed + {6} / airspeed +\n"
+        "                           {7} * (load_factor * load_factor - 1.0) / airspeed + {8} * climb +\n"
+        "                           {9} * (climb < 0.0 ? climb : 0.0) + {10};\n"
+        "    return power_w > 0.0 ? power_w : 0.0;\n}}\n\n",
+        prefix, physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high, physical.climb_m_per_s.low,
+        physical.climb_m_per_s.high, c_number(c[PowerTerm::drag]), c_number(c[PowerTerm::induced]),
+        c_number(c[PowerTerm::turn]), c_number(c[PowerTerm::climb]), c_number(c[PowerTerm::descent]),
+        c_number(c[PowerTerm::constant]));
+}
+
+}  // namespace
+
+std::string to_json_text(const mechanical::MechanicalModel& model) { return json_of(to_toml(model)); }
+
+std::string to_json_text(const battery::Battery& battery) { return json_of(to_toml(battery)); }
+
+std::string c_prefix(const std::string& name) {
+    std::string prefix;
+    for (char c : name) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        prefix += is_letter(c) || is_digit(c) ? c : '_';
+    }
+    if (prefix.empty() || !is_letter(prefix.front())) prefix = "model_" + prefix;
+    return prefix;
+}
+
+std::string to_c_header(const mechanical::MechanicalModel& model) {
+    const auto prefix = c_prefix(model.name);
+    auto text = heading(model, prefix) + curve_functions(model, prefix);
+    if (model.physical) text += motion_function(*model.physical, prefix);
+    return text + fmt::format("#endif /* {}_MODEL_H */\n", upper(prefix));
+}
+
+}  // namespace flightwatt::exchange

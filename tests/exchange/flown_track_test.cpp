@@ -1,0 +1,149 @@
+#include "exchange/flown_track.h"
+
+#include "base/error.h"
+#include "flight/load_flight.h"
+#include "helpers/test_paths.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::exchange {
+namespace {
+
+using flight::FlightPhases;
+using flight::Phase;
+
+/// Five places a second apart, with power 0, 10, ... 40 W and altitude.
+flight::FlightSeries places(std::vector<double> longitudes = {1.0, 1.1, 1.2, 1.3, 1.4}) {
+    flight::FlightSeries series;
+    series.file = "made.csv";
+    series.flight = "made";
+    const std::vector<double> times{0.0, 1.0, 2.0, 3.0, 4.0};
+    const auto add = [&](const char* name, std::vector<double> values) {
+        series.tracks.push_back({.name = name, .source = "made", .time_s = times, .value = std::move(values)});
+    };
+    add("altitude_m", {100.0, 110.0, 120.0, 130.0, 140.0});
+    add("power_w", {0.0, 10.0, 20.0, 30.0, 40.0});
+    add("latitude_deg", {40.0, 40.1, 40.2, 40.3, 40.4});
+    add("longitude_deg", std::move(longitudes));
+    return series;
+}
+
+flight::PhaseSpan span(Phase phase, double start_s, double end_s) {
+    flight::PhaseSpan result;
+    result.phase = phase;
+    result.start.time_s = start_s;
+    result.end.time_s = end_s;
+    return result;
+}
+
+/// A take-off from 1 to 2 s, and a cruise from there to 4 s.
+FlightPhases two_phases() {
+    flight::Sortie sortie;
+    sortie.phases = {span(Phase::takeoff, 1.0, 2.0), span(Phase::cruise, 2.0, 4.0)};
+    FlightPhases phases;
+    phases.sorties.push_back(sortie);
+    return phases;
+}
+
+std::string rejection_of(const flight::FlightSeries& series) {
+    try {
+        flown_track(series, {});
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST(FlownTrack, HasEachPositionWithAltitudePowerAndPhase) {
+    const auto track = flown_track(places(), two_phases());
+    ASSERT_EQ(track.points.size(), 5U);
+    const auto& point = track.points[2];
+    EXPECT_DOUBLE_EQ(point.longitude_deg, 1.2);
+    EXPECT_DOUBLE_EQ(point.latitude_deg, 40.2);
+    EXPECT_DOUBLE_EQ(point.altitude_m.value(), 120.0);
+    EXPECT_DOUBLE_EQ(point.power_w.value(), 20.0);
+    EXPECT_EQ(point.phase, Phase::cruise);
+    EXPECT_FALSE(track.points[0].phase);
+    EXPECT_FALSE(track.points[4].phase) << "a phase ends where it ends";
+    EXPECT_EQ(track.clock, TrackClock::none);
+}
+
+TEST(FlownTrack, TakesTheLogsClockBeforeThatOfItsName) {
+    auto series = places();
+    series.flight = "20_07_05__10_26_44";
+    auto track = flown_track(series, {});
+    EXPECT_EQ(track.clock, TrackClock::name);
+    EXPECT_EQ(utc_text(track, 1.5), "2020-07-05T10:26:45.500Z");
+    series.start_clock_s = 1593937604.26;
+    track = flown_track(series, {});
+    EXPECT_EQ(track.clock, TrackClock::log);
+    EXPECT_EQ(utc_text(track, 0.0), "2020-07-05T08:26:44.260Z");
+    EXPECT_EQ(utc_text(track, 0.7399), "2020-07-05T08:26:45.000Z") << "rounded, not cut";
+}
+
+TEST(FlownTrack, RefusesALogWithoutPositionsAndSaysWhy) {
+    auto series = places();
+    series.tracks.resize(2);
+    EXPECT_THAT(rejection_of(series), testing::HasSubstr("has no positions"));
+    auto metres = series.tracks[0];
+    metres.name = "east_m";
+    series.tracks.push_back(metres);
+    EXPECT_THAT(rejection_of(series), testing::HasSubstr("in metres alone"));
+}
+
+TEST(ColouredParts, FollowThePhasesAndShareTheirEnds) {
+    const auto parts = coloured_parts(flown_track(places(), two_phases()), TrackColour::phase);
+    ASSERT_EQ(parts.size(), 3U);
+    EXPECT_EQ(parts[0].name, "ground");
+    EXPECT_EQ(parts[1].name, "takeoff");
+    EXPECT_EQ(parts[2].name, "cruise");
+    EXPECT_EQ(parts[0].last, parts[1].first);
+    EXPECT_EQ(parts[1].last, parts[2].first);
+    EXPECT_EQ(parts[2].last, 4U);
+    EXPECT_DOUBLE_EQ(parts[2].mean_power_w.value(), 30.0);
+    EXPECT_NE(parts[0].colour, parts[1].colour);
+}
+
+TEST(ColouredParts, HaveRoundClassesOfPower) {
+    const auto parts = coloured_parts(flown_track(places(), {}), TrackColour::power);
+    // 95 % of the points are at 30 W or below: steps of 5 W.
+    ASSERT_EQ(parts.size(), 4U);
+    EXPECT_EQ(parts[0].name, "0 to 5 W");
+    EXPECT_EQ(parts[1].name, "10 to 15 W");
+    EXPECT_EQ(parts[3].name, "25 W and more");
+}
+
+TEST(ColouredParts, NeedPowerForItsColour) {
+    auto series = places();
+    std::erase_if(series.tracks, [](const flight::Track& track) { return track.name == "power_w"; });
+    const auto track = flown_track(series, {});
+    EXPECT_THROW(coloured_parts(track, TrackColour::power), InputError);
+    EXPECT_EQ(coloured_parts(track, TrackColour::phase).size(), 1U);
+}
+
+TEST(ColouredParts, DoNotCrossTheMeridianOf180Degrees) {
+    const auto parts =
+        coloured_parts(flown_track(places({179.8, 179.9, -179.9, -179.8, -179.7}), {}), TrackColour::phase);
+    ASSERT_EQ(parts.size(), 2U);
+    EXPECT_EQ(parts[0].last, 1U);
+    EXPECT_EQ(parts[1].first, 2U);
+}
+
+TEST(FlownTrack, CoversARealLog) {
+    FLIGHTWATT_NEEDS_SHARED();
+    flight::LoadOptions options;
+    options.power_required = false;
+    const auto loaded = flight::load_flight(test::shared_dir() / "flights" / "20_07_03__12_17_45.data", options);
+    const auto track = flown_track(loaded.series, loaded.phases);
+    EXPECT_EQ(track.clock, TrackClock::log);
+    EXPECT_GT(track.points.size(), 1000U);
+    for (const auto& point : track.points) {
+        EXPECT_NEAR(point.latitude_deg, 43.46, 0.2);
+        EXPECT_NEAR(point.longitude_deg, 1.27, 0.2);
+    }
+    EXPECT_GE(coloured_parts(track, TrackColour::phase).size(), 4U);
+}
+
+}  // namespace
+}  // namespace flightwatt::exchange

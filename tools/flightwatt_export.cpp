@@ -1,0 +1,358 @@
+// flightwatt export: flights, models and missions in the forms that other programs read.
+
+#include "base/error.h"
+#include "base/units.h"
+#include "cli/numeric_options.h"
+#include "cli/output/fit_output.h"
+#include "cli/output/flight_options.h"
+#include "cli/output/json_text.h"
+#include "cli/output/mission_output.h"
+#include "cli/output/physical_output.h"
+#include "cli/output/validation_output.h"
+#include "cli/stage.h"
+#include "exchange/autopilot_parameters.h"
+#include "exchange/message_table.h"
+#include "exchange/model_text.h"
+#include "exchange/track_files.h"
+#include "mission/mission_file.h"
+#include "mission/prepared_mission.h"
+#include "report/batch_content.h"
+#include "report/flights_section.h"
+#include "report/missions_section.h"
+#include "report/simulated_mission.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace {
+
+using namespace flightwatt;
+
+/// What an input is, by what it holds.
+enum class Kind { flight, model, battery, mission, batch };
+
+constexpr std::array kind_names{"log or series", "mechanical model", "battery", "mission", "folder"};
+
+std::string name_of(Kind kind) { return kind_names.at(static_cast<std::size_t>(kind)); }
+
+struct Format {
+    std::string name;
+    std::string ending;  ///< of -o that means it; may be empty
+    std::set<Kind> kinds;
+};
+
+const std::vector<Format>& formats() {
+    using enum Kind;
+    static const std::vector<Format> all{{"geojson", ".geojson", {flight}},
+                                         {"kml", ".kml", {flight}},
+                                         {"gpx", ".gpx", {flight}},
+                                         {"csv", ".csv", {flight}},
+                                         {"json", ".json", {model, battery}},
+                                         {"c", ".h", {model}},
+                                         {"px4", ".params", {model, battery, mission}},
+                                         {"inav", "", {model, battery, mission}},
+                                         {"paparazzi", "", {model, battery, mission}},
+                                         {"paparazzi-map", "", {battery, mission}},
+                                         {"latex", ".tex", {model, battery, mission, batch}}};
+    return all;
+}
+
+struct Input {
+    std::string file;
+    Kind kind = Kind::flight;
+};
+
+/// The result, and what is said of it.
+struct Exported {
+    std::string text;
+    std::vector<std::string> notes = {};
+    nlohmann::ordered_json facts = nlohmann::ordered_json::object();
+};
+
+Kind kind_of(const std::string& file) {
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error)) return Kind::batch;
+    if (std::filesystem::path(file).extension() != ".toml") return Kind::flight;
+    const auto root = read_toml(file);
+    if (root.has("battery") || root.has("mechanical")) return Kind::mission;
+    return root.has("resistance_ohm") || root.has("voltage_v") || root.has("capacity_ah") ? Kind::battery : Kind::model;
+}
+
+std::string format_names() {
+    std::vector<std::string> names;
+    for (const auto& format : formats()) names.push_back(format.name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+const Format& format_of(const cli::StageCall& call) {
+    const auto name = call.maybe<std::string>("format");
+    const auto ending = call.output ? std::filesystem::path(*call.output).extension().string() : "";
+    for (const auto& format : formats())
+        if (name ? format.name == *name : !ending.empty() && format.ending == ending) return format;
+    if (name) throw UsageError(fmt::format("--format {}: expected one of {}", *name, format_names()));
+    throw UsageError(
+        fmt::format("expected -o FILE that ends in .geojson, .kml, .gpx, .csv, .json, .h, .params or .tex, or "
+                    "--format NAME, one of {}",
+                    format_names()));
+}
+
+/// What a kind of input can become.
+std::string forms_of(Kind kind) {
+    std::vector<std::string> names;
+    for (const auto& format : formats())
+        if (format.kinds.contains(kind)) names.push_back(format.name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void require_fitting(const Input& input, const Format& format) {
+    if (format.kinds.contains(input.kind)) return;
+    auto hint = fmt::format("a {} becomes {}", name_of(input.kind), forms_of(input.kind));
+    if (input.kind == Kind::mission && format.name == "csv")
+        hint = fmt::format("its state of charge over time is: flightwatt simulate {} -o FILE.csv", input.file);
+    if (input.kind == Kind::batch) hint = "one of flightwatt batch becomes latex, and its model is model.toml in it";
+    throw InputError({input.file}, fmt::format("is a {}, of which no {} is made", name_of(input.kind), format.name),
+                     hint);
+}
+
+/// Of options that only some forms heed, those that this one does not.
+void refuse_idle_options(const cli::StageCall& call, const Format& format) {
+    const std::set<std::string> tracks{"geojson", "kml", "gpx"};
+    const std::set<std::string> parameters{"px4", "inav", "paparazzi", "paparazzi-map"};
+    std::map<std::string, std::set<std::string>> heeded{{"colour", tracks},
+                                                        {"message", {"csv"}},
+                                                        {"cells", parameters},
+                                                        {"parallel", {"paparazzi", "paparazzi-map"}},
+                                                        {"idle-power", {"inav"}}};
+    for (const auto* option : {"aircraft", "sortie", "exclude", "keep", "correct-idle-offset", "messages"})
+        heeded[option] = {"geojson", "kml", "gpx", "csv"};
+    for (const auto& [option, names] : heeded) {
+        if (!call.has(option) || names.contains(format.name)) continue;
+        throw UsageError(
+            fmt::format("--{} is of no use to {}: it is for {}", option, format.name, fmt::join(names, ", ")));
+    }
+}
+
+exchange::TrackColour colour_of(const cli::StageCall& call) {
+    const auto name = call.maybe<std::string>("colour").value_or("phase");
+    if (name == "phase") return exchange::TrackColour::phase;
+    if (name == "power") return exchange::TrackColour::power;
+    throw UsageError(fmt::format("--colour {}: expected phase or power", name));
+}
+
+Exported export_track(const cli::StageCall& call, const std::string& file, const std::string& format) {
+    const auto colour = colour_of(call);
+    auto options = cli::read_flight_options(call);
+    options.flight_required = false;
+    options.power_required = false;
+    const auto loaded = cli::load_flight(call, file, options);
+    const auto track = exchange::flown_track(loaded.series, loaded.phases);
+    Exported result;
+    result.text = format == "geojson" ? to_geojson(track, colour)
+                  : format == "kml"   ? to_kml(track, colour)
+                                      : to_gpx(track, colour);
+    constexpr std::array clocks{"log", "name", "none"};
+    result.facts = {{"points", track.points.size()},
+                    {"parts", coloured_parts(track, colour).size()},
+                    {"clock", clocks.at(static_cast<std::size_t>(track.clock))}};
+    if (track.clock == exchange::TrackClock::name)
+        result.notes.push_back(file + ": no .log tells the date: that of its name is taken, as if it were UTC");
+    if (track.clock == exchange::TrackClock::none)
+        result.notes.push_back(file + ": neither a .log nor its name tells the date: points have no time");
+    if (!track.points.front().altitude_m) result.notes.push_back(file + ": has no altitude: the track has none");
+    return result;
+}
+
+Exported export_columns(const cli::StageCall& call, const std::string& file) {
+    auto options = cli::read_flight_options(call);
+    Exported result;
+    if (const auto message = call.maybe<std::string>("message")) {
+        auto table = exchange::message_table(flight::FlightFile(file, options.most_log_bytes, options.messages),
+                                             *message, options.aircraft_id);
+        if (!table.left_out.empty())
+            result.notes.push_back(
+                fmt::format("{}: {} holds no numbers in {}", file, *message, short_list(table.left_out)));
+        result.facts = {{"rows", table.rows}};
+        result.text = std::move(table.csv);
+        return result;
+    }
+    options.flight_required = false;
+    options.power_required = false;
+    result.text = exchange::series_table(cli::load_flight(call, file, options).series);
+    result.facts = {{"rows", std::ranges::count(result.text, '\n') - 1}};
+    return result;
+}
+
+/// The mean power of the mission's computer, flown as it is stated or planned.
+double compute_w(const mission::AnyMission& mission) {
+    const auto summary = fly(prepare(mission)).simulation.summary;
+    return summary.duration_s > 0.0 ? units::joule_from_wh(summary.compute_energy_wh) / summary.duration_s : 0.0;
+}
+
+exchange::EstimatorInput estimator_input(const cli::StageCall& call, const std::vector<Input>& inputs) {
+    exchange::EstimatorInput result;
+    for (const auto& [file, kind] : inputs) {
+        if (kind == Kind::model) result.model = mechanical::read_mechanical_model(file);
+        if (kind == Kind::battery) result.battery = battery::read_battery(file);
+        if (kind != Kind::mission) continue;
+        const auto mission = mission::read_mission(file, {true, std::nullopt});
+        const auto& setup = setup_of(mission);
+        cli::warn_of_setup(call, setup);
+        result.model = setup.mechanical;
+        result.battery = setup.battery;
+        result.compute_w = compute_w(mission);
+        if (setup.reserve_soc_percent > 0.0) result.reserve_percent = setup.reserve_soc_percent;
+    }
+    constexpr std::uint64_t most_cells = 100;
+    if (call.has("cells")) result.cells_in_series = static_cast<int>(cli::count_option(call, "cells", 1, most_cells));
+    if (call.has("parallel"))
+        result.cells_in_parallel = static_cast<int>(cli::count_option(call, "parallel", 1, most_cells));
+    result.idle_w = cli::positive_option(call, "idle-power", "W");
+    return result;
+}
+
+Exported export_parameters(const cli::StageCall& call, const std::vector<Input>& inputs, const std::string& format) {
+    using Write = exchange::ParameterText (*)(const exchange::EstimatorInput&);
+    static const std::map<std::string, Write> writers{{"px4", exchange::to_px4},
+                                                      {"inav", exchange::to_inav},
+                                                      {"paparazzi", exchange::to_paparazzi},
+                                                      {"paparazzi-map", exchange::to_paparazzi_map}};
+    auto parameters = writers.at(format)(estimator_input(call, inputs));
+    return {std::move(parameters.text), std::move(parameters.notes)};
+}
+
+std::string model_latex(const mechanical::MechanicalModel& model) {
+    const bool has_errors =
+        std::ranges::any_of(flight::all_phases, [&](auto phase) { return model.phases[phase].errors.has_value(); });
+    auto text = mechanical::to_latex(
+        table_one(model, has_errors ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent));
+    if (model.physical) {
+        text += "\n" + to_latex(cli::constants_table(*model.physical),
+                                "Constants of the physical model, with 95 % intervals", "tab:physical-model");
+    }
+    return text;
+}
+
+std::string battery_latex(const battery::Battery& pack) {
+    TextTable table{{"parameter", "value", "95 %"}, {}};
+    const auto add = [&](const char* name, double value, const std::optional<battery::Interval>& interval) {
+        table.rows.push_back({name, fmt::format("{:.4g}", value),
+                              interval ? fmt::format("{:.4g} to {:.4g}", interval->low, interval->high) : "-"});
+    };
+    add("capacity [Ah]", pack.capacity_ah, pack.intervals.capacity_ah);
+    if (!pack.thevenin) add("voltage [V]", pack.voltage_v, pack.intervals.voltage_v);
+    add("resistance [ohm]", pack.resistance_ohm, pack.intervals.resistance_ohm);
+    if (const auto& circuit = pack.thevenin; circuit && circuit->rc_resistance_ohm > 0.0) {
+        add("RC resistance [ohm]", circuit->rc_resistance_ohm, pack.intervals.rc_resistance_ohm);
+        add("RC time constant [s]", circuit->rc_time_constant_s, pack.intervals.rc_time_constant_s);
+    }
+    return to_latex(table, fmt::format("Battery {}", pack.name), "tab:battery");
+}
+
+std::string batch_latex(const cli::StageCall& call, const std::string& folder) {
+    const auto content = report::read_batch_content(folder);
+    for (const auto& damaged : content.damaged) cli::warn(call, damaged);
+    auto text = to_latex(report::flights_table(content.flights), "Flights", "tab:flights");
+    if (!content.fit) return text;
+    text += "\n" + model_latex(content.fit->model);
+    constexpr std::size_t most_flights = 30;  // the work grows with their square: as the report
+    if (content.measured.size() < 2 || content.measured.size() > most_flights) return text;
+    const auto validated = leave_one_out(content.measured, content.fit->options);
+    return text + "\n" +
+           to_latex(cli::scores_table(validated), "Errors of the models on flights that they were not fitted to",
+                    "tab:validation");
+}
+
+std::string missions_latex(const std::vector<Input>& inputs) {
+    std::vector<mission::AnyMission> missions;
+    for (const auto& input : inputs) missions.push_back(mission::read_mission(input.file, {true, std::nullopt}));
+    const auto simulated = report::simulate_for_report(missions);
+    auto text = to_latex(report::ranking_table(simulated), "Missions by final state of charge", "tab:missions");
+    const auto plans = report::plans_table(simulated);
+    if (!plans.rows.empty()) text += "\n" + to_latex(plans, "Planned missions", "tab:plans");
+    return text;
+}
+
+Exported export_latex(const cli::StageCall& call, const std::vector<Input>& inputs) {
+    const auto& [file, kind] = inputs.front();
+    switch (kind) {
+        case Kind::model:
+            return {model_latex(mechanical::read_mechanical_model(file))};
+        case Kind::battery:
+            return {battery_latex(battery::read_battery(file))};
+        case Kind::batch:
+            return {batch_latex(call, file)};
+        default:
+            return {missions_latex(inputs)};
+    }
+}
+
+/// One input, but for tables of several missions, and parameters from a model and a battery.
+void require_few(const std::vector<Input>& inputs, const Format& format) {
+    if (inputs.size() == 1) return;
+    const auto all = [&](Kind kind) {
+        return std::ranges::all_of(inputs, [&](const auto& in) { return in.kind == kind; });
+    };
+    const bool tables = format.name == "latex" && all(Kind::mission);
+    const std::set<std::string> of_both{"px4", "inav", "paparazzi"};
+    const bool pair = inputs.size() == 2 && of_both.contains(format.name) && inputs[0].kind != inputs[1].kind &&
+                      !all(Kind::mission) && inputs[0].kind != Kind::mission && inputs[1].kind != Kind::mission;
+    if (tables || pair) return;
+    throw UsageError(fmt::format("{} is made of one input{}", format.name,
+                                 format.name == "latex"          ? ", or of several missions"
+                                 : of_both.contains(format.name) ? ": a mission, or a model and a battery"
+                                                                 : ""));
+}
+
+Exported exported(const cli::StageCall& call, const std::vector<Input>& inputs, const std::string& format) {
+    const auto& file = inputs.front().file;
+    if (format == "geojson" || format == "kml" || format == "gpx") return export_track(call, file, format);
+    if (format == "csv") return export_columns(call, file);
+    if (format == "latex") return export_latex(call, inputs);
+    if (format == "c") return {exchange::to_c_header(mechanical::read_mechanical_model(file))};
+    if (format != "json") return export_parameters(call, inputs, format);
+    return {inputs.front().kind == Kind::battery ? exchange::to_json_text(battery::read_battery(file))
+                                                 : exchange::to_json_text(mechanical::read_mechanical_model(file))};
+}
+
+int export_inputs(const cli::StageCall& call) {
+    const auto& format = format_of(call);
+    refuse_idle_options(call, format);
+    std::vector<Input> inputs;
+    for (const auto& file : call.inputs) inputs.push_back({file, kind_of(file)});
+    for (const auto& input : inputs) require_fitting(input, format);
+    require_few(inputs, format);
+    const auto result = exported(call, inputs, format.name);
+    cli::write_result(call, result.text);
+    for (const auto& note : result.notes) cli::note(call, note);
+    if (!call.json) return cli::ok;
+    nlohmann::ordered_json json{{"inputs", call.inputs}, {"format", format.name}, {"notes", result.notes}};
+    json.update(result.facts);
+    cli::print(cli::json_text(json));
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "export", "FLIGHT|MODEL.toml|PACK.toml|MISSION.toml|OUT...",
+        R"(Writes what others' programs read. Of a log or series: its track (geojson, kml, gpx), or columns over time
+(csv, for PlotJuggler). Of models: json, a header for C99 (c), and what the estimators of autopilots
+are told (px4, inav, paparazzi, paparazzi-map), from a model and a battery or from a mission. Of models,
+missions and the folder OUT of flightwatt batch: tables (latex). The form is that of FILE's ending
+(.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .tex) or of --format.)"};
+    auto add = stage.options.add_options();
+    add("format", cli::value("NAME"), "the form, where FILE's ending does not tell it");
+    add("colour", cli::value("HOW"), "of tracks: phase or power; phase if not given");
+    add("message", cli::value("NAME"), "of csv: all fields of one message, ENERGY ..., instead of the series' tracks");
+    add("cells", cli::value("N"), "in series, of the battery; default: as few as 4.25 V a cell allow");
+    add("parallel", cli::value("N"), "cells in parallel, of the battery; 1 if not given");
+    add("idle-power", cli::value<double>("W"), "of inav: while the motor stands; default: the mission's computer");
+    cli::add_flight_options(stage.options);
+    return cli::run_stage(argc, argv, stage, export_inputs);
+}
