@@ -23,8 +23,9 @@ struct HtmlTableOptions {
 /// A table; columns that are not all numbers (or '-') stand to the left.
 std::string table_html(const TextTable& table, const HtmlTableOptions& options);
 
-/// A figure with its caption and its specification, which the page's script draws.
+/// A figure with its caption and its specification, or another form of it, which the page's script draws.
 std::string figure_html(const Figure& figure);
+std::string figure_html(const Figure& figure, const VegaJson& spec);
 
 /// A part of the page. Its figures stand in its HTML already; they are kept to be rendered as files.
 struct Section {
