@@ -5,14 +5,16 @@ set(CPACK_PACKAGE_CONTACT "FlightWatt developers <developers@flightwatt.example>
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "energy of electric drone missions from flight logs")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "FlightWatt reads the logs of Paparazzi autopilots, fits the mechanical power of
- an aircraft, adds what its computer and its software draw, and simulates and
- plans missions on a battery: state of charge over time, and how surely a
- mission keeps its reserve.
- .
- Programs for single steps, for whole folders of logs, for a flight that is in
- the air, and for a report as one page that is read offline.")
+an aircraft, adds what its computer and its software draw, and simulates and
+plans missions on a battery: state of charge over time, and how surely a
+mission keeps its reserve.
+
+Programs for single steps, for whole folders of logs, for a flight that is in
+the air, and for a report as one page that is read offline.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_THREADS 0)
 set(CPACK_COMPONENTS_ALL programs debian)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)

@@ -12,6 +12,7 @@
 #include "report/flight_facts.h"
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 #include <set>
 
@@ -207,12 +208,14 @@ Section flight_part(const ReportFlight& flight, const std::optional<mechanical::
 std::vector<Section> flight_parts(std::span<const ReportFlight> flights,
                                   const std::optional<mechanical::MechanicalModel>& model,
                                   const std::map<std::string, PredictedFlight>& predicted,
-                                  const std::vector<std::string>& ids) {
+                                  const std::vector<std::string>& ids, const Progress& progress) {
     std::vector<Section> parts(flights.size());
     const auto is_shown = [](const ReportFlight& flight) { return flight.rejected.empty(); };
     const auto first = static_cast<std::size_t>(std::ranges::find_if(flights, is_shown) - flights.begin());
     const bool are_many = flights.size() > most_plain_flights;
+    std::atomic<std::size_t> done = 0;
     batch::for_each_in_parallel(flights.size(), [&](std::size_t f) {
+        if (progress) progress(done++, flights.size());
         if (!is_shown(flights[f])) return;
         const auto found = predicted.find(flights[f].name);
         parts[f] = flight_part(flights[f], model, found == predicted.end() ? nullptr : &found->second,
@@ -224,7 +227,7 @@ std::vector<Section> flight_parts(std::span<const ReportFlight> flights,
 }  // namespace
 
 Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model,
-                        const std::map<std::string, PredictedFlight>& predicted) {
+                        const std::map<std::string, PredictedFlight>& predicted, const Progress& progress) {
     Section section{"flights", "Flights"};
     const auto rejected =
         std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
@@ -243,7 +246,7 @@ Section flights_section(std::span<const ReportFlight> flights, const std::option
         section.html +=
             "<noscript><p class=\"warning\">The flights below are compressed: they open with JavaScript "
             "only.</p></noscript>\n";
-    for (auto& part : flight_parts(flights, model, predicted, ids)) {
+    for (auto& part : flight_parts(flights, model, predicted, ids, progress)) {
         section.html += part.html;
         std::ranges::move(part.figures, std::back_inserter(section.figures));
     }
