@@ -8,6 +8,7 @@
 #include "cli/numeric_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/profile_output.h"
+#include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "compute/profile_interpolation.h"
 #include "compute/profile_reader.h"
@@ -38,13 +39,14 @@ compute::ProfileNaming naming_of(const cli::StageCall& call) {
 
 int check_interpolation(const cli::StageCall& call) {
     std::string text;
+    const auto screen = call.output ? cli::Screen() : screen_of(call);
     auto json = nlohmann::ordered_json::array();
     for (const auto& file : call.inputs) {
         const auto profile = read_power_profile(file, naming_of(call));
         if (const auto negative = negative_power_warning(profile); !negative.empty()) cli::warn(call, negative);
         const auto errors = compute::interpolation_errors(profile);
         if (!text.empty()) text += "\n";
-        text += cli::interpolation_text(file, profile.power_w.size(), errors);
+        text += cli::interpolation_text(file, profile.power_w.size(), errors, screen);
         nlohmann::ordered_json methods = nlohmann::ordered_json::array();
         for (const auto& error : errors) methods.push_back(cli::to_json(error));
         json.push_back({{"file", file}, {"nodes", profile.power_w.size()}, {"leave_one_out", methods}});
@@ -121,7 +123,7 @@ int conclude(const cli::StageCall& call, const compute::ProfileOutcome& outcome,
     if (call.json) {
         cli::print(cli::json_text(cli::to_json(outcome, specification.above_idle)));
     } else {
-        cli::print(cli::profile_text(outcome, specification.above_idle));
+        cli::print(cli::profile_text(outcome, specification.above_idle, screen_of(call)));
     }
     std::size_t failed = 0;
     for (const auto& component : outcome.components) failed += component.failures.size();
@@ -174,6 +176,7 @@ again while their part of SPEC is the same; remove DIR when a program itself has
 
 Samplers: auto, ina238, ina3221 (either of ina3221-iio, ina3221-hwmon), rapl, power_supply, command, recorded.)"};
     stage.output_help = "the folder of the results";
+    stage.shows_table = true;
     auto add = stage.options.add_options();
     add("sampler", cli::value("KIND"), "sample with this instead of what SPEC says");
     add("sysfs", cli::input_file("ROOT"), "look for sensors below ROOT instead of /sys");

@@ -6,6 +6,7 @@
 #include "cli/output/fit_output.h"
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
+#include "cli/progress.h"
 #include "cli/stage.h"
 #include "flight/flight_identity.h"
 #include "mechanical/model_check.h"
@@ -24,9 +25,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <future>
 #include <iterator>
 
 #include <fmt/chrono.h>
+#include <unistd.h>
 
 namespace {
 
@@ -54,6 +57,22 @@ ReportInputs read_inputs(const cli::StageCall& call) {
     }
     return inputs;
 }
+
+/// On a terminal, a bar of what is done of `unit` while it lives.
+class Doing {
+  public:
+    explicit Doing(const char* unit) {
+        if (::isatty(STDERR_FILENO) != 0) bar_.emplace(stderr, unit);
+    }
+    report::Progress progress() {
+        return [this](std::size_t done, std::size_t all) {
+            if (bar_) bar_->show(done, all);
+        };
+    }
+
+  private:
+    std::optional<cli::ProgressBar> bar_;
+};
 
 /// Now, or what SOURCE_DATE_EPOCH says (reproducible-builds.org).
 std::string time_of_report() {
@@ -117,15 +136,20 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
     auto content = report::read_batch_content(out);
     for (const auto& damaged : content.damaged) cli::warn(call, damaged);
     page.head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
-    page.sections.push_back(
-        report::flights_section(content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt,
-                                predict_each_minute(content, cli::count_option(call, "max-validation-flights"))));
+    const auto mix = mix_of(content);
+    // Of many flights, it takes as long as their figures do.
+    auto battery = std::async(std::launch::async, [&, most = cli::count_option(call, "max-battery-flights")] {
+        return mix.empty() ? std::optional(identify_for_report(content.flights, identification, most)) : std::nullopt;
+    });
+    Doing drawing("flights");
+    page.sections.push_back(report::flights_section(
+        content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt,
+        predict_each_minute(content, cli::count_option(call, "max-validation-flights")), drawing.progress()));
     add_model(page, call, content, figures);
-    if (const auto mix = mix_of(content); !mix.empty()) {
-        page.answers.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
+    if (const auto identified = battery.get()) {
+        page.sections.push_back(report::battery_section(*identified));
     } else {
-        page.sections.push_back(report::battery_section(report::identify_for_report(
-            content.flights, identification, cli::count_option(call, "max-battery-flights"))));
+        page.answers.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
     }
     page.flights = std::move(content.flights);
 }
@@ -135,8 +159,11 @@ void add_missions(Page& page, const ReportInputs& inputs, const report::Publishe
     std::string names;
     for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + setup_of(mission).file;
     page.head.facts.emplace_back("missions", names);
-    page.answers.missions = report::simulate_for_report(inputs.missions);
+    Doing flying("missions");
+    page.answers.missions = report::simulate_for_report(inputs.missions, flying.progress());
+    Doing answering("answers");
     for (std::size_t i = 0; i < inputs.missions.size(); ++i) {
+        answering.progress()(i, inputs.missions.size());
         const std::filesystem::path file = setup_of(inputs.missions[i]).file;
         page.answers.answers.push_back(report::answer_for(
             page.answers.missions[i],

@@ -6,7 +6,7 @@
   const views = new Map(); // element -> Vega view
 
   const config = () => (dark.matches && !printing.matches ? theme.dark : theme.light);
-  const specOf = (element) => JSON.parse(document.getElementById(element.dataset.spec).textContent);
+  const specOf = (element) => unpacked(JSON.parse(document.getElementById(element.dataset.spec).textContent));
 
   async function draw(element) {
     if (element.dataset.drawing) return;
@@ -75,8 +75,14 @@
     },
     { rootMargin: "600px" },
   );
-  const figures = document.querySelectorAll("[data-spec]");
-  for (const element of figures) inView.observe(element); // those in closed <details> have no box: not in view
+  const figures = [];
+  const adopt = (part) => {
+    for (const element of part.querySelectorAll("[data-spec]")) {
+      figures.push(element);
+      inView.observe(element); // those in closed <details> have no box: not in view
+    }
+  };
+  adopt(document);
 
   const shown = (element) => element.clientWidth > 0;
   const redraw = () => [...views.keys()].filter(shown).forEach(draw);
@@ -140,7 +146,6 @@
   }
 
   // A table without room for all its columns leaves the minor ones out and names them; a click shows all.
-  const tables = [...document.querySelectorAll(".scroll > table")];
   const leaveOut = (table, columns) => {
     const box = table.parentElement;
     const names = columns.map((column) => table.tHead.rows[0].cells[column].textContent);
@@ -176,8 +181,33 @@
     }
     if (out.length > 0) leaveOut(table, out.sort((a, b) => a - b));
   }
-  const fitTables = () => tables.forEach(fitColumns);
-  for (const details of document.querySelectorAll("details")) details.addEventListener("toggle", () => details.open && details.querySelectorAll(".scroll > table").forEach(fitColumns));
+  const fitTables = (part = document) => part.querySelectorAll(".scroll > table").forEach(fitColumns);
+
+  // What a flight's part holds may wait in a compressed block.
+  const unfold = async (details) => {
+    const block = details.querySelector(":scope > script.block");
+    if (!block) return true;
+    if (block.dataset.opening) return false;
+    block.dataset.opening = "yes";
+    details.querySelector(":scope > .warning")?.remove();
+    try {
+      block.insertAdjacentHTML("afterend", await inflated(block.textContent));
+      block.remove();
+      adopt(details);
+      return true;
+    } catch (error) {
+      const note = document.createElement("p");
+      note.className = "warning";
+      note.setAttribute("role", "alert");
+      note.textContent = error.message;
+      block.before(note);
+      return false;
+    } finally {
+      delete block.dataset.opening;
+    }
+  };
+  for (const details of document.querySelectorAll("details.flight"))
+    details.addEventListener("toggle", async () => details.open && (await unfold(details)) && fitTables(details));
 
   // A link to a flight opens it.
   const openTarget = () => {
@@ -188,5 +218,5 @@
   openTarget();
   fitTables();
 
-  window.flightwatt = { views, draw, figures };
+  window.flightwatt = { views, draw, figures, specOf };
 })();

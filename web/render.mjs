@@ -2,13 +2,15 @@
 import { readFile, writeFile } from "node:fs/promises";
 import path from "node:path";
 import vm from "node:vm";
-import * as vega from "vega";
-import * as vegaLite from "vega-lite";
 
 const [folder, asked, ...names] = process.argv.slice(2);
 const width = Number(asked);
 const here = path.dirname(new URL(import.meta.url).pathname);
-const fitWidth = vm.runInThisContext(`(${await readFile(path.join(here, "fit_width.js"), "utf8")})`);
+const script = (name) => readFile(path.join(here, name), "utf8");
+const fitWidth = vm.runInThisContext(`(${await script("fit_width.js")})`);
+// The files that the page holds too: what is installed draws both.
+for (const library of ["vega", "vega-lite"]) vm.runInThisContext(await script(`node_modules/${library}/build/${library}.min.js`));
+const { vega, vegaLite } = globalThis;
 
 /** Without the transparent points that carry the page's tooltips: on paper they are weight alone. */
 function still(part) {

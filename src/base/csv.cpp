@@ -18,17 +18,20 @@ constexpr std::size_t most_columns = 1000;
 /// Of a table in memory, where a row costs as much as two cells: some 500 MB. Series are read row by row.
 constexpr std::size_t most_cells = 8'000'000;
 
-/// One line into cells; `text` ends before the line break.
-std::vector<CsvTable::Cell> split_line(std::string_view text, const Location& where) {
-    std::vector<CsvTable::Cell> cells;
+/// One line into cells, in place of those of the last line: most of them keep their memory. `text` ends before the line
+/// break.
+void split_line(std::string_view text, const std::string& file, std::size_t line, std::vector<CsvTable::Cell>& cells) {
     std::size_t p = 0;
-    while (true) {
-        CsvTable::Cell cell{"", p + 1};
+    for (std::size_t count = 1;; ++count) {
+        if (cells.size() < count) cells.emplace_back();
+        auto& cell = cells[count - 1];
+        cell.text.clear();
+        cell.column = p + 1;
         if (p < text.size() && text[p] == '"') {
             while (true) {
                 const auto quote = text.find('"', p + 1);
                 if (quote == std::string_view::npos) {
-                    throw InputError({where.file, where.line, cell.column}, "a quote is opened and not closed");
+                    throw InputError({file, line, cell.column}, "a quote is opened and not closed");
                 }
                 cell.text += text.substr(p + 1, quote - p - 1);
                 p = quote + 1;
@@ -36,19 +39,20 @@ std::vector<CsvTable::Cell> split_line(std::string_view text, const Location& wh
                 cell.text += '"';
             }
             if (p < text.size() && text[p] != ',') {
-                throw InputError({where.file, where.line, p + 1}, "text follows a closing quote",
-                                 "put a comma between the cells");
+                throw InputError({file, line, p + 1}, "text follows a closing quote", "put a comma between the cells");
             }
         } else {
             const auto comma = std::min(text.find(',', p), text.size());
-            cell.text = text.substr(p, comma - p);
+            cell.text.assign(text, p, comma - p);
             p = comma;
         }
-        cells.push_back(std::move(cell));
-        if (cells.size() > most_columns) {
-            throw InputError(where, fmt::format("has more than {} cells", most_columns), "is it a CSV table?");
+        if (count > most_columns) {
+            throw InputError({file, line}, fmt::format("has more than {} cells", most_columns), "is it a CSV table?");
         }
-        if (p >= text.size()) return cells;
+        if (p >= text.size()) {
+            cells.resize(count);
+            return;
+        }
         ++p;
     }
 }
@@ -61,6 +65,7 @@ void for_each_csv_row(std::string_view text, const std::string& file,
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     std::size_t line_number = 0;
     std::size_t width = 0;
+    CsvTable::Row row{0, {}};
     while (!text.empty()) {
         const auto end = std::min(text.find('\n'), text.size());
         auto line = text.substr(0, end);
@@ -68,7 +73,9 @@ void for_each_csv_row(std::string_view text, const std::string& file,
         ++line_number;
         if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
         if (line.empty() || line.front() == '#') continue;
-        CsvTable::Row row{line_number, split_line(line, {file, line_number})};
+        row.line = line_number;
+        row.cells.reserve(width);
+        split_line(line, file, line_number, row.cells);
         if (width == 0) width = row.cells.size();
         if (row.cells.size() != width) {
             throw InputError({file, line_number},

@@ -5,6 +5,7 @@
 #include "base/file_use.h"
 #include "base/fingerprint.h"
 #include "batch/manifest.h"
+#include "batch/workers.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"
 #include "telemetry/log_configuration.h"
@@ -115,8 +116,9 @@ std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out) 
     note_input(out / manifest_name);
     note_input(out / catalogue_name);
     for (const auto* name : model_names) note_input(out / name);
-    std::vector<StoredFlight> flights;
-    for (const auto& listed : stored_flights(out)) flights.push_back(read_flight(out, listed));
+    const auto listed = stored_flights(out);
+    std::vector<StoredFlight> flights(listed.size());
+    for_each_in_parallel(listed.size(), [&](std::size_t i) { flights[i] = read_flight(out, listed[i]); });
     if (flights.empty()) {
         throw InputError({folder.string()}, "there is no record of a flight in it",
                          fmt::format("make them with: flightwatt batch LOGS -o {}", out.string()));

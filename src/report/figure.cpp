@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <boost/algorithm/string/replace.hpp>
@@ -21,7 +22,26 @@ VegaJson channel_of(std::string_view field, std::string_view type, std::string_v
     return channel;
 }
 
+/// The nearest number of so many decimals; never -0.
+double rounded(double number, int decimals) {
+    const double scale = std::pow(10.0, decimals);
+    return std::round(number * scale) / scale + 0.0;
+}
+
 }  // namespace
+
+int decimals_for(std::span<const double> values, double steps, int least) {
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = -lowest;
+    for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        lowest = std::min(lowest, value);
+        highest = std::max(highest, value);
+    }
+    constexpr int most = 9;  // what rounds itself has no digits behind
+    if (!(highest > lowest)) return std::max(least, 3);
+    return std::clamp(static_cast<int>(std::ceil(-std::log10((highest - lowest) / steps))), least, most);
+}
 
 Figure new_figure(std::string id, std::string caption, std::string description) {
     VegaJson spec{{"$schema", "https://vega.github.io/schema/vega-lite/v5.json"},
@@ -38,9 +58,16 @@ FigureData::FigureData(std::initializer_list<std::string> numbers, std::initiali
 
 void FigureData::add(std::initializer_list<double> numbers, std::initializer_list<std::string_view> texts) {
     std::string row;
+    std::size_t column = 0;
     for (const double number : numbers) {
-        if (std::isfinite(number)) fmt::format_to(std::back_inserter(row), "{:.6g}", number);
+        if (std::isfinite(number)) {
+            if (decimals_.empty())
+                fmt::format_to(std::back_inserter(row), "{:.6g}", number);
+            else
+                fmt::format_to(std::back_inserter(row), "{}", rounded(number, decimals_.at(column)));
+        }
         row += ',';
+        ++column;
     }
     for (const auto text : texts) row += csv_cell(valid_utf8(text)) + ",";
     row.pop_back();
@@ -160,6 +187,8 @@ VegaJson phase_names(const VegaJson& data, std::string_view time_title) {
 }
 
 std::string valid_utf8(std::string_view text) {
+    if (std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; }))
+        return std::string(text);
     return VegaJson::parse(dumped(VegaJson(std::string(text)))).get<std::string>();
 }
 

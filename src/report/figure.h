@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,8 @@ Figure new_figure(std::string id, std::string caption, std::string description);
 class FigureData {
   public:
     FigureData(std::initializer_list<std::string> numbers, std::initializer_list<std::string> texts = {});
+    /// Columns of numbers with so many decimals, instead of six digits: many flights are many digits. Before any row.
+    void round_to(std::vector<int> decimals) { decimals_ = std::move(decimals); }
     void add(std::initializer_list<double> numbers, std::initializer_list<std::string_view> texts = {});
     bool empty() const { return rows_ == 0; }
     /// For a specification's "data".
@@ -44,10 +47,14 @@ class FigureData {
 
   private:
     std::vector<std::string> numbers_;
+    std::vector<int> decimals_;  ///< of the columns of numbers; empty: six digits each
     std::string csv_;
     std::size_t rows_ = 0;
     VegaJson format() const;
 };
+
+/// The decimals that tell the extent of `values` apart in so many steps, at least `least`.
+int decimals_for(std::span<const double> values, double steps, int least);
 
 /// The rows of a line that a screen of so many pixel columns can tell from all rows: of each column the
 /// first, the last, the least and the greatest value (M4: Jugel et al., VLDB 2014). Indices, rising. All of

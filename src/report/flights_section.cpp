@@ -2,13 +2,18 @@
 
 #include "base/duration_text.h"
 #include "base/units.h"
+#include "batch/workers.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
+#include "report/blocks/compressed_block.h"
+#include "report/blocks/packed_tables.h"
 #include "report/figures/flight_figures.h"
 #include "report/flight_facts.h"
 
 #include <algorithm>
+#include <atomic>
+#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -146,20 +151,69 @@ std::string summary_of(const ReportFlight& flight) {
     return text;
 }
 
-/// Its part is left open.
-void add_flight(Section& section, const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
-                const std::string& id, bool is_open) {
-    section.html += fmt::format("<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{}</span></summary>\n", id,
-                                is_open ? " open" : "", escaped(flight.name), escaped(summary_of(flight)));
-    section.html += paragraph("From " + flight.log, "soft");
-    if (!flight.warnings.empty()) section.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
+/// So many flights stand in the page as they are: text to search, and tables without JavaScript. More are opened one by
+/// one, and are compressed until then.
+constexpr std::size_t most_plain_flights = 20;
+
+struct PartOptions {
+    std::string id;
+    bool is_open = false;
+    bool compressed = false;
+};
+
+/// A figure whose tables are packed where all is compressed.
+void add_to_part(Section& part, Figure figure, const PartOptions& options) {
+    part.html += options.compressed ? figure_html(figure, packed_tables(figure.spec)) : figure_html(figure);
+    part.figures.push_back(std::move(figure));
+}
+
+/// What is seen of an open flight, below its summary.
+Section inside_of(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
+                  const PredictedFlight* predicted, const PartOptions& options) {
+    Section part;
+    part.html += paragraph("From " + flight.log, "soft");
+    if (!flight.warnings.empty()) part.html += "<div class=\"warning\">" + list_html(flight.warnings) + "</div>\n";
     if (power_track(flight.series).empty()) {
-        section.html += edges_html(flight);
-        return;
+        part.html += edges_html(flight);
+    } else {
+        add_to_part(part, flight_figure(flight, model, options.id + "-power"), options);
+        part.html += edges_html(flight);
+        if (auto track = track_figure(flight, options.id + "-track")) add_to_part(part, std::move(*track), options);
     }
-    add_figure(section, flight_figure(flight, model, id + "-power"));
-    section.html += edges_html(flight);
-    if (auto track = track_figure(flight, id + "-track")) add_figure(section, std::move(*track));
+    if (predicted != nullptr)
+        add_to_part(part, in_flight_figure(flight.name, *predicted, options.id + "-predicted"), options);
+    return part;
+}
+
+Section flight_part(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
+                    const PredictedFlight* predicted, const PartOptions& options) {
+    auto part = inside_of(flight, model, predicted, options);
+    if (options.compressed)
+        part.html = "<script type=\"text/plain\" class=\"block\">" + compressed_block(part.html) + "</script>\n";
+    part.html = fmt::format(
+        "<details class=\"flight\" id=\"{}\"{}><summary>{} <span>{}</span></summary>\n{}</details>\n", options.id,
+        options.is_open ? " open" : "", escaped(flight.name), escaped(summary_of(flight)), part.html);
+    return part;
+}
+
+/// The parts of the flights that were not rejected; the first one is open.
+std::vector<Section> flight_parts(std::span<const ReportFlight> flights,
+                                  const std::optional<mechanical::MechanicalModel>& model,
+                                  const std::map<std::string, PredictedFlight>& predicted,
+                                  const std::vector<std::string>& ids, const Progress& progress) {
+    std::vector<Section> parts(flights.size());
+    const auto is_shown = [](const ReportFlight& flight) { return flight.rejected.empty(); };
+    const auto first = static_cast<std::size_t>(std::ranges::find_if(flights, is_shown) - flights.begin());
+    const bool are_many = flights.size() > most_plain_flights;
+    std::atomic<std::size_t> done = 0;
+    batch::for_each_in_parallel(flights.size(), [&](std::size_t f) {
+        if (progress) progress(done++, flights.size());
+        if (!is_shown(flights[f])) return;
+        const auto found = predicted.find(flights[f].name);
+        parts[f] = flight_part(flights[f], model, found == predicted.end() ? nullptr : &found->second,
+                               {ids[f], f == first, are_many && f != first});
+    });
+    return parts;
 }
 
 }  // namespace
@@ -177,7 +231,7 @@ TextTable flights_table(std::span<const ReportFlight> flights) {
 }
 
 Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model,
-                        const std::map<std::string, PredictedFlight>& predicted) {
+                        const std::map<std::string, PredictedFlight>& predicted, const Progress& progress) {
     Section section{"flights", "Flights"};
     const auto rejected =
         std::ranges::count_if(flights, [](const ReportFlight& flight) { return !flight.rejected.empty(); });
@@ -192,13 +246,13 @@ Section flights_section(std::span<const ReportFlight> flights, const std::option
     section.html += flights_table_html(flights, ids);
     section.html += excluded_html(flights);
     section.html += "<h3>Each flight</h3>\n";
-    for (std::size_t f = 0; f < flights.size(); ++f) {
-        if (!flights[f].rejected.empty()) continue;
-        add_flight(section, flights[f], model, ids[f], section.figures.empty());
-        const auto found = predicted.find(flights[f].name);
-        if (found != predicted.end())
-            add_figure(section, in_flight_figure(flights[f].name, found->second, ids[f] + "-predicted"));
-        section.html += "</details>\n";
+    if (flights.size() > most_plain_flights)
+        section.html +=
+            "<noscript><p class=\"warning\">The flights below are compressed: they open with JavaScript "
+            "only.</p></noscript>\n";
+    for (auto& part : flight_parts(flights, model, predicted, ids, progress)) {
+        section.html += part.html;
+        std::ranges::move(part.figures, std::back_inserter(section.figures));
     }
     return section;
 }

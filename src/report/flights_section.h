@@ -20,6 +20,6 @@ TextTable flights_table(std::span<const ReportFlight> flights);
 /// that are excluded with their reasons, and a part a flight that is drawn when it is opened, with what would have
 /// been predicted in flight where that is known.
 Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model,
-                        const std::map<std::string, PredictedFlight>& predicted = {});
+                        const std::map<std::string, PredictedFlight>& predicted = {}, const Progress& progress = {});
 
 }  // namespace flightwatt::report

@@ -85,7 +85,9 @@ std::string table_html(const TextTable& table, const HtmlTableOptions& options) 
     return html + "</tbody></table></div>\n";
 }
 
-std::string figure_html(const Figure& figure) {
+std::string figure_html(const Figure& figure) { return figure_html(figure, figure.spec); }
+
+std::string figure_html(const Figure& figure, const VegaJson& spec) {
     const auto keys = figure.time_signal.empty()
                           ? std::string()
                           : fmt::format(" data-zoom=\"{}\" data-scale=\"{}\"", figure.time_signal, figure.time_scale);
@@ -95,7 +97,7 @@ std::string figure_html(const Figure& figure) {
         "data-name=\"{1}\"{2}></div>\n"
         "<script type=\"application/json\" id=\"spec-{1}\">{3}</script>\n"
         "<figcaption>{4}</figcaption>\n</figure>\n",
-        escaped(figure.description), figure.id, keys, script_json(figure.spec), escaped(figure.caption));
+        escaped(figure.description), figure.id, keys, script_json(spec), escaped(figure.caption));
 }
 
 void add_figure(Section& section, Figure figure) {

@@ -3,6 +3,8 @@
 #include "base/text_table.h"
 #include "report/figure.h"
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,8 +25,12 @@ struct HtmlTableOptions {
 /// A table; columns that are not all numbers (or '-') stand to the left.
 std::string table_html(const TextTable& table, const HtmlTableOptions& options);
 
-/// A figure with its caption and its specification, which the page's script draws.
+/// A figure with its caption and its specification, or another form of it, which the page's script draws.
 std::string figure_html(const Figure& figure);
+std::string figure_html(const Figure& figure, const VegaJson& spec);
+
+/// Called as long work goes on, from any thread: how much of it is done, of how much.
+using Progress = std::function<void(std::size_t done, std::size_t all)>;
 
 /// A part of the page. Its figures stand in its HTML already; they are kept to be rendered as files.
 struct Section {

@@ -90,7 +90,7 @@ WebFiles read_web_files(const std::filesystem::path& folder) {
                          "run scripts/install_dependencies with the npm registry at hand");
     }
     auto files = read_drawing_files(folder);
-    files.script = read_file(folder / "fit_width.js") + read_file(folder / "page.js");
+    for (const auto* script : {"fit_width.js", "blocks.js", "page.js"}) files.script += read_file(folder / script);
     return files;
 }
 

@@ -44,11 +44,13 @@ SimulatedMission fly_for_report(const mission::AnyMission& mission, const missio
 
 }  // namespace
 
-std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::AnyMission>& missions) {
+std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::AnyMission>& missions,
+                                                  const Progress& progress) {
     constexpr double rows = 300.0;
     std::vector<SimulatedMission> simulated;
     std::map<std::string, int> seen;
     for (const auto& mission : missions) {
+        if (progress) progress(simulated.size(), missions.size());
         const auto& setup = setup_of(mission);
         mission::SimulationSteps steps;
         steps.output_s = mission::timeline_of(setup.duration_s).duration_s / rows;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mission/simulation.h"
+#include "report/html.h"
 
 #include <optional>
 #include <string>
@@ -25,7 +26,8 @@ struct SimulatedMission {
 
 /// Runs the missions, planned first where they are yet to be, with as many rows a curve as a screen shows. The curve of
 /// a mission whose power the battery cannot deliver ends there. The report flies missions nowhere else.
-std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::AnyMission>& missions);
+std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::AnyMission>& missions,
+                                                  const Progress& progress = {});
 
 /// What a configuration runs: "detection fps 10, encryption key_bits 240", or "nothing".
 std::string describe(const compute::ComputeModel& compute, const compute::Configuration& run);

@@ -145,6 +145,7 @@ class TablesOfPrograms : public testing::Test {
                 "flightwatt battery " + logs + " -o b.toml",
                 "flightwatt validate " + logs,
                 "flightwatt replay " + logs + " --order 1 --mission missions/paper/phased.toml",
+                "flightwatt profile --check-interpolation fits/compute/tx2-detection.csv",
                 "flightwatt batch " + logs + " -o out"};
     }
 };

@@ -67,7 +67,7 @@ TEST(WebFolder, IsThatOfTheProject) {
 
 TEST(ReadWebFiles, JoinsLibrariesAndScripts) {
     const auto folder = test::scratch_dir();
-    for (const auto* file : {"page.css", "theme.json", "fit_width.js", "page.js"}) {
+    for (const auto* file : {"page.css", "theme.json", "fit_width.js", "blocks.js", "page.js"}) {
         write_file_atomically(folder / file, std::string(file) + "\n");
     }
     EXPECT_THAT(
@@ -82,7 +82,7 @@ TEST(ReadWebFiles, JoinsLibrariesAndScripts) {
     EXPECT_EQ(files.style, "page.css\n");
     EXPECT_EQ(files.theme, "theme.json\n");
     EXPECT_EQ(files.libraries, "vega\nvega-lite\nvega-embed\n");
-    EXPECT_EQ(files.script, "fit_width.js\npage.js\n");
+    EXPECT_EQ(files.script, "fit_width.js\nblocks.js\npage.js\n");
 }
 
 }  // namespace

@@ -44,6 +44,11 @@ quiet "$bin/flightwatt-report" "$pages/hostile_out" "$pages"/hostile/*.toml --ti
 quiet "$bin/flightwatt-synthesize" "$source/fits/mechanical/opterra-table1.toml" --flights 300 --seed 3 -o "$pages/three_hundred"
 quiet "$bin/flightwatt-batch" "$pages/three_hundred" -o "$pages/three_hundred_out"
 quiet "$bin/flightwatt-report" "$pages/three_hundred_out" "$source"/missions/paper/*.toml -o "$pages/three_hundred.html"
-rm -rf "$pages/three_hundred" "$pages/three_hundred_out"
+
+# As many flights as are compressed, and their figures as files: without node, specifications alone.
+quiet "$bin/flightwatt-batch" "$pages"/three_hundred/*_[12]?.data "$pages"/three_hundred/*_30.data -o "$pages/many_out"
+mkdir "$pages/empty"
+PATH=$pages/empty quiet "$bin/flightwatt-report" "$pages/many_out" -o "$pages/many.html" --figures "$pages/many_figures"
+rm -rf "$pages/three_hundred" "$pages/three_hundred_out" "$pages/many_out"
 
 PAGES=$pages FLIGHTWATT_WEB=$web CHROMIUM=$chromium node --test --test-reporter=spec "$source/tests/report/page_test.mjs"

@@ -15,6 +15,13 @@ TEST(SimulateForReport, TellsMissionsOfOneNameApart) {
     EXPECT_EQ(missions[1].title, "phased (2)");
 }
 
+TEST(SimulateForReport, TellsHowFarItIs) {
+    std::vector<std::pair<std::size_t, std::size_t>> told;
+    simulate_for_report({test::paper_mission("phased"), test::paper_mission("phased")},
+                        [&](std::size_t done, std::size_t all) { told.emplace_back(done, all); });
+    EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 2}}));
+}
+
 TEST(SimulateForReport, EndsTheCurveWhereTheBatteryCannotDeliver) {
     auto weak = test::paper_mission("phased");
     weak.battery.resistance_ohm = 1.0;

@@ -8,7 +8,7 @@ namespace flightwatt::cli {
 namespace {
 
 std::string component_table(const compute::ComponentEstimate& component, const compute::ProfileOutcome& outcome,
-                            bool above_idle) {
+                            bool above_idle, const Screen& screen) {
     TextTable table;
     table.header = component.parameters;
     table.header.insert(table.header.end(),
@@ -26,7 +26,10 @@ std::string component_table(const compute::ComponentEstimate& component, const c
         row.push_back(node.is_measured ? "measured" : "interpolated");
         table.rows.push_back(std::move(row));
     }
-    return component.nodes.empty() ? "nothing could be measured\n" : to_text(table);
+    if (component.nodes.empty()) return "nothing could be measured\n";
+    ScreenTable shown{"", component.parameters};
+    shown.first.insert(shown.first.end(), {"power_w", "standard_error_w", "source"});
+    return screen_text(table, screen, shown);
 }
 
 nlohmann::ordered_json to_json(const compute::PowerEstimate& estimate) {
@@ -72,7 +75,7 @@ nlohmann::ordered_json to_json(const compute::LeaveOneOut& error) {
             {"largest_error_w", error.largest_w}};
 }
 
-std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle) {
+std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle, const Screen& screen) {
     std::string text;
     if (outcome.idle) {
         text += fmt::format("idle: {:.4f} W, standard error {} W, {} samples in {:.2f} s\n", outcome.idle->power_w,
@@ -83,7 +86,7 @@ std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle
                         outcome.jitter.mean_s, outcome.jitter.sd_s, outcome.jitter.max_s);
     for (const auto& component : outcome.components) {
         text += fmt::format("\n{}{}\n", component.name, above_idle ? ", above idle" : "");
-        text += component_table(component, outcome, above_idle);
+        text += component_table(component, outcome, above_idle, screen);
         if (component.interpolation) {
             const auto& error = *component.interpolation;
             text += fmt::format(
@@ -114,7 +117,7 @@ nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool abov
 }
 
 std::string interpolation_text(const std::string& file, std::size_t nodes,
-                               const std::vector<compute::LeaveOneOut>& errors) {
+                               const std::vector<compute::LeaveOneOut>& errors, const Screen& screen) {
     TextTable table;
     table.header = {"each node from the others", "nodes", "mean |error| W", "mean |error| %", "RMS W", "largest W"};
     for (const auto& error : errors) {
@@ -122,7 +125,7 @@ std::string interpolation_text(const std::string& file, std::size_t nodes,
                               fixed(error.mean_absolute_w, 4), compute::number_or(error.mean_absolute_percent, 2, "-"),
                               fixed(error.rms_w, 4), fixed(error.largest_w, 4)});
     }
-    return file + "\n" + to_text(table);
+    return file + "\n" + screen_text(table, screen);
 }
 
 }  // namespace flightwatt::cli

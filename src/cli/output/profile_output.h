@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/screen_table.h"
 #include "compute/profile_interpolation.h"
 #include "compute/profile_tables.h"
 
@@ -12,8 +13,9 @@
 /// What flightwatt profile prints.
 namespace flightwatt::cli {
 
-/// What was measured, as tables. `above_idle`: power over the idle power instead of total power.
-std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle);
+/// What was measured, as tables in the width of the screen. `above_idle`: power over the idle power instead of total
+/// power.
+std::string profile_text(const compute::ProfileOutcome& outcome, bool above_idle, const Screen& screen = {});
 
 /// The same as JSON.
 nlohmann::ordered_json to_json(const compute::ProfileOutcome& outcome, bool above_idle);
@@ -22,6 +24,6 @@ nlohmann::ordered_json to_json(const compute::LeaveOneOut& error);
 
 /// The errors of interpolating a profile as a table under its name.
 std::string interpolation_text(const std::string& file, std::size_t nodes,
-                               const std::vector<compute::LeaveOneOut>& errors);
+                               const std::vector<compute::LeaveOneOut>& errors, const Screen& screen = {});
 
 }  // namespace flightwatt::cli

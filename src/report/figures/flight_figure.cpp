@@ -52,6 +52,9 @@ std::string verdict_at(const ReportFlight& flight, double time_s) {
 }
 
 constexpr std::size_t power_columns = 250;
+/// More than a panel's height in pixels, and than its width when it is zoomed fifty times.
+constexpr double value_steps = 500.0;
+constexpr double time_steps = 32000.0;
 constexpr int flight_width = 640;
 constexpr auto log_time_title = "time in the log [s]";
 
@@ -79,6 +82,7 @@ FigureData edge_rows(const ReportFlight& flight) {
 FigureData power_rows(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model) {
     FigureData data({"time_s", "power_w"}, {"curve"});
     const auto power = power_track(flight.series);
+    data.round_to({decimals_for(power.time_s, time_steps, 1), decimals_for(power.value, value_steps, 1)});
     for (const auto i : visible_rows(power.time_s, power.value, power_columns)) {
         data.add({power.time_s[i], power.value[i]}, {"measured"});
     }
@@ -102,6 +106,7 @@ FigureData power_rows(const ReportFlight& flight, const std::optional<mechanical
 FigureData channel_rows(const std::vector<double>& time_s, const std::vector<double>& values,
                         const std::string& column) {
     FigureData data({"time_s", column});
+    data.round_to({decimals_for(time_s, time_steps, 1), decimals_for(values, value_steps, 1)});
     for (const auto i : visible_rows(time_s, values, power_columns)) data.add({time_s[i], values[i]});
     return data;
 }

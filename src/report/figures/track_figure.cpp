@@ -93,6 +93,10 @@ std::vector<Line> pieces(const GroundTrack& track, double start_s, double end_s)
 /// What of the tracks a screen can show: no point is further than the tolerance from what is kept.
 FigureData track_rows(const ReportFlight& flight, const GroundTrack& track, double tolerance_m) {
     FigureData data({"east_m", "north_m", "height_m", "order", "piece"}, {"phase", "word"});
+    constexpr double steps = 4.0;     // of the tolerance
+    constexpr double colors = 256.0;  // that a screen has of a scale
+    const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(tolerance_m / steps))));
+    data.round_to({decimals, decimals, decimals_for(track.height_m, colors, 0), 0, 0});
     double piece = 0.0;
     for (const auto& sortie : flight.phases.sorties) {
         for (const auto& span : sortie.phases) {

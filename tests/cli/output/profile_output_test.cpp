@@ -15,6 +15,7 @@ namespace flightwatt::cli {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// A measured and an interpolated node of one component, 2 W idle.
 compute::ProfileOutcome outcome() {
@@ -39,6 +40,18 @@ TEST(ProfileText, ShowsTotalPowerOrThatAboveIdle) {
     const auto above = profile_text(outcome(), true);
     EXPECT_THAT(above, HasSubstr("\ndetection, above idle\n"));
     EXPECT_THAT(above, HasSubstr("3.0000"));
+}
+
+TEST(ProfileText, FitsTheScreen) {
+    Screen narrow;
+    narrow.is_terminal = true;
+    narrow.columns = 44;
+    const auto text = profile_text(outcome(), false, narrow);
+    EXPECT_THAT(text, HasSubstr("left out: "));
+    EXPECT_THAT(text, HasSubstr("fps"));
+    EXPECT_THAT(text, HasSubstr("interpolated"));
+    narrow.wide = true;
+    EXPECT_THAT(profile_text(outcome(), false, narrow), Not(HasSubstr("left out: ")));
 }
 
 TEST(ProfileText, SaysThatNothingCouldBeMeasured) {

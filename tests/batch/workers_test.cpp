@@ -1,0 +1,34 @@
+#include "batch/workers.h"
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::batch {
+namespace {
+
+TEST(ForEachInParallel, CallsEveryNumberOnce) {
+    std::vector<std::atomic<int>> calls(1000);
+    for_each_in_parallel(calls.size(), [&](std::size_t i) { ++calls[i]; });
+    for (const auto& count : calls) EXPECT_EQ(count, 1);
+    for_each_in_parallel(0, [](std::size_t) { FAIL() << "there is nothing to do"; });
+}
+
+TEST(ForEachInParallel, ThrowsWhatTheLowestNumberThrew) {
+    for (int trial = 0; trial < 200; ++trial) {
+        try {
+            for_each_in_parallel(50, [](std::size_t i) {
+                if (i == 7 || i % 10 == 8) throw std::runtime_error(std::to_string(i));
+            });
+            FAIL() << "nothing was thrown";
+        } catch (const std::runtime_error& error) {
+            EXPECT_STREQ(error.what(), "7");
+        }
+    }
+}
+
+}  // namespace
+}  // namespace flightwatt::batch
