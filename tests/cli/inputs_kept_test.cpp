@@ -122,6 +122,7 @@ std::vector<Command> commands() {
          "--output"},
         {"init", "home", {}, "--output"},  // it reads nothing
         {"compare", simulate, disturbed, "--output"},
+        {"diff", model + " " + model, {model}, "--output"},
         {"replay", "a.data s.series.csv --model " + model + " --mission " + mission, flight_files + mission_files,
          "--output"},
         {"synthesize",

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "mechanical/mechanical_model.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt::mechanical {
+
+/// An estimate and, where its file tells, its 95 % interval.
+struct Estimate {
+    double value = 0.0;
+    std::optional<Interval> interval;
+};
+
+/// The 95 % interval of b - a from theirs, which need not be symmetric; `correlation` of the two, -1 to 1 (Eq. 46,
+/// Zou 2007). std::nullopt where one has none.
+std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate& b, double correlation);
+
+/// What a difference's interval is about.
+enum class DifferenceBasis {
+    noise,    ///< of the samples: would these very flights, measured again, give the same coefficient
+    flights,  ///< how flights differ: would other flights of the same aircraft give the same mean
+    none      ///< no interval: the files do not tell
+};
+std::string to_string(DifferenceBasis basis);
+
+/// One quantity in two models.
+struct Difference {
+    std::string part;              ///< the phase as files call it, or "physical"
+    std::string quantity;          ///< with its unit as suffix: "a0_w"; of the physical model the term
+    std::string unit;              ///< "W"
+    std::optional<Estimate> a, b;  ///< absent where the model lacks it
+    DifferenceBasis basis = DifferenceBasis::none;
+    std::optional<Interval> interval = {};  ///< of b - a
+    std::optional<double> at_s = {};        ///< of a curve: where in a's phase
+};
+
+/// b - a; std::nullopt where one lacks it.
+std::optional<double> difference_of(const Difference& difference);
+
+/// Whether its interval excludes 0; std::nullopt without one.
+std::optional<bool> is_significant(const Difference& difference);
+
+/// The flights, by name, that both models rest on.
+std::vector<std::string> shared_flights(const MechanicalModel& a, const MechanicalModel& b);
+
+/// Phase by phase coefficients, duration, mean power, energy and where the curves are furthest apart; then the terms of
+/// the physical models. Flights that both rest on correlate the estimates, and narrow the interval of the difference
+/// (docs/methods.md, Two models).
+std::vector<Difference> model_difference(const MechanicalModel& a, const MechanicalModel& b);
+
+}  // namespace flightwatt::mechanical

@@ -1,0 +1,71 @@
+#include "mechanical/model_difference.h"
+
+#include "helpers/made_up_flights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+Estimate estimate(double value, double below, double above) { return {value, Interval{value - below, value + above}}; }
+
+TEST(ModelDifference, AddsIndependentIntervalsInSquares) {
+    const auto interval = interval_of_difference(estimate(10.0, 1.0, 3.0), estimate(20.0, 4.0, 2.0), 0.0);
+    ASSERT_TRUE(interval);
+    EXPECT_DOUBLE_EQ(interval->low, 10.0 - 5.0);
+    EXPECT_DOUBLE_EQ(interval->high, 10.0 + std::sqrt(1.0 + 4.0));
+}
+
+TEST(ModelDifference, IsNarrowerWhereEstimatesAreCorrelated) {
+    const auto a = estimate(10.0, 3.0, 3.0);
+    const auto b = estimate(12.0, 3.0, 3.0);
+    EXPECT_LT(interval_of_difference(a, b, 0.0)->low, 0.0);
+    EXPECT_GT(interval_of_difference(a, b, 0.9)->low, 0.0);
+    EXPECT_DOUBLE_EQ(interval_of_difference(a, b, 1.0)->low, 2.0);
+}
+
+TEST(ModelDifference, NeedsBothIntervals) {
+    EXPECT_FALSE(interval_of_difference({1.0, {}}, estimate(2.0, 1.0, 1.0), 0.0));
+}
+
+TEST(ModelDifference, FindsNothingBetweenAModelAndItself) {
+    const auto model = test::published_model();
+    const auto rows = model_difference(model, model);
+    ASSERT_FALSE(rows.empty());
+    for (const auto& row : rows) {
+        EXPECT_EQ(difference_of(row), 0.0) << row.part << ' ' << row.quantity;
+        EXPECT_FALSE(is_significant(row).value_or(false)) << row.part << ' ' << row.quantity;
+    }
+}
+
+TEST(ModelDifference, NamesTheLevelThatWasRaised) {
+    const auto a = test::published_model();
+    auto b = a;
+    b.phases[flight::Phase::cruise].fourier.a0_w += 2.0;
+    for (const auto& row : model_difference(a, b)) {
+        const bool of_level = row.quantity == "a0_w" || row.quantity == "mean_power_w" || row.quantity == "curve_w";
+        if (row.part == "cruise" && of_level) EXPECT_NEAR(*difference_of(row), 2.0, 1e-9) << row.quantity;
+        if (row.part != "cruise") EXPECT_EQ(difference_of(row), 0.0) << row.part << ' ' << row.quantity;
+    }
+}
+
+TEST(ModelDifference, JudgesNoCoefficientThatOneModelLacks) {
+    const auto a = test::published_model();
+    auto b = a;
+    auto& fourier = b.phases[flight::Phase::landing].fourier;
+    fourier.cos_w.pop_back();
+    fourier.sin_w.pop_back();
+    const auto rows = model_difference(a, b);
+    const auto row = std::ranges::find_if(
+        rows, [](const Difference& one) { return one.part == "landing" && one.quantity == "a3_w"; });
+    ASSERT_NE(row, rows.end());
+    EXPECT_FALSE(row->b);
+    EXPECT_FALSE(difference_of(*row));
+    EXPECT_FALSE(is_significant(*row));
+}
+
+}  // namespace
+}  // namespace flightwatt::mechanical
