@@ -189,23 +189,32 @@ nlohmann::ordered_json difference_json(const std::vector<Difference>& rows, Kind
     return json;
 }
 
-void say_what_differs(const cli::StageCall& call, const std::vector<Difference>& rows, Kind kind) {
-    std::vector<std::string> differing;
+/// Coefficients that differ by noise alone say little of the aircraft: they are told apart from means over flights.
+void say_what_differs(const cli::StageCall& call, const std::vector<Difference>& rows) {
+    std::vector<std::string> beyond_noise;
+    std::vector<std::string> beyond_flights;
     std::size_t judged = 0;
     for (const auto& row : rows) {
-        const auto differs = verdict(row, kind);
-        if (differs != "-") ++judged;
-        if (differs == "yes") differing.push_back(row.part + " " + row.quantity);
+        const auto significant = is_significant(row);
+        if (significant) ++judged;
+        if (!significant.value_or(false)) continue;
+        auto& differing = row.basis == mechanical::DifferenceBasis::noise ? beyond_noise : beyond_flights;
+        differing.push_back(row.part + " " + row.quantity);
     }
-    if (kind == Kind::mission) return;
     if (judged == 0) {
         cli::note(call, "nothing can be judged: these models hold no intervals; `flightwatt fit --errors` writes them");
-    } else if (differing.empty()) {
+    } else if (beyond_noise.empty() && beyond_flights.empty()) {
         cli::note(call, fmt::format("none of {} quantities differs by more than its 95 % interval", judged));
-    } else {
-        cli::note(call, fmt::format("{} of {} quantities differ by more than their 95 % intervals (one in 20 does by "
-                                    "chance): {}",
-                                    differing.size(), judged, fmt::join(differing, ", ")));
+    }
+    if (!beyond_flights.empty()) {
+        cli::note(call,
+                  fmt::format("differ by more than flights of one aircraft do (of {} judged, one in 20 by chance): {}",
+                              judged, fmt::join(beyond_flights, ", ")));
+    }
+    if (!beyond_noise.empty()) {
+        cli::note(call, fmt::format("differ by more than the noise of their samples, as other flights of the same "
+                                    "aircraft may: {}",
+                                    fmt::join(beyond_noise, ", ")));
     }
 }
 
@@ -247,7 +256,7 @@ int show_difference(const cli::StageCall& call) {
         cli::write_result(call, to_csv(difference_table(rows, kind, [](double v) { return fmt::format("{}", v); })));
     }
     if (call.json) cli::print(cli::json_text(difference_json(rows, kind, shared)));
-    say_what_differs(call, rows, kind);
+    if (kind != Kind::mission) say_what_differs(call, rows);
     return cli::ok;
 }
 
