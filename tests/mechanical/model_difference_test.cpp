@@ -47,8 +47,12 @@ TEST(ModelDifference, NamesTheLevelThatWasRaised) {
     b.phases[flight::Phase::cruise].fourier.a0_w += 2.0;
     for (const auto& row : model_difference(a, b)) {
         const bool of_level = row.quantity == "a0_w" || row.quantity == "mean_power_w" || row.quantity == "curve_w";
-        if (row.part == "cruise" && of_level) EXPECT_NEAR(*difference_of(row), 2.0, 1e-9) << row.quantity;
-        if (row.part != "cruise") EXPECT_EQ(difference_of(row), 0.0) << row.part << ' ' << row.quantity;
+        if (row.part == "cruise" && of_level) {
+            EXPECT_NEAR(*difference_of(row), 2.0, 1e-9) << row.quantity;
+        }
+        if (row.part != "cruise") {
+            EXPECT_EQ(difference_of(row), 0.0) << row.part << ' ' << row.quantity;
+        }
     }
 }
 
