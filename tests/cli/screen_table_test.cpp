@@ -144,6 +144,7 @@ class TablesOfPrograms : public testing::Test {
                 "flightwatt fit " + logs + " --published fits/mechanical/opterra-table1.toml -o m.toml",
                 "flightwatt battery " + logs + " -o b.toml",
                 "flightwatt validate " + logs,
+                "flightwatt diff missions/paper/phased.toml missions/paper/adaptive.toml",
                 "flightwatt replay " + logs + " --order 1 --mission missions/paper/phased.toml",
                 "flightwatt profile --check-interpolation fits/compute/tx2-detection.csv",
                 "flightwatt batch " + logs + " -o out"};

@@ -1,7 +1,9 @@
 // Which of the flights that are given are used: by name, by date, and those of folders of flightwatt batch.
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "batch/batch_files.h"
+#include "batch/batch_fit.h"
 #include "batch/manifest.h"
 #include "cli/output/flight_options.h"
 #include "flight/log_name.h"
@@ -10,7 +12,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <iterator>
+#include <map>
 #include <optional>
 #include <regex>
 
@@ -90,15 +92,29 @@ std::string why_left_out(const FlightChoice& choice, const std::string& flight) 
     return "";
 }
 
-/// The series of the flights that a batch accepted and may fit.
+/// Why a flight of a batch is not of its fit, by what that batch was told; empty if it was told nothing of it.
+std::string why_batch_left_out(const std::optional<batch::BatchFit>& fit, const std::string& flight) {
+    if (!fit) return "";
+    if (fit->excluded.contains(flight)) return "its batch was told to --exclude it";
+    const auto copy = fit->copies.find(flight);
+    return copy == fit->copies.end() ? "" : "its batch found that it is " + copy->second + " under another name";
+}
+
+/// The series of the flights that a batch accepted and may fit; --keep overrides what the batch was told.
 std::vector<std::string> series_of_batch(const StageCall& call, const std::filesystem::path& out,
                                          const flight::LoadOptions& options) {
     std::vector<std::string> files;
+    const auto fit = batch::read_batch_fit(out);
+    auto own = options;
+    if (fit) own.keep.insert(fit->keep.begin(), fit->keep.end());
     for (const auto& stored : batch::read_stored_flights(out)) {
         const auto& record = stored.record;
+        const auto left_out = options.keep.contains(record.flight) ? "" : why_batch_left_out(fit, record.flight);
         if (!stored.damage.empty()) {
             warn(call, stored.damage);
-        } else if (const auto why = record.accepted ? batch::exclusion_of(record, options) : record.error;
+        } else if (const auto why = !record.accepted   ? record.error
+                                    : left_out.empty() ? batch::exclusion_of(record, own)
+                                                       : left_out;
                    !why.empty() && !options.excluded.contains(record.flight)) {
             note(call, fmt::format("{} is left out: {}", record.flight, why));
         } else {
@@ -106,6 +122,18 @@ std::vector<std::string> series_of_batch(const StageCall& call, const std::files
         }
     }
     return files;
+}
+
+/// Adds those of a batch; a flight that another batch holds too, with the same series, is taken once.
+void add_flights_of_batch(const StageCall& call, const std::vector<std::string>& of_batch,
+                          std::map<std::string, std::string>& by_name, std::vector<std::string>& files) {
+    for (const auto& file : of_batch) {
+        const auto [other, is_new] = by_name.emplace(flight_of_file(file), file);
+        if (is_new || read_file(other->second) != read_file(file))
+            files.push_back(file);
+        else
+            note(call, fmt::format("{} is the same as {}: it is taken once", file, other->second));
+    }
 }
 
 }  // namespace
@@ -148,13 +176,14 @@ std::vector<bool> chosen_flights(const StageCall& call, const std::vector<std::s
 
 StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options) {
     std::vector<std::string> files;
+    std::map<std::string, std::string> of_batches;
     for (const auto& input : call.inputs) {
         std::error_code none;
-        if (std::filesystem::is_directory(input, none)) {
-            std::ranges::move(series_of_batch(call, input, options), std::back_inserter(files));
-        } else {
+        if (!std::filesystem::is_directory(input, none)) {
             files.push_back(input);
+            continue;
         }
+        add_flights_of_batch(call, series_of_batch(call, input, options), of_batches, files);
     }
     std::vector<std::string> names;
     names.reserve(files.size());
