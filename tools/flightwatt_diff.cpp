@@ -102,6 +102,7 @@ std::optional<Difference> soc_difference(const mission::SocCurve& a, const missi
 
 std::vector<Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b) {
     std::vector<Difference> all;
+    all.reserve(mission::all_phases.size() + 8);  // and of the whole mission
     for (const auto phase : mission::all_phases) {
         all.push_back(computed(std::string(to_string(phase)), "energy_wh", "Wh", phase_energy_wh(a.curve, phase),
                                phase_energy_wh(b.curve, phase)));
