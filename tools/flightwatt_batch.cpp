@@ -52,10 +52,11 @@ batch::BatchProgress progress_of(const cli::StageCall& call, BatchProgressState&
             state.bar->show(done, all);
             return;
         }
-        const auto* what = !flight.record.accepted ? "rejected"
-                           : flight.is_kept        ? "kept, its log is gone"
-                           : flight.was_up_to_date ? "up to date"
-                                                   : "done";
+        const auto* what = flight.record.is_of_other_aircraft ? "left out"
+                           : !flight.record.accepted          ? "rejected"
+                           : flight.is_kept                   ? "kept, its log is gone"
+                           : flight.was_up_to_date            ? "up to date"
+                                                              : "done";
         cli::note(call, fmt::format("[{}/{}] {}: {}", done, all, flight.record.flight, what));
     };
 }
@@ -77,7 +78,9 @@ void report_notes(const cli::StageCall& call, const std::vector<batch::BatchFlig
         }
         for (const auto& exclusion : flight.selection.exclusions) cli::warn(call, to_string(exclusion));
         if (!flight.record.accepted) {
-            cli::note(call, fmt::format("{}: rejected: {}", flight.record.flight, flight.record.error));
+            cli::note(call,
+                      fmt::format("{}: {}: {}", flight.record.flight,
+                                  flight.record.is_of_other_aircraft ? "left out" : "rejected", flight.record.error));
         }
     }
 }
@@ -199,12 +202,14 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
     const auto shown = screen_text(flights_table(flights), screen, shown_first);
     const auto is_rejected = [](const auto& flight) { return !flight.record.accepted; };
     const auto of_this_run = std::ranges::count_if(flights, &batch::BatchFlight::is_of_this_run);
-    const auto rejected = std::ranges::count_if(
-        flights, [&](const auto& flight) { return flight.is_of_this_run && is_rejected(flight); });
+    const auto rejected = std::ranges::count_if(flights, [&](const auto& flight) {
+        return flight.is_of_this_run && is_rejected(flight) && !flight.record.is_of_other_aircraft;
+    });
     try {
         if (std::ranges::all_of(flights, is_rejected)) {
             remove_model(call, options.out);
-            throw InputError({}, fmt::format("all {} logs were rejected, so there is nothing to fit", flights.size()));
+            throw InputError(
+                {}, fmt::format("all {} logs were rejected or left out, so there is nothing to fit", flights.size()));
         }
         if (lack_power(flights)) {
             remove_model(call, options.out);

@@ -161,10 +161,11 @@ std::string why_rejected(const LogFile& log, std::string& fingerprint) {
     }
 }
 
-BatchFlight reject(const LogFile& log, const std::string& why, const std::string& fingerprint,
-                   const BatchOptions& options) {
+BatchFlight reject(const LogFile& log, const std::string& why, bool is_of_other_aircraft,
+                   const std::string& fingerprint, const BatchOptions& options) {
     BatchFlight rejected;
     rejected.record.error = why;
+    rejected.record.is_of_other_aircraft = is_of_other_aircraft;
     rejected.record.flight = log.flight;
     rejected.record.log = log.path.string();
     if (!log.problem.empty() || log.is_gone) return rejected;  // there is nothing of it to write, or all to keep
@@ -177,14 +178,18 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     BatchFlight done;
     std::string fingerprint;
     std::string why;
+    bool is_of_other_aircraft = false;
     try {
         if (!log.problem.empty()) throw InputError({log.path.string()}, log.problem);
         done = log.is_gone ? do_gone(log, options) : do_existing(log, options, fingerprint);
+    } catch (const flight::OtherAircraftError& error) {
+        is_of_other_aircraft = true;
+        why = fmt::format("{}; {}", error.what(), error.hint());
     } catch (...) {
         why = why_rejected(log, fingerprint);
         if (log.is_gone) why += ", and its log is gone: bring it back, or drop the flight with --prune";
     }
-    if (!why.empty()) done = reject(log, why, fingerprint, options);
+    if (!why.empty()) done = reject(log, why, is_of_other_aircraft, fingerprint, options);
     done.is_of_this_run = log.is_of_this_run;
     return done;
 }

@@ -90,6 +90,7 @@ void visit_record(Record& record, const Visit& visit) {
     visit("results", record.results);
     visit("accepted", record.accepted);
     visit("error", record.error);
+    visit("is_of_other_aircraft", record.is_of_other_aircraft);
     visit("aircraft_id", record.aircraft_id);
     visit("aircraft_name", record.aircraft_name);
     visit("content", record.content);

@@ -38,7 +38,8 @@ struct FlightRecord {
     std::string fingerprint;  ///< of the log's content, its .log and the options
     std::string results;      ///< fingerprint of the series and phases that were written; empty if rejected
     bool accepted = false;
-    std::string error;  ///< why it was rejected
+    std::string error;                  ///< why it was rejected
+    bool is_of_other_aircraft = false;  ///< rejected for that alone: it was not asked for
     std::string aircraft_id;
     std::string aircraft_name;
     flight::FlightContent content;  ///< to find the same flight under another name

@@ -84,7 +84,7 @@ TextTable flights_table(const std::vector<BatchFlight>& flights) {
         if (!flight.record.accepted) {
             std::vector<std::string> row{flight.record.flight, "-"};
             row.resize(table.header.size(), "-");
-            row.back() = "rejected";
+            row.back() = flight.record.is_of_other_aircraft ? "other aircraft" : "rejected";
             table.rows.push_back(std::move(row));
             continue;
         }

@@ -170,8 +170,8 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
             return candidates;
         }
     }
-    throw InputError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),
-                     "the log holds " + short_list(ids));
+    throw OtherAircraftError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),
+                             "the log holds " + short_list(ids));
 }
 
 }  // namespace

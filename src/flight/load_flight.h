@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/error.h"
 #include "flight/flight_series.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
@@ -82,8 +83,14 @@ auto use_binary(const FlightFile& file, const Use& use) {
     return use(telemetry::BinaryLog{file.text(), file.framing().value(), file.path(), file.log_file(), &messages});
 }
 
+/// A log that is sound, of other aircraft than the one that is asked for.
+class OtherAircraftError : public InputError {
+    using InputError::InputError;
+};
+
 /// The series of each aircraft that may be meant: of the one that is named, else of all that sent telemetry.
-/// Judges nothing yet. Throws InputError where the file holds no telemetry, or the named one sent nothing.
+/// Judges nothing yet. Throws InputError where the file holds no telemetry, OtherAircraftError where the
+/// named one sent nothing.
 std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id);
 
 /// The one that flew: the segmentation finds a sortie. Where none did, the only one. Throws InputError if that leaves

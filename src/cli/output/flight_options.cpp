@@ -177,8 +177,17 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     options.excluded = with_matching(given.excluded, "exclude", flights);
     flights.clear();
     UsedFlights used(call);
+    std::optional<flight::OtherAircraftError> other;
     for (const auto& file : call.inputs) {
-        auto loaded = flight::load_flight(std::filesystem::path(file), options);
+        flight::LoadedFlight loaded;
+        try {
+            loaded = flight::load_flight(std::filesystem::path(file), options);
+        } catch (const flight::OtherAircraftError& error) {
+            flights.push_back(flight_of_file(file));
+            note(call, fmt::format("{} is left out: {}; {}", flights.back(), error.what(), error.hint()));
+            other = error;
+            continue;
+        }
         const auto name = loaded.series.flight;
         if (std::ranges::find(flights, name) != flights.end()) {
             throw UsageError(fmt::format("flight '{}' is given twice", name));
@@ -188,6 +197,7 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
         if (used.take(loaded)) read(file, loaded);
     }
     refuse_unknown_flights(options, flights);
+    if (other && used.counting().empty()) throw *other;
     if (call.has("mix-aircraft")) return used.counting();
     if (const auto mix = describe_mix(used.flown()); !mix.empty()) {
         throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),
