@@ -269,6 +269,7 @@ std::string batch_latex(const cli::StageCall& call, const std::string& folder) {
 
 std::string missions_latex(const std::vector<Input>& inputs) {
     std::vector<mission::AnyMission> missions;
+    missions.reserve(inputs.size());
     for (const auto& input : inputs) missions.push_back(mission::read_mission(input.file, {true, std::nullopt}));
     const auto simulated = report::simulate_for_report(missions);
     auto text = to_latex(report::ranking_table(simulated), "Missions by final state of charge", "tab:missions");
