@@ -1,6 +1,6 @@
 #include "exchange/model_text.h"
 
-#include "base/number.h"
+#include "base/toml_text.h"
 
 #include <algorithm>
 #include <sstream>
@@ -25,17 +25,11 @@ std::string json_of(const std::string& toml_text) {
 bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// A number that C reads as a double, to its last digit.
-std::string c_number(double value) {
-    auto text = fmt::format("{}", value);
-    if (text.find_first_of(".e") == std::string::npos) text += ".0";
-    return text;
-}
-
+/// Numbers that C reads as doubles, to their last digit, as TOML does.
 std::string c_numbers(const std::vector<double>& values) {
     std::vector<std::string> texts;
     texts.reserve(values.size());
-    for (const double value : values) texts.push_back(c_number(value));
+    for (const double value : values) texts.push_back(toml_real(value));
     return fmt::format("{}", fmt::join(texts, ", "));
 }
 
@@ -150,9 +144,9 @@ std::string motion_function(const mechanical::PhysicalModel& physical, const std
         "                           {9} * (climb < 0.0 ? climb : 0.0) + {10};\n"
         "    return power_w > 0.0 ? power_w : 0.0;\n}}\n\n",
         prefix, physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high, physical.climb_m_per_s.low,
-        physical.climb_m_per_s.high, c_number(c[PowerTerm::drag]), c_number(c[PowerTerm::induced]),
-        c_number(c[PowerTerm::turn]), c_number(c[PowerTerm::climb]), c_number(c[PowerTerm::descent]),
-        c_number(c[PowerTerm::constant]));
+        physical.climb_m_per_s.high, toml_real(c[PowerTerm::drag]), toml_real(c[PowerTerm::induced]),
+        toml_real(c[PowerTerm::turn]), toml_real(c[PowerTerm::climb]), toml_real(c[PowerTerm::descent]),
+        toml_real(c[PowerTerm::constant]));
 }
 
 }  // namespace

@@ -25,9 +25,6 @@ void add_point(pugi::xml_node& segment, const FlownTrack& track, const TrackPoin
 
 std::string to_gpx(const FlownTrack& track, TrackColour colour) {
     pugi::xml_document file;
-    auto declaration = file.append_child(pugi::node_declaration);
-    declaration.append_attribute("version") = "1.0";
-    declaration.append_attribute("encoding") = "UTF-8";
     auto gpx = file.append_child("gpx");
     gpx.append_attribute("version") = "1.1";
     gpx.append_attribute("creator") = "flightwatt " FLIGHTWATT_VERSION;

@@ -70,9 +70,6 @@ std::string description(const FlownTrack& track, const TrackPart& part) {
 std::string to_kml(const FlownTrack& track, TrackColour colour) {
     const auto parts = coloured_parts(track, colour);
     pugi::xml_document file;
-    auto declaration = file.append_child(pugi::node_declaration);
-    declaration.append_attribute("version") = "1.0";
-    declaration.append_attribute("encoding") = "UTF-8";
     auto kml = file.append_child("kml");
     kml.append_attribute("xmlns") = "http://www.opengis.net/kml/2.2";
     kml.append_attribute("xmlns:gx") = "http://www.google.com/kml/ext/2.2";

@@ -18,7 +18,10 @@ void add_text(pugi::xml_node& parent, const char* name, std::string_view text) {
     parent.append_child(name).text().set(clean.c_str());
 }
 
-std::string xml_text(const pugi::xml_document& document) {
+std::string xml_text(pugi::xml_document& document) {
+    auto declaration = document.prepend_child(pugi::node_declaration);
+    declaration.append_attribute("version") = "1.0";
+    declaration.append_attribute("encoding") = "UTF-8";
     std::ostringstream stream;
     document.save(stream, "  ", pugi::format_default, pugi::encoding_utf8);
     return stream.str();

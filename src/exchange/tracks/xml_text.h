@@ -13,8 +13,8 @@ namespace flightwatt::exchange {
 /// A child element that holds `text`, in which '?' stands for bytes that XML 1.0 in UTF-8 cannot hold.
 void add_text(pugi::xml_node& parent, const char* name, std::string_view text);
 
-/// The document with its declaration, indented.
-std::string xml_text(const pugi::xml_document& document);
+/// The document, indented, after the declaration that it is given.
+std::string xml_text(pugi::xml_document& document);
 
 /// Degrees with 7 decimals (a centimetre), metres with 2.
 std::string degrees_text(double degrees);

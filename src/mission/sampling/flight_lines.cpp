@@ -136,8 +136,8 @@ std::vector<double> FlightLines::across_of(std::size_t line) const {
     return across;
 }
 
-double FlightLines::fly(std::size_t line, double at, LineSearch& search) const {
-    auto normals = across_of(line);
+double FlightLines::fly(double at, LineSearch& search) const {
+    auto normals = search.across;
     for (std::size_t k = 0; k < normals.size(); ++k) normals[k] += at * worse_[k];
     return search.left_percent[at] = left_percent_of(normals);
 }
@@ -149,36 +149,37 @@ double FlightLines::linear_threshold(double at, double spare_percent) const {
 
 /// Flies until one flight keeps `left_percent`; false if the line seems to have none. The first steps go by the slope;
 /// where flights fail at once it tells nothing, and the next go out from the middle.
-bool FlightLines::find_kept(std::size_t line, double left_percent, LineSearch& search) const {
+bool FlightLines::find_kept(double left_percent, LineSearch& search) const {
     constexpr std::array beyond_slope{0.0, -0.2};  // deviations
     constexpr std::array from_the_middle{0.0, -1.0, 1.0, -2.0, 2.0, -3.0, 3.0};
-    constexpr double least = -4.0;  // further out what is drawn together is
+    constexpr double least = -4.0;  // further out, what is drawn together is far out too
     for (const double beyond : beyond_slope) {
         if (kept_flights(search, left_percent)) return true;
         double& at = search.threshold;
         if (search.left_percent.contains(at)) break;
-        at = std::max(least, beyond + linear_threshold(at, fly(line, at, search) - left_percent));
+        at = std::max(least, beyond + linear_threshold(at, fly(at, search) - left_percent));
     }
     for (const double at : from_the_middle) {
         if (kept_flights(search, left_percent)) return true;
-        if (!search.left_percent.contains(at)) fly(line, at, search);
+        if (!search.left_percent.contains(at)) fly(at, search);
     }
     return kept_flights(search, left_percent).has_value();
 }
 
 void FlightLines::find_thresholds(std::size_t line, double left_percent, LineSearch& search) const {
     const double kept_percent = left_percent - tolerance_part * sd_percent_;
+    if (search.across.empty()) search.across = across_of(line);
     search.better_threshold = -furthest_deviation;
-    if (!find_kept(line, kept_percent, search)) {
+    if (!find_kept(kept_percent, search)) {
         search.threshold = -furthest_deviation;
         return;
     }
-    find_worse_threshold(line, left_percent, search);
-    find_better_threshold(line, kept_percent, search);
+    find_worse_threshold(left_percent, search);
+    find_better_threshold(kept_percent, search);
 }
 
 /// From a line's last flight that keeps `left_percent`.
-void FlightLines::find_worse_threshold(std::size_t line, double left_percent, LineSearch& search) const {
+void FlightLines::find_worse_threshold(double left_percent, LineSearch& search) const {
     const double tolerance_percent = tolerance_part * sd_percent_;
     const auto kept = kept_flights(search, left_percent - tolerance_percent).value();
     double above = kept.last;
@@ -190,7 +191,7 @@ void FlightLines::find_worse_threshold(std::size_t line, double left_percent, Li
         if (std::abs(spare_percent) <= tolerance_percent) break;
         const bool is_slow = round % 4 == 3 && below < furthest_deviation;  // at a jump
         if (!(at > above && at < below) || is_slow) at = std::midpoint(above, below);
-        spare_percent = fly(line, at, search) - left_percent;
+        spare_percent = fly(at, search) - left_percent;
         (spare_percent > 0.0 ? above : below) = at;
         if (std::abs(spare_percent) > tolerance_percent) at = linear_threshold(at, spare_percent);
     }
@@ -198,7 +199,7 @@ void FlightLines::find_worse_threshold(std::size_t line, double left_percent, Li
 }
 
 /// From its first, by bisection: most lines have none.
-void FlightLines::find_better_threshold(std::size_t line, double left_percent, LineSearch& search) const {
+void FlightLines::find_better_threshold(double left_percent, LineSearch& search) const {
     constexpr double far_enough = -4.25;        // one of 100,000 flights lies beyond
     constexpr double chance_resolution = 1e-5;  // as much
     const auto known = kept_flights(search, left_percent).value();
@@ -206,23 +207,22 @@ void FlightLines::find_better_threshold(std::size_t line, double left_percent, L
     double above = known.first;
     if (above <= far_enough) return;
     if (below < far_enough) {
-        if (fly(line, far_enough, search) > left_percent) return;
+        if (fly(far_enough, search) > left_percent) return;
         below = far_enough;
     }
     while (chance_beyond(-above) - chance_beyond(-below) > chance_resolution) {
         const double at = std::midpoint(below, above);
-        (fly(line, at, search) > left_percent ? above : below) = at;
+        (fly(at, search) > left_percent ? above : below) = at;
     }
     search.better_threshold = below;
 }
 
 void FlightLines::turn_to_beyond(const std::vector<LineSearch>& searches) {
     std::vector<double> sum(worse_.size());
-    for (std::size_t line = 0; line < searches.size(); ++line) {
-        const auto across = across_of(line);
-        const double along = density(searches[line].threshold) - density(searches[line].better_threshold);
+    for (const auto& search : searches) {
+        const double along = density(search.threshold) - density(search.better_threshold);
         for (std::size_t k = 0; k < sum.size(); ++k)
-            sum[k] += chance_below(searches[line]) * across[k] + along * worse_[k];
+            sum[k] += chance_below(search) * search.across[k] + along * worse_[k];
     }
     set_direction(std::move(sum));
 }

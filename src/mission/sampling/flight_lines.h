@@ -17,7 +17,8 @@ inline constexpr double furthest_deviation = 9.0;
 struct LineSearch {
     double threshold = 0.0;                         ///< [deviations]: beyond, flights fall below it
     double better_threshold = -furthest_deviation;  ///< and before: where better in one is far out in others
-    std::map<double, double> left_percent{};        ///< by where they are
+    std::vector<double> across{};             ///< where the line lies beside others; empty before its first flight
+    std::map<double, double> left_percent{};  ///< by where its flights are
 };
 
 /// The chance of the flights of a line that fall below.
@@ -51,12 +52,12 @@ class FlightLines {
   private:
     double left_percent_of(std::span<const double> normals) const;
     std::vector<double> across_of(std::size_t line) const;
-    double fly(std::size_t line, double at, LineSearch& search) const;
+    double fly(double at, LineSearch& search) const;
     /// Where nothing is spare if so much is at `at`, as what is left falls evenly with a Student t.
     double linear_threshold(double at, double spare_percent) const;
-    bool find_kept(std::size_t line, double left_percent, LineSearch& search) const;
-    void find_worse_threshold(std::size_t line, double left_percent, LineSearch& search) const;
-    void find_better_threshold(std::size_t line, double left_percent, LineSearch& search) const;
+    bool find_kept(double left_percent, LineSearch& search) const;
+    void find_worse_threshold(double left_percent, LineSearch& search) const;
+    void find_better_threshold(double left_percent, LineSearch& search) const;
     void set_direction(std::vector<double> direction);
     double lost_percent_along(std::size_t normal) const;
     void find_scale();
