@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/program_files.h"
+#include "base/input_file.h"
 #include "base/toml_reader.h"
 #include "cli/help_pages.h"
 #include "cli/stage.h"

@@ -37,7 +37,8 @@ int parse(const cli::StageCall& call) {
     const auto loaded = cli::load_flight(call, call.inputs.front(), options);
     const auto& series = loaded.series;
     constexpr std::size_t rows = 24;
-    write_csv_result(call, to_csv(series),
+    const TextWriter csv = [&](const TextSink& sink) { write_csv(series, sink); };
+    write_csv_result(call, csv,
                      {fmt::format("{}: aircraft {}", series.flight,
                                   flight::describe_aircraft(series.aircraft_id, series.aircraft_name)),
                       {"time_s", "power_w", "voltage_v", "current_a", "altitude_m", "throttle_percent"},

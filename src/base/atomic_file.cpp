@@ -86,32 +86,43 @@ bool keep_permissions(int file, const struct stat& before) {
     return ::fchmod(file, before.st_mode & 07777) == 0;
 }
 
-void write_directly(const std::filesystem::path& path, std::string_view content) {
+TextSink sink_of(int file, const std::filesystem::path& path) {
+    return [file, path](std::string_view piece) {
+        if (!write_all(file, piece)) fail(path, errno);
+    };
+}
+
+void write_directly(const std::filesystem::path& path, const TextWriter& write) {
     const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     if (file < 0) fail(path, errno);
-    const bool written = write_all(file, content);
-    const int error = errno;
+    try {
+        write(sink_of(file, path));
+    } catch (...) {
+        ::close(file);
+        throw;
+    }
     if (::close(file) != 0) fail(path, errno);
-    if (!written) fail(path, error);
 }
 
 /// False where the folder of unfinished files is not there, or of another file system than the destination.
-bool replace(const std::filesystem::path& path, const Destination& destination, std::string_view content,
+bool replace(const std::filesystem::path& path, const Destination& destination, const TextWriter& write,
              const std::filesystem::path& folder) {
     std::filesystem::path unfinished;
     const int file = open_unfinished(folder, unfinished);
     if (file < 0 && errno == ENOENT) return false;
     if (file < 0) fail(path, errno);
-    bool done = write_all(file, content) && (!destination.before || keep_permissions(file, *destination.before));
-    int error = errno;
-    if (::close(file) != 0 && done) {
-        error = errno;
-        done = false;
+    try {
+        write(sink_of(file, path));
+        if (destination.before && !keep_permissions(file, *destination.before)) fail(path, errno);
+    } catch (...) {
+        ::close(file);
+        ::unlink(unfinished.c_str());
+        throw;
     }
-    if (done && ::rename(unfinished.c_str(), destination.file.c_str()) == 0) return true;
-    if (done) error = errno;
+    if (::close(file) == 0 && ::rename(unfinished.c_str(), destination.file.c_str()) == 0) return true;
+    const int error = errno;
     ::unlink(unfinished.c_str());
-    if (done && error == EXDEV) return false;
+    if (error == EXDEV) return false;
     fail(path, error);
 }
 
@@ -119,15 +130,21 @@ bool replace(const std::filesystem::path& path, const Destination& destination, 
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,
                            const std::filesystem::path& unfinished) {
+    const TextWriter write = [content](const TextSink& sink) { sink(content); };
+    write_file_atomically(path, write, unfinished);
+}
+
+void write_file_atomically(const std::filesystem::path& path, const TextWriter& write,
+                           const std::filesystem::path& unfinished) {
     const auto destination = destination_of(path);
-    if (destination.is_special) return write_directly(path, content);
+    if (destination.is_special) return write_directly(path, write);
     refuse_to_lose(path);
     // Without the right to write it a file is not replaced either, though its folder would allow that.
     if (destination.before && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) fail(path, errno);
     auto beside = destination.file.parent_path();
     if (beside.empty()) beside = ".";
-    if (unfinished.empty() || !replace(path, destination, content, unfinished)) {
-        if (!replace(path, destination, content, beside)) fail(path, ENOENT);
+    if (unfinished.empty() || !replace(path, destination, write, unfinished)) {
+        if (!replace(path, destination, write, beside)) fail(path, ENOENT);
     }
     note_written(path);
 }

@@ -3,6 +3,7 @@
 #include "base/input_file.h"  // IWYU pragma: export
 
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 namespace flightwatt {
@@ -13,6 +14,15 @@ namespace flightwatt {
 /// allowed; a new one follows the umask. Devices and pipes are written directly. Throws OutputError naming the path
 /// and the cause, and UsageError where that would lose what the command has read or written (file_use.h).
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,
+                           const std::filesystem::path& unfinished = {});
+
+/// Takes the next piece of a text.
+using TextSink = std::function<void(std::string_view)>;
+/// Hands a text to a sink piece by piece, so that it need not lie in memory as a whole.
+using TextWriter = std::function<void(const TextSink&)>;
+
+/// The same of a text in pieces. `write` may be called twice.
+void write_file_atomically(const std::filesystem::path& path, const TextWriter& write,
                            const std::filesystem::path& unfinished = {});
 
 /// The name of a file that write_file_atomically has not renamed yet: ".flightwatt-" and sixteen hexadecimal digits.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 
 #include <fcntl.h>
@@ -80,6 +81,22 @@ std::string read_file(const std::filesystem::path& path, std::size_t most_bytes,
 std::error_code reading_error(const std::filesystem::path& path) {
     return ::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) == 0 ? std::error_code()
                                                                       : std::error_code(errno, std::generic_category());
+}
+
+std::filesystem::path program_folder() {
+    std::error_code error;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+    return error ? std::filesystem::path() : program.parent_path();
+}
+
+std::filesystem::path program_files(const std::string& name, const char* variable, const std::string& what) {
+    const char* named = std::getenv(variable);
+    auto folder = named != nullptr ? std::filesystem::path(named)
+                                   : program_folder().parent_path() / "share" / "flightwatt" / name;
+    std::error_code error;
+    if (std::filesystem::is_directory(folder, error)) return folder;
+    throw InputError({folder.string()}, what + " are not there",
+                     fmt::format("{} can name the project's folder {}/", variable, name));
 }
 
 }  // namespace flightwatt

@@ -48,6 +48,12 @@ inline double number_or_nan(std::string_view text) {
     return negative ? -magnitude : magnitude;
 }
 
+inline constexpr std::size_t longest_number = 32;
+
+/// Writes a finite number as fmt's "{}" does, in the shortest way that reads back as the same, and returns where it
+/// ends. `to` has room for `longest_number` characters. Quick for short decimals, as logs are made of.
+char* write_number(char* to, double value);
+
 /// The same with std::nullopt for what is no number.
 inline std::optional<double> parse_number(std::string_view text) {
     const double number = number_or_nan(text);

@@ -5,7 +5,7 @@
 #include "base/file_use.h"
 #include "base/fingerprint.h"
 #include "batch/manifest.h"
-#include "batch/workers.h"
+#include "base/parallel.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"
 #include "telemetry/log_configuration.h"

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/file_use.h"
 #include "base/fingerprint.h"
+#include "base/parallel.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
 #include "batch/write_guard.h"
@@ -12,12 +13,10 @@
 #include "flight/series_file.h"
 
 #include <algorithm>
-#include <atomic>
 #include <exception>
 #include <mutex>
 #include <new>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -201,35 +200,14 @@ std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const Batch
     make_directories(options.out / "flights");
     make_directories(options.out / unfinished_folder);
     std::vector<BatchFlight> flights(logs.size());
-    std::atomic<std::size_t> next = 0;
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
-    std::exception_ptr failure;
-    const auto work = [&] {
-        for (std::size_t i = next++; i < logs.size(); i = next++) {
-            try {
-                flights[i] = do_log(logs[i], options);
-                const std::lock_guard lock(mutex);
-                progress(++done, logs.size(), flights[i]);
-            } catch (...) {
-                const std::lock_guard lock(mutex);
-                if (!failure) failure = std::current_exception();
-                next = logs.size();
-            }
-        }
+    const auto work = [&](std::size_t i) {
+        flights[i] = do_log(logs[i], options);
+        const std::lock_guard lock(mutex);
+        progress(++done, logs.size(), flights[i]);
     };
-    const auto cores = std::max(1u, std::thread::hardware_concurrency());
-    const auto jobs = std::min<std::size_t>(options.jobs > 0 ? options.jobs : cores, logs.size());
-    {
-        std::vector<std::jthread> workers;
-        try {
-            for (std::size_t i = 1; i < jobs; ++i) workers.emplace_back(work);
-        } catch (const std::system_error&) {
-            // No more threads than these: they will do.
-        }
-        work();
-    }
-    if (failure) std::rethrow_exception(failure);
+    for_each_in_parallel(logs.size(), work, options.jobs);
     return flights;
 }
 

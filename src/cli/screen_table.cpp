@@ -376,8 +376,17 @@ TextTable readable_table(std::string_view csv) {
 }
 
 void write_csv_result(const StageCall& call, std::string_view csv, const ScreenTable& options) {
+    write_csv_result(
+        call, [csv](const TextSink& sink) { sink(csv); }, options);
+}
+
+void write_csv_result(const StageCall& call, const TextWriter& write_csv, const ScreenTable& options) {
     const auto screen = screen_of(call);
-    if (call.output || call.json || !screen.is_terminal) return write_result(call, csv);
+    if (call.output) return write_file_atomically(*call.output, write_csv);
+    if (call.json) return;
+    if (!screen.is_terminal) return write_csv([](std::string_view piece) { print(piece); });
+    std::string csv;
+    write_csv([&](std::string_view piece) { csv += piece; });
     print(screen_text(readable_table(csv), screen, options));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/atomic_file.h"
 #include "base/text_table.h"
 #include "cli/stage.h"
 
@@ -46,5 +47,7 @@ TextTable readable_table(std::string_view csv);
 
 /// A result that is a CSV: to --output's file or a pipe as it is, to a terminal as a table.
 void write_csv_result(const StageCall& call, std::string_view csv, const ScreenTable& options);
+/// The same of a CSV in pieces.
+void write_csv_result(const StageCall& call, const TextWriter& write_csv, const ScreenTable& options);
 
 }  // namespace flightwatt::cli

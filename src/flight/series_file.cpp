@@ -7,6 +7,7 @@
 #include "base/toml_reader.h"
 #include "flight/chosen_track.h"
 #include "flight/series_file/front_matter.h"
+#include "flight/series_file/series_table.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -18,14 +19,6 @@
 
 namespace flightwatt::flight {
 namespace {
-
-std::vector<double> all_times(const std::vector<Track>& tracks) {
-    std::vector<double> time_s;
-    for (const auto& track : tracks) time_s.insert(time_s.end(), track.time_s.begin(), track.time_s.end());
-    std::sort(time_s.begin(), time_s.end());
-    time_s.erase(std::unique(time_s.begin(), time_s.end()), time_s.end());
-    return time_s;
-}
 
 /// Reads the table behind the front matter row by row.
 class TableReader {
@@ -120,22 +113,16 @@ class TableReader {
 }  // namespace
 
 std::string to_csv(const FlightSeries& series) {
-    fmt::memory_buffer text;
-    text.append(front_matter(series));
+    std::string text;
+    write_csv(
+        series, [&](std::string_view piece) { text += piece; }, 1);
+    return text;
+}
+
+void write_csv(const FlightSeries& series, const TextSink& sink, std::size_t most_threads) {
     const auto names = column_names(series.tracks);
-    fmt::format_to(std::back_inserter(text), "time_s,{}", fmt::join(names, ","));
-    std::vector<std::size_t> next(series.tracks.size(), 0);
-    for (const double time_s : all_times(series.tracks)) {
-        fmt::format_to(std::back_inserter(text), "\n{}", time_s);
-        for (std::size_t i = 0; i < series.tracks.size(); ++i) {
-            const auto& track = series.tracks[i];
-            text.push_back(',');
-            if (next[i] == track.time_s.size() || track.time_s[next[i]] != time_s) continue;
-            fmt::format_to(std::back_inserter(text), "{}", track.value[next[i]++]);
-        }
-    }
-    text.push_back('\n');
-    return fmt::to_string(text);
+    sink(fmt::format("{}time_s,{}\n", front_matter(series), fmt::join(names, ",")));
+    write_series_rows(series.tracks, sink, most_threads);
 }
 
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file) {

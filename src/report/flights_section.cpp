@@ -2,7 +2,7 @@
 
 #include "base/duration_text.h"
 #include "base/units.h"
-#include "batch/workers.h"
+#include "base/parallel.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
@@ -206,7 +206,7 @@ std::vector<Section> flight_parts(std::span<const ReportFlight> flights,
     const auto first = static_cast<std::size_t>(std::ranges::find_if(flights, is_shown) - flights.begin());
     const bool are_many = flights.size() > most_plain_flights;
     std::atomic<std::size_t> done = 0;
-    batch::for_each_in_parallel(flights.size(), [&](std::size_t f) {
+    for_each_in_parallel(flights.size(), [&](std::size_t f) {
         if (progress) progress(done++, flights.size());
         if (!is_shown(flights[f])) return;
         const auto found = predicted.find(flights[f].name);

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/program_files.h"
+#include "base/input_file.h"
 
 #include <optional>
 

@@ -22,6 +22,25 @@ TEST(AtomicFile, ReplacesTheContentAndLeavesNothingElse) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
 }
 
+TEST(AtomicFile, WritesATextInPieces) {
+    const auto folder = test::scratch_dir();
+    const auto file = folder / "a.txt";
+    const TextWriter count = [](const TextSink& sink) {
+        for (const auto* piece : {"one", "", " two"}) sink(piece);
+    };
+    write_file_atomically(file, count);
+    EXPECT_EQ(read_file(file), "one two");
+    EXPECT_THROW(write_file_atomically("/dev/full", count), OutputError);
+    // One that is broken off leaves the old text, and nothing of the new.
+    const TextWriter broken = [](const TextSink& sink) {
+        sink("three");
+        throw InputError({"b"}, "is cut");
+    };
+    EXPECT_THROW(write_file_atomically(file, broken), InputError);
+    EXPECT_EQ(read_file(file), "one two");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
 TEST(AtomicFile, RefusesWhatCannotBeWrittenAndKeepsWhatWasThere) {
     const auto folder = test::scratch_dir();
     EXPECT_THROW(write_file_atomically(folder / "missing" / "a.txt", "x"), OutputError);

@@ -3,11 +3,13 @@
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <system_error>
 #include <thread>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -90,6 +92,28 @@ TEST(ReadingError, IsTheSystems) {
     EXPECT_EQ(reading_error(folder / "missing"), std::errc::no_such_file_or_directory);
     std::filesystem::create_symlink("loop", folder / "loop");
     EXPECT_EQ(reading_error(folder / "loop"), std::errc::too_many_symbolic_link_levels);
+}
+
+constexpr auto variable = "FLIGHTWATT_TEST_FILES";
+
+TEST(ProgramFiles, AreWhereTheVariableSays) {
+    const auto folder = test::scratch_dir();
+    ::setenv(variable, folder.c_str(), 1);
+    EXPECT_EQ(program_files("web", variable, "the files"), folder);
+    ::unsetenv(variable);
+}
+
+TEST(ProgramFiles, StandInShareBesideTheFolderOfTheProgram) {
+    // This test lies in tests/ of the build, whose share/ is that of the programs in bin/.
+    EXPECT_EQ(program_folder().filename(), "tests");
+    const auto folder = program_files("docs", variable, "the pages");
+    EXPECT_TRUE(std::filesystem::equivalent(folder, test::source_dir() / "docs"));
+}
+
+TEST(ProgramFiles, AreMissedWithTheirNameAndTheWayOut) {
+    EXPECT_THAT(test::rejected([] { program_files("absent", variable, "the pages"); }),
+                testing::AllOf(testing::HasSubstr("share/flightwatt/absent"),
+                               testing::HasSubstr("the pages are not there"), testing::HasSubstr(variable)));
 }
 
 }  // namespace

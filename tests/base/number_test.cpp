@@ -1,9 +1,12 @@
 #include "base/number.h"
 
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <random>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt {
@@ -41,6 +44,50 @@ TEST(ParseNumber, IsCorrectlyRoundedOnBothPaths) {
         const auto parsed = parse_number({text, static_cast<std::size_t>(end - text)});
         ASSERT_TRUE(parsed.has_value());
         ASSERT_EQ(*parsed, expected) << std::string(text, end);
+    }
+}
+
+std::string written(double value) {
+    std::array<char, longest_number> text{};
+    return {text.data(), write_number(text.data(), value)};
+}
+
+TEST(WriteNumber, WritesWhatFmtWrites) {
+    for (const double value : {0.0,
+                               -0.0,
+                               1.0,
+                               -1.0,
+                               12.5,
+                               100.0,
+                               0.1,
+                               0.0001,
+                               0.00010001,
+                               0.00009,
+                               1e-7,
+                               9999999.0,
+                               9999999.99999999,
+                               10000000.0,
+                               1e7 + 0.5,
+                               123456.12345678,
+                               1e15,
+                               1e16,
+                               1e300,
+                               5e-324,
+                               0.1 + 0.2,
+                               1.0 / 3.0,
+                               -43.123456789,
+                               4'812'345.67,
+                               1.7976931348623157e308})
+        EXPECT_EQ(written(value), fmt::format("{}", value));
+}
+
+TEST(WriteNumber, WritesWhatFmtWritesOfDecimalsAndTheirNeighbours) {
+    std::mt19937_64 random(5);
+    for (int i = 0; i < 200'000; ++i) {
+        const auto digits = static_cast<double>(random() % std::uint64_t(std::pow(10.0, 1 + i % 16)));
+        const double value = (i % 2 == 0 ? 1.0 : -1.0) * digits / std::pow(10.0, random() % 12);
+        for (const double near : {value, std::nextafter(value, 1e300), std::nextafter(value, -1e300)})
+            ASSERT_EQ(written(near), fmt::format("{}", near));
     }
 }
 

@@ -1,13 +1,14 @@
-#include "batch/workers.h"
+#include "base/parallel.h"
 
 #include <atomic>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace flightwatt::batch {
+namespace flightwatt {
 namespace {
 
 TEST(ForEachInParallel, CallsEveryNumberOnce) {
@@ -15,6 +16,12 @@ TEST(ForEachInParallel, CallsEveryNumberOnce) {
     for_each_in_parallel(calls.size(), [&](std::size_t i) { ++calls[i]; });
     for (const auto& count : calls) EXPECT_EQ(count, 1);
     for_each_in_parallel(0, [](std::size_t) { FAIL() << "there is nothing to do"; });
+}
+
+TEST(ForEachInParallel, TakesNoMoreThreadsThanItMay) {
+    const auto caller = std::this_thread::get_id();
+    for_each_in_parallel(
+        100, [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), caller); }, 1);
 }
 
 TEST(ForEachInParallel, ThrowsWhatTheLowestNumberThrew) {
@@ -31,4 +38,4 @@ TEST(ForEachInParallel, ThrowsWhatTheLowestNumberThrew) {
 }
 
 }  // namespace
-}  // namespace flightwatt::batch
+}  // namespace flightwatt

@@ -1,4 +1,4 @@
-#include "batch/workers.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -8,9 +8,9 @@
 #include <thread>
 #include <vector>
 
-namespace flightwatt::batch {
+namespace flightwatt {
 
-void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
+void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work, std::size_t most_threads) {
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;  // guards what follows
     std::size_t failed = count;
@@ -29,7 +29,8 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
         }
     };
     {
-        const std::size_t threads = std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), count);
+        const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+        const std::size_t threads = std::min(most_threads > 0 ? most_threads : cores, count);
         std::vector<std::jthread> workers;
         try {
             for (std::size_t k = 1; k < threads; ++k) workers.emplace_back(work_on);
@@ -41,4 +42,4 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
     if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace flightwatt::batch
+}  // namespace flightwatt
