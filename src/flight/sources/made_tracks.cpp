@@ -104,18 +104,6 @@ const std::vector<MadeTrack>& made_tracks() {
          Quantity::metre_per_second,
          "WIND_INFO.east, north",
          wind_speed},
-        {"latitude_deg",
-         "GPS",
-         {"utm_east", "utm_north", "utm_zone"},
-         {},
-         "GPS.utm",
-         [](const Row& row) { return position_of_utm(row[0], row[1], row[2]).latitude_deg; }},
-        {"longitude_deg",
-         "GPS",
-         {"utm_east", "utm_north", "utm_zone"},
-         {},
-         "GPS.utm",
-         [](const Row& row) { return position_of_utm(row[0], row[1], row[2]).longitude_deg; }},
     };
     return made;
 }
@@ -136,6 +124,25 @@ void add_made(std::vector<Track>& tracks, const SenderLog& sender, const MadeTra
         values[i] = made.make(row);
     }
     tracks.push_back(as_track(made.name, made.source, *table, values, Merge::mean));
+}
+
+/// Latitude and longitude from the same series, which takes long.
+void add_utm_position(std::vector<Track>& tracks, const SenderLog& sender) {
+    const auto* table = sender.table("GPS");
+    if (table == nullptr) return;
+    const auto* east = table->column("utm_east");
+    const auto* north = table->column("utm_north");
+    const auto* zone = table->column("utm_zone");
+    if (east == nullptr || north == nullptr || zone == nullptr) return;
+    std::vector<double> latitude_deg(table->time_s.size());
+    std::vector<double> longitude_deg(table->time_s.size());
+    for (std::size_t i = 0; i < latitude_deg.size(); ++i) {
+        const auto position = position_of_utm(east->values[i], north->values[i], zone->values[i]);
+        latitude_deg[i] = position.latitude_deg;
+        longitude_deg[i] = position.longitude_deg;
+    }
+    tracks.push_back(as_track("latitude_deg", "GPS.utm", *table, latitude_deg, Merge::mean));
+    tracks.push_back(as_track("longitude_deg", "GPS.utm", *table, longitude_deg, Merge::mean));
 }
 
 /// The first of `fields` that the table has with the given quantity; nullptr if it has none.
@@ -268,6 +275,7 @@ void add_made_tracks(std::vector<Track>& tracks, const SenderLog& sender, bool d
     add_products(tracks, sender);
     if (definitions_assumed) add_exchanged(tracks, sender);
     for (const auto& made : made_tracks()) add_made(tracks, sender, made);
+    add_utm_position(tracks, sender);
     if (const auto* takeoff = sender.table("TAKEOFF"); takeoff != nullptr && !takeoff->empty()) {
         const std::vector<double> ones(takeoff->time_s.size(), 1.0);
         tracks.push_back(as_track("takeoff", "TAKEOFF", *takeoff, ones, Merge::latest));
