@@ -13,6 +13,14 @@ struct DensityNode {
     double log_density = 0.0;
 };
 
+template <typename LogDensity>
+std::vector<DensityNode> densities_at(const LogDensity& log_density, const std::vector<double>& places) {
+    std::vector<DensityNode> nodes;
+    nodes.reserve(places.size());
+    for (const double place : places) nodes.push_back({place, log_density(place)});
+    return nodes;
+}
+
 /// Nodes that resolve a density: `starts` (rising) and, wherever the density is not negligible, as many between them
 /// as it takes for neighbours to differ by no more than a factor of two. A peak is found if one of the starts is on it
 /// or if it spans several of them.
@@ -24,9 +32,7 @@ std::vector<DensityNode> resolve_density(const LogDensity& log_density, const st
     constexpr double same_place = 1e-10;  // relative
     constexpr int most_rounds = 40;
     constexpr std::size_t most_nodes = 600;
-    std::vector<DensityNode> nodes;
-    nodes.reserve(starts.size());
-    for (const double place : starts) nodes.push_back({place, log_density(place)});
+    auto nodes = densities_at(log_density, starts);
     for (int round = 0; round < most_rounds && nodes.size() < most_nodes; ++round) {
         const double top = std::ranges::max_element(nodes, {}, &DensityNode::log_density)->log_density;
         const auto rise = [&](std::size_t i) {

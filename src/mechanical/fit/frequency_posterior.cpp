@@ -1,6 +1,7 @@
 #include "mechanical/fit/frequency_posterior.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/statistics.h"
 #include "mechanical/fit/density_nodes.h"
 #include "mechanical/fit/fourier_basis.h"
@@ -9,6 +10,8 @@
 #include "mechanical/fit/node_likelihood.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -28,23 +31,41 @@ constexpr int climbed_bits = 20;
 /// Nodes that hold less than this of all weight together are left out.
 constexpr double negligible_weight = 1e-4;
 
+/// Of all flights together: then they tell one frequency and one autocorrelation, and the work is worth threads.
+constexpr std::size_t many_samples = 5'000;
+
+/// 1, or 0 for every core.
+std::size_t threads_for(std::size_t samples) { return samples < many_samples ? 1 : 0; }
+
 using FlightsAt = std::vector<FlightAtFrequency>;
+
+std::size_t sample_count(const FlightsAt& flights) {
+    std::size_t count = 0;
+    for (const auto& flight : flights) count += flight.gap.size();
+    return count;
+}
 
 /// Empty if the samples of one of the flights determine no series there.
 FlightsAt flights_at(std::span<const ScaledSamples> flights, int order, double theta_rad) {
-    FlightsAt all;
-    for (const auto& samples : flights) {
-        auto flight = flight_at(samples, order, theta_rad);
-        if (!flight) return {};
-        all.push_back(*std::move(flight));
-    }
-    return all;
+    FlightsAt all(flights.size());
+    std::atomic<bool> are_determined = true;
+    const auto work = [&](std::size_t i) {
+        auto flight = flight_at(flights[i], order, theta_rad);
+        if (flight) {
+            all[i] = *std::move(flight);
+        } else {
+            are_determined = false;
+        }
+    };
+    for_each_in_parallel(flights.size(), work, threads_for(mechanical::sample_count(flights)));
+    return are_determined ? all : FlightsAt();
 }
 
 double log_likelihood(const FlightsAt& flights, double autocorrelation) {
-    double sum = 0.0;
-    for (const auto& flight : flights) sum += evidence_of(flight, autocorrelation).log_likelihood;
-    return sum;
+    std::vector<double> parts(flights.size());
+    const auto work = [&](std::size_t i) { parts[i] = evidence_of(flights[i], autocorrelation).log_likelihood; };
+    for_each_in_parallel(flights.size(), work, threads_for(sample_count(flights)));
+    return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
 
 /// One frequency, and the autocorrelations there.
@@ -53,13 +74,15 @@ struct FrequencyNode {
     std::vector<DensityNode> autocorrelations;
 };
 
-FrequencyNode node_at(std::span<const ScaledSamples> flights, const PosteriorOptions& options, double highest,
-                      double theta_rad) {
+/// `autocorrelations` are those to begin with, or all there is to know.
+FrequencyNode node_at(std::span<const ScaledSamples> flights, const PosteriorOptions& options,
+                      const std::vector<double>& autocorrelations, bool are_all, double theta_rad) {
     FrequencyNode node;
     const auto at = flights_at(flights, options.order, theta_rad);
     if (at.empty()) return node;
     const auto density = [&](double r) { return log_likelihood(at, r); };
-    node.autocorrelations = resolve_density(density, coarse_autocorrelations(highest));
+    node.autocorrelations =
+        are_all ? densities_at(density, autocorrelations) : resolve_density(density, autocorrelations);
     node.log_density = log_sum(log_masses(node.autocorrelations)) - 2.0 * std::log(theta_rad);
     return node;
 }
@@ -134,16 +157,75 @@ std::vector<double> starts_of(std::span<const ScaledSamples> flights, const Post
     return starts;
 }
 
+/// A peak that is nearly normal.
+struct Peak {
+    double place = 0.0;
+    double sd = 0.0;
+};
+
+/// Places a standard deviation apart over the peak, as far as they lie between the bounds, which are places where the
+/// peak reaches them: there trapezoids integrate a normal density to six digits.
+std::vector<double> places_over(const Peak& peak, double low, double high) {
+    constexpr int reach = 5;
+    std::vector<double> places;
+    for (int k = -reach; k <= reach; ++k) {
+        const double place = std::clamp(peak.place + k * peak.sd, low, high);
+        if (places.empty() || place > places.back()) places.push_back(place);
+    }
+    return places;
+}
+
+/// The standard deviation of a peak from the density beside it, from `width` down.
+template <typename LogDensity>
+double sd_of_peak(const LogDensity& log_density, double place, double width) {
+    constexpr double near = 1.0;
+    constexpr double smallest = 1e-9;
+    const double top = log_density(place);
+    double lost = top - log_density(place + width);
+    while (lost > near && width > smallest * place) {
+        width /= 2.0;
+        lost = top - log_density(place + width);
+    }
+    return lost > 0.0 ? width / std::sqrt(2.0 * lost) : width;
+}
+
+/// Of many samples that tell one frequency.
+std::vector<double> frequencies_about(std::span<const ScaledSamples> flights, const PosteriorOptions& options,
+                                      double autocorrelation) {
+    const auto density = [&](double theta_rad) {
+        const auto at = flights_at(flights, options.order, theta_rad);
+        return at.empty() ? no_likelihood : log_likelihood(at, autocorrelation) - 2.0 * std::log(theta_rad);
+    };
+    const double peak_rad = climbed(flights, options, options.found_rad, autocorrelation);
+    const double turned_rad = 0.5 / options.order;  // see is_one_frequency
+    return places_over({peak_rad, sd_of_peak(density, peak_rad, turned_rad)}, options.range.low_rad,
+                       options.range.high_rad);
+}
+
+/// The autocorrelations there, at the frequency of least squares.
+Peak autocorrelation_peak(std::span<const ScaledSamples> flights, const PosteriorOptions& options, double highest) {
+    const auto at = flights_at(flights, options.order, options.found_rad);
+    const auto density = [&](double r) { return log_likelihood(at, r); };
+    const auto behind = [&](double r) { return -density(r); };
+    const double r = boost::math::tools::brent_find_minima(behind, 0.0, highest, climbed_bits).first;
+    const double expected_sd = 1.0 / std::sqrt(static_cast<double>(mechanical::sample_count(flights)));
+    return {r, sd_of_peak(density, r, std::min(4.0 * expected_sd, (highest - r) / 2.0))};
+}
+
 PosteriorNode posterior_node(const FlightsAt& flights, double theta_rad, double autocorrelation) {
     PosteriorNode node{theta_rad, autocorrelation};
-    for (const auto& flight : flights) {
-        const auto evidence = evidence_of(flight, autocorrelation);
-        const auto& back = flight.from_orthonormal;
+    node.flights.resize(flights.size());
+    std::vector<double> parts(flights.size());
+    const auto work = [&](std::size_t i) {
+        const auto evidence = evidence_of(flights[i], autocorrelation);
+        const auto& back = flights[i].from_orthonormal;
         const double variance = evidence.square_sum / evidence.degrees_of_freedom;
-        node.log_likelihood += evidence.log_likelihood;
-        node.flights.push_back({back * evidence.coordinates, variance * back * evidence.covariance * back.transpose(),
-                                evidence.degrees_of_freedom});
-    }
+        parts[i] = evidence.log_likelihood;
+        node.flights[i] = {back * evidence.coordinates, variance * back * evidence.covariance * back.transpose(),
+                           evidence.degrees_of_freedom};
+    };
+    for_each_in_parallel(flights.size(), work, threads_for(sample_count(flights)));
+    node.log_likelihood = std::accumulate(parts.begin(), parts.end(), 0.0);
     return node;
 }
 
@@ -237,14 +319,24 @@ FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> unsorted, 
     for (const auto& samples : unsorted) flights.push_back(in_order_of_time(samples));
     FrequencyPosterior posterior;
     posterior.highest_autocorrelation = highest_autocorrelation_of(flights);
-    const auto starts = options.order == 0 ? std::vector{options.found_rad}
-                                           : starts_of(flights, options, posterior.highest_autocorrelation);
+    const double highest = posterior.highest_autocorrelation;
+    const bool is_told = options.order > 0 && mechanical::sample_count(flights) >= many_samples &&
+                         is_one_frequency(flights, options.order, options.range, options.found_rad);
+    std::vector<double> starts{options.found_rad};
+    auto autocorrelations = coarse_autocorrelations(highest);
+    if (is_told) {
+        const auto peak = autocorrelation_peak(flights, options, highest);
+        autocorrelations = places_over(peak, 0.0, highest);
+        starts = frequencies_about(flights, options, peak.place);
+    } else if (options.order > 0) {
+        starts = starts_of(flights, options, highest);
+    }
     std::vector<std::pair<double, FrequencyNode>> known;
     const auto log_density = [&](double theta_rad) {
-        known.emplace_back(theta_rad, node_at(flights, options, posterior.highest_autocorrelation, theta_rad));
+        known.emplace_back(theta_rad, node_at(flights, options, autocorrelations, is_told, theta_rad));
         return known.back().second.log_density;
     };
-    const auto density = resolve_density(log_density, starts);
+    const auto density = is_told ? densities_at(log_density, starts) : resolve_density(log_density, starts);
     std::ranges::sort(known, {}, &std::pair<double, FrequencyNode>::first);
     std::vector<FrequencyNode> nodes;
     nodes.reserve(known.size());

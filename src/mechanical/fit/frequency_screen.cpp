@@ -97,7 +97,8 @@ double screened_log_likelihood(const ScreenedFlight& flight, const ScreenGrid& g
 /// Least sums of squares of all flights at a frequency.
 struct SquareSum {
     double sum = 0.0;
-    double most_correlation = 0.0;  ///< of neighbouring residuals, of the flight that has most
+    double product_sum = 0.0;       ///< of neighbouring residuals
+    double most_correlation = 0.0;  ///< of them, of the flight that has most
 };
 
 /// None where a flight determines no series.
@@ -110,30 +111,52 @@ std::optional<SquareSum> square_sum_at(std::span<const ScaledSamples> flights, i
         const auto pairs = residuals.size() - 1;
         const double own = residuals.squaredNorm();
         if (!(own > 0.0)) return std::nullopt;
-        square.most_correlation =
-            std::max(square.most_correlation, residuals.head(pairs).dot(residuals.tail(pairs)) / own);
+        const double products = residuals.head(pairs).dot(residuals.tail(pairs));
+        square.most_correlation = std::max(square.most_correlation, products / own);
+        square.product_sum += products;
         square.sum += own;
     }
     return square;
+}
+
+/// The correlation of neighbouring residuals that counts: of few flights of many samples the most; of many flights that of
+/// all together, with what series of their own take from it. None where neither tells it, or noise lasts.
+std::optional<double> correlation_that_counts(std::span<const ScaledSamples> flights, int order,
+                                              const SquareSum& square) {
+    constexpr std::size_t many_samples = 100;
+    constexpr std::size_t many_flights = 30;
+    constexpr double most = 0.5;
+    constexpr double most_of_many = 0.8;  // what lasts in one flight is not there in the next
+    const auto has_fewer = [&](std::size_t least) {
+        return std::ranges::any_of(flights, [&](const auto& flight) { return flight.tau.size() < least; });
+    };
+    if (flights.size() < many_flights) {
+        if (has_fewer(many_samples) || square.most_correlation > most) return std::nullopt;
+        return square.most_correlation;
+    }
+    const auto coefficients = static_cast<std::size_t>(coefficient_count(order));
+    if (has_fewer(2 * coefficients)) return std::nullopt;
+    const auto taken = static_cast<double>(coefficients * flights.size());
+    const double pooled = square.product_sum / square.sum + taken / static_cast<double>(sample_count(flights));
+    if (pooled > most_of_many) return std::nullopt;
+    return std::max(0.0, pooled);
 }
 
 }  // namespace
 
 bool is_one_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
                       double found_rad) {
-    constexpr std::size_t least_samples = 100;
-    constexpr double most_correlation = 0.5;
     constexpr double least_log_ratio = 25.0;
     const double beside_rad = 0.5 / order;
     if (found_rad - beside_rad <= range.low_rad || found_rad + beside_rad >= range.high_rad) return false;
-    if (std::ranges::any_of(flights, [](const auto& flight) { return flight.tau.size() < least_samples; }))
-        return false;
     const auto best = square_sum_at(flights, order, found_rad);
-    if (!best || best->most_correlation > most_correlation) return false;
-    double samples = 0.0;
-    for (const auto& flight : flights) samples += static_cast<double>(flight.tau.size());
-    samples *= (1.0 - best->most_correlation) / (1.0 + best->most_correlation);
-    const double least_worse = best->sum * std::exp(2.0 * least_log_ratio / samples);
+    if (!best) return false;
+    const auto correlation = correlation_that_counts(flights, order, *best);
+    if (!correlation) return false;
+    const double freedom =
+        static_cast<double>(sample_count(flights)) - static_cast<double>(flights.size()) * coefficient_count(order);
+    const double alone = freedom * (1.0 - *correlation) / (1.0 + *correlation);
+    const double least_worse = best->sum * std::exp(2.0 * least_log_ratio / alone);
     for (const double theta_rad : {found_rad - beside_rad, found_rad + beside_rad}) {
         const auto beside = square_sum_at(flights, order, theta_rad);
         if (!beside || beside->sum < least_worse) return false;

@@ -81,15 +81,15 @@ double least_power_w(const PhaseSamples& samples) {
     return least_w;
 }
 
-std::size_t points_of(const PhaseFit& fit, const FrequencyPosterior& posterior) {
-    const double highest_rad = std::max(fit.theta_rad, posterior.nodes.back().theta_rad);
+std::size_t points_up_to(double highest_rad, const PhaseFit& fit) {
     auto curve = fit.flights.front().fourier;
     curve.omega_rad_per_s = highest_rad;
     return points_of_curve(curve, 1.0);
 }
 
-CurveGrid curve_grid(std::span<const PhaseSamples> flights, const PhaseFit& fit, const FrequencyPosterior& posterior) {
-    const auto points = points_of(fit, posterior);
+/// Without means: fine enough for frequencies up to `highest_rad`.
+CurveGrid curve_grid(std::span<const PhaseSamples> flights, const PhaseFit& fit, double highest_rad) {
+    const auto points = points_up_to(highest_rad, fit);
     const auto order = static_cast<int>(fit.flights.front().fourier.cos_w.size());
     const auto rows = static_cast<Eigen::Index>(points);
     const auto columns = static_cast<Eigen::Index>(flights.size());
@@ -111,7 +111,13 @@ CurveGrid curve_grid(std::span<const PhaseSamples> flights, const PhaseFit& fit,
         grid.most_w(i) = most;
         grid.floor_w(i) = least_power_w(flights[flight]);
     }
-    const std::vector<double> equal(flights.size(), 1.0 / static_cast<double>(columns));
+    return grid;
+}
+
+void add_mean(CurveGrid& grid, const FrequencyPosterior& posterior, int order) {
+    const auto points = grid.tau.size();
+    const auto columns = grid.mean.cols();
+    const std::vector<double> equal(posterior.nodes.front().flights.size(), 1.0 / static_cast<double>(columns));
     const auto nodes = mean_of_flights(posterior, equal);
     double second_moment = 0.0;
     for (std::size_t k = 0; k < nodes.size();) {
@@ -133,7 +139,6 @@ CurveGrid curve_grid(std::span<const PhaseSamples> flights, const PhaseFit& fit,
     }
     const double square_of_mean = grid.mean.rowwise().mean().squaredNorm() / static_cast<double>(points);
     grid.sd_w = std::sqrt(std::max(0.0, second_moment - square_of_mean));
-    return grid;
 }
 
 bool falls_below(const Eigen::MatrixXd& curves, const Eigen::VectorXd& floor_w) {
@@ -320,13 +325,21 @@ void settle_curves(std::span<const PhaseSamples> flights, PhaseFit& fit) {
     std::vector<ScaledSamples> values;
     for (std::size_t i = 0; i < flights.size(); ++i)
         values.push_back(in_order_of_time(fitted_values(flights[i], fit.flights[i], fit)));
-    if (stays_above(flights, fit) && is_one_frequency(values, order, fit.range, fit.theta_rad)) return;
-    auto posterior = frequency_posterior(values, {order, fit.range, fit.theta_rad});
-    const auto grid = curve_grid(flights, fit, posterior);
-    NearSeries near{fit.theta_rad, Eigen::MatrixXd(coefficient_count(order), grid.mean.cols())};
-    for (Eigen::Index i = 0; i < grid.mean.cols(); ++i) {
+    const bool is_settled = is_one_frequency(values, order, fit.range, fit.theta_rad);
+    if (is_settled && stays_above(flights, fit)) return;
+    NearSeries near{fit.theta_rad, Eigen::MatrixXd(coefficient_count(order), std::ssize(flights))};
+    for (Eigen::Index i = 0; i < near.coefficients.cols(); ++i) {
         near.coefficients.col(i) = coefficients_of(fit.flights[static_cast<std::size_t>(i)].fourier);
     }
+    if (is_settled) {
+        hold_above(curve_grid(flights, fit, fit.theta_rad), near);
+        fit.not_negative = true;
+        take_series(fit, flights, near);
+        return;
+    }
+    auto posterior = frequency_posterior(values, {order, fit.range, fit.theta_rad});
+    auto grid = curve_grid(flights, fit, std::max(fit.theta_rad, posterior.nodes.back().theta_rad));
+    add_mean(grid, posterior, order);
     fit.mean_curve = is_open(posterior, order, fit.theta_rad) &&
                      (is_another(grid) || falls_below(grid.least_squares, grid.floor_w) || !is_plausible(near, grid));
     if (fit.mean_curve) near = near_series(grid, order, candidates(posterior, fit));

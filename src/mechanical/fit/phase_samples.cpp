@@ -32,4 +32,10 @@ double median_gap(std::vector<double> tau) {
     return gaps.empty() ? 0.0 : median(std::move(gaps));
 }
 
+std::size_t sample_count(std::span<const ScaledSamples> flights) {
+    std::size_t count = 0;
+    for (const auto& flight : flights) count += flight.tau.size();
+    return count;
+}
+
 }  // namespace flightwatt::mechanical

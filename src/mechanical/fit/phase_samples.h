@@ -53,4 +53,7 @@ struct ScaledSamples {
     std::string flight = {};  ///< for messages
 };
 
+/// Of all flights together.
+std::size_t sample_count(std::span<const ScaledSamples> flights);
+
 }  // namespace flightwatt::mechanical

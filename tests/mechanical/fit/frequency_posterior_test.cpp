@@ -2,11 +2,15 @@
 
 #include "helpers/interval_coverage.h"
 #include "mechanical/fit/density_nodes.h"
+#include "mechanical/fit/frequency_scan.h"
 #include "mechanical/fit/node_likelihood.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -105,6 +109,68 @@ TEST(FrequencyPosterior, DoesNotDependOnTheOrderOfTheSamples) {
     ASSERT_FALSE(posterior.nodes.empty());
     EXPECT_NEAR(again.nodes.front().flights[0].coefficients(0), posterior.nodes.front().flights[0].coefficients(0),
                 1e-3);
+}
+
+/// As many short flights as tell one frequency together.
+std::vector<ScaledSamples> many_flights(double autocorrelation) {
+    std::mt19937 random(3);
+    const auto takeoff = test::published_model().phases[flight::Phase::takeoff];
+    std::vector<ScaledSamples> flights;
+    for (int i = 0; i < 120; ++i) {
+        auto samples = test::record(takeoff, {50.0, 1.1, 0.0, 0.0}, random);
+        test::add_noise(samples, 0.05, autocorrelation, random);
+        flights.push_back(in_order_of_time({samples.tau, samples.power_w, ""}));
+    }
+    return flights;
+}
+
+/// Mean and standard deviation of a density given at places.
+std::pair<double, double> moments(const std::vector<double>& places, const std::vector<double>& density) {
+    double sum = 0.0;
+    double mean = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const double before = i > 0 ? places[i] - places[i - 1] : 0.0;
+        const double after = i + 1 < places.size() ? places[i + 1] - places[i] : 0.0;
+        const double mass = density[i] * (before + after);
+        sum += mass;
+        mean += mass * places[i];
+        squares += mass * places[i] * places[i];
+    }
+    mean /= sum;
+    return {mean, std::sqrt(squares / sum - mean * mean)};
+}
+
+TEST(FrequencyPosterior, OfManyFlightsIsThatOfAFineGrid) {
+    for (const double autocorrelation : {0.0, 0.4}) {
+        const auto flights = many_flights(autocorrelation);
+        ASSERT_GT(sample_count(flights), 5000U);
+        const FrequencyRange range{3.142, 24.0};  // below half of the sampling
+        const auto found = find_frequency(flights, 3, range);
+        const auto posterior = frequency_posterior(flights, {3, range, found});
+        ASSERT_LE(posterior.theta_rad.size(), 11U) << "not told by the normal peak";
+        const auto [mean_rad, sd_rad] = moments(posterior.theta_rad, posterior.density);
+        // The same by brute force, over a grid that is three times as fine and wide enough.
+        std::vector<double> places;
+        std::vector<double> logs;
+        for (int i = -15; i <= 15; ++i) {
+            places.push_back(mean_rad + i * sd_rad / 3.0);
+            std::vector<FlightAtFrequency> at;
+            for (const auto& flight : flights) at.push_back(flight_at(flight, 3, places.back()).value());
+            std::vector<double> of_r;
+            for (double r = 0.0; r <= 0.6; r += 0.02) {
+                of_r.push_back(0.0);
+                for (const auto& flight : at) of_r.back() += evidence_of(flight, r).log_likelihood;
+            }
+            logs.push_back(log_sum(of_r) - 2.0 * std::log(places.back()));
+        }
+        const double top = *std::ranges::max_element(logs);
+        for (double& value : logs) value = std::exp(value - top);
+        const auto [grid_mean_rad, grid_sd_rad] = moments(places, logs);
+        EXPECT_NEAR(mean_rad, grid_mean_rad, 0.02 * grid_sd_rad);
+        EXPECT_NEAR(sd_rad / grid_sd_rad, 1.0, 0.02);
+        EXPECT_NEAR(mean_rad, found, 4.0 * sd_rad);
+    }
 }
 
 }  // namespace
