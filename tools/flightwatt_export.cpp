@@ -211,7 +211,8 @@ exchange::EstimatorInput estimator_input(const cli::StageCall& call, const std::
     if (call.has("cells")) result.cells_in_series = static_cast<int>(cli::count_option(call, "cells", 1, most_cells));
     if (call.has("parallel"))
         result.cells_in_parallel = static_cast<int>(cli::count_option(call, "parallel", 1, most_cells));
-    result.idle_w = cli::positive_option(call, "idle-power", "W");
+    constexpr double most_idle_w = 1e5;
+    if (call.has("idle-power")) result.idle_w = cli::number_option(call, "idle-power", 0.0, most_idle_w);
     return result;
 }
 

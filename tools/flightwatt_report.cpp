@@ -104,7 +104,12 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
     page.answers.warnings = model_warnings(*page.model);
     auto model = report::model_of(*content.fit, cli::read_published(call));
     const bool synthetic = report::any_synthetic(content.flights);
-    if (synthetic) model.origin = "Fitted by flightwatt batch to the SYNTHETIC flights above: no aircraft flew them.";
+    if (synthetic) {
+        model.origin =
+            report::all_synthetic(content.flights)
+                ? "Fitted by flightwatt batch to the SYNTHETIC flights above: no aircraft flew them."
+                : "Fitted by flightwatt batch to the flights above. Some are SYNTHETIC: no aircraft flew these.";
+    }
     page.sections.push_back(model_section(model, figures, "model"));
     const auto most = cli::count_option(call, "max-validation-flights");
     if (content.measured.size() < 2 || content.measured.size() > most) {
@@ -252,6 +257,9 @@ int write_page(const cli::StageCall& call) {
     if (call.has("replay") && (!inputs.out || inputs.missions.empty()))
         throw UsageError(
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
+    const bool wants_page = call.output || (!call.json && !call.has("figures"));
+    std::optional<report::WebFiles> web;  // read before the work: where they are missing, that is told at once
+    if (wants_page || call.has("figures")) web = report::read_web_files(report::web_folder());
     Page page;
     page.head.title = "FlightWatt report";
     if (const auto title = call.maybe<std::string>("title")) page.head.title = report::valid_utf8(*title);
@@ -266,12 +274,8 @@ int write_page(const cli::StageCall& call) {
     if (!inputs.missions.empty()) add_missions(page, inputs, published);
     if (call.has("replay")) add_replay(page, call, inputs);
     page.sections.insert(page.sections.begin(), report::answers_section(page.answers, page.flights));
-    const bool wants_page = call.output || (!call.json && !call.has("figures"));
-    if (wants_page || call.has("figures")) {
-        const auto web = report::read_web_files(report::web_folder());
-        write_figure_files(call, page.sections, web);
-        if (wants_page) cli::write_result(call, page_html(page.head, page.sections, web));
-    }
+    if (web) write_figure_files(call, page.sections, *web);
+    if (wants_page) cli::write_result(call, page_html(page.head, page.sections, *web));
     if (call.json) cli::print(cli::json_text(summary_json(page)));
     return cli::ok;
 }

@@ -77,7 +77,7 @@ std::string_view latex_of(char c) {
         case '|':
             return "\\textbar{}";
         case '"':
-            return "\\textquotedbl{}";
+            return "{\\char34}";
         case '[':
             return "{[}";
         case '*':

@@ -190,7 +190,10 @@ int run(int argc, char** argv, const StageDefinition& definition, const StageBod
         return ok;
     }
     if (call.inputs.size() < definition.min_inputs) {
-        throw UsageError(fmt::format("no input given; {}", usage_line(definition)));
+        const auto given = call.inputs.size();
+        const auto lack = given == 0 ? std::string("no input given")
+                                     : fmt::format("{} given, expected {}", given, definition.min_inputs);
+        throw UsageError(fmt::format("{}; {}", lack, usage_line(definition)));
     }
     if (call.inputs.size() > definition.max_inputs) {
         throw UsageError(

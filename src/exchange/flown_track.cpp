@@ -4,6 +4,7 @@
 #include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
 #include "flight/log_name.h"
+#include "flight/phase_statistics.h"
 
 #include <algorithm>
 #include <array>
@@ -89,14 +90,17 @@ bool crosses_antimeridian(const TrackPoint& from, const TrackPoint& to) {
 }
 
 std::optional<double> mean_power_w(const FlownTrack& track, const TrackPart& part) {
-    double sum_w = 0.0;
-    std::size_t count = 0;
+    std::vector<double> time_s;
+    std::vector<double> power_w;
     for (std::size_t i = part.first; i <= part.last; ++i) {
         if (!track.points[i].power_w) continue;
-        sum_w += *track.points[i].power_w;
-        ++count;
+        time_s.push_back(track.points[i].time_s);
+        power_w.push_back(*track.points[i].power_w);
     }
-    return count == 0 ? std::nullopt : std::optional(sum_w / static_cast<double>(count));
+    if (time_s.empty()) return std::nullopt;
+    const double duration_s = time_s.back() - time_s.front();
+    if (!(duration_s > 0.0)) return power_w.front();
+    return flight::integrated(time_s, power_w, time_s.front(), time_s.back()) / duration_s;
 }
 
 }  // namespace

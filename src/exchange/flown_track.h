@@ -52,7 +52,7 @@ struct TrackPart {
     std::string colour;  ///< "#0072b2"
     std::size_t first = 0;
     std::size_t last = 0;
-    std::optional<double> mean_power_w = {};  ///< of its points that have power
+    std::optional<double> mean_power_w = {};  ///< over its time, linear between its points
 };
 
 /// The whole track in parts. Classes of power are six equal, round steps from 0 to what 95 % of the points are below.

@@ -116,6 +116,12 @@ std::vector<std::string> aircraft_lines(std::span<const ReportFlight> flights) {
     return lines;
 }
 
+bool all_synthetic(std::span<const ReportFlight> flights) {
+    return std::ranges::all_of(flights, [](const ReportFlight& flight) {
+        return !flight.rejected.empty() || flight::is_synthetic(flight.series.aircraft_name);
+    });
+}
+
 bool any_synthetic(std::span<const ReportFlight> flights) {
     return std::ranges::any_of(flights, [](const ReportFlight& flight) {
         return flight.rejected.empty() && flight::is_synthetic(flight.series.aircraft_name);

@@ -26,8 +26,9 @@ Section answers_section(const PageAnswers& answers, std::span<const ReportFlight
 /// "20 Faulty: 3 flights, 1 h 6 min in the air, 26.1 Wh" of each aircraft, SYNTHETIC ones so called.
 std::vector<std::string> aircraft_lines(std::span<const ReportFlight> flights);
 
-/// Whether any flight that was not rejected is synthetic.
+/// Whether any flight that was not rejected is synthetic, and whether all are.
 bool any_synthetic(std::span<const ReportFlight> flights);
+bool all_synthetic(std::span<const ReportFlight> flights);
 
 /// How far off the models are of flights that they have not seen, best first; empty where nothing was validated.
 std::string prediction_line(std::span<const mechanical::ValidatedFlight> flights);

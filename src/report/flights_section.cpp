@@ -1,8 +1,8 @@
 #include "report/flights_section.h"
 
 #include "base/duration_text.h"
-#include "base/units.h"
 #include "base/parallel.h"
+#include "base/units.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"

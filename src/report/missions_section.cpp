@@ -30,12 +30,21 @@ std::vector<const SimulatedMission*> first_of_each(Missions missions, const Same
     return firsts;
 }
 
+/// What is drawn of a model: files of it may leave out its errors.
+std::string drawn_text(mechanical::MechanicalModel model) {
+    for (auto& phase : model.phases.values) {
+        phase.errors.reset();
+        phase.spread.reset();
+    }
+    return to_toml(model);
+}
+
 std::vector<Section> model_sections(Missions missions, const PublishedFigures& published,
                                     const std::optional<mechanical::MechanicalModel>& shown) {
     std::vector<Section> sections;
     for (const auto* simulated : first_of_each(missions, have_same_model)) {
         const auto& mechanical = simulated->mission.mechanical;
-        if (!mechanical || (shown && to_toml(*mechanical) == to_toml(*shown))) continue;
+        if (!mechanical || (shown && drawn_text(*mechanical) == drawn_text(*shown))) continue;
         ReportModel model{*mechanical, "The missions' model, as their files name it."};
         model.table_one = table_one(*mechanical);
         sections.push_back(model_section(model, published, fmt::format("mission-model-{}", sections.size() + 1)));

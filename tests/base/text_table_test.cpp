@@ -47,7 +47,7 @@ a, b & $1.5$ \\
 TEST(Latex, LeavesNoCharacterThatTexReadsOtherwise) {
     EXPECT_EQ(latex_escaped("a_b & 50 % {x} #1 $ ~ ^ \\"),
               "a\\_b \\& 50 \\% \\{x\\} \\#1 \\$ \\textasciitilde{} \\textasciicircum{} \\textbackslash{}");
-    EXPECT_EQ(latex_escaped("[km] * <a> |\""), "{[}km] {*} \\textless{}a\\textgreater{} \\textbar{}\\textquotedbl{}");
+    EXPECT_EQ(latex_escaped("[km] * <a> |\""), "{[}km] {*} \\textless{}a\\textgreater{} \\textbar{}{\\char34}");
     EXPECT_EQ(latex_escaped("take\u2011off \xC3\xA9 \u6c34 \xFF\n\x01"), "take-off \xC3\xA9 ? ? ?");
     EXPECT_EQ(latex_escaped("cut \xE6\xB0"), "cut ??") << "a character that ends too early";
 }

@@ -73,7 +73,7 @@ TEST(Export, TakesTheFormFromTheNameOfTheFile) {
              {model + " -o t.h", "/* Electrical power"},
              {model + " $S/fits/battery/synthetic-3s.toml --cells 3 -o t.params", "# Written by flightwatt"},
              {"$S/missions/synthetic/survey-path.toml --format paparazzi --parallel 2 -o t.py", "# Written by"},
-             {"$S/missions/synthetic/survey-path.toml --format inav --idle-power 5 -o t.txt", "# Written by"}}) {
+             {"$S/missions/synthetic/survey-path.toml --format inav --idle-power 0 -o t.txt", "# Written by"}}) {
         const auto result = exported(words, folder);
         EXPECT_EQ(result.code, 0) << words << ": " << result.err;
         const auto file = words.substr(words.rfind(' ') + 1);

@@ -105,6 +105,19 @@ TEST(ColouredParts, FollowThePhasesAndShareTheirEnds) {
     EXPECT_NE(parts[0].colour, parts[1].colour);
 }
 
+TEST(ColouredParts, HaveTheirMeanPowerOverTime) {
+    FlownTrack track;
+    // 10 W for a second, then up to 30 W in nine, at positions that come unevenly.
+    for (const auto& [time_s, power_w] : {std::pair{0.0, 10.0}, {0.5, 10.0}, {1.0, 10.0}, {10.0, 30.0}}) {
+        TrackPoint point{time_s, 0.0, 0.0};
+        point.power_w = power_w;
+        track.points.push_back(point);
+    }
+    const auto parts = coloured_parts(track, TrackColour::phase);
+    ASSERT_EQ(parts.size(), 1U);
+    EXPECT_DOUBLE_EQ(parts[0].mean_power_w.value(), (10.0 * 1.0 + 20.0 * 9.0) / 10.0);
+}
+
 TEST(ColouredParts, HaveRoundClassesOfPower) {
     const auto parts = coloured_parts(flown_track(places(), {}), TrackColour::power);
     // 95 % of the points are at 30 W or below: steps of 5 W.
