@@ -138,6 +138,7 @@ AnswerWithMargin answer_with_chance(const MarginQuestion& question, const std::o
             const auto landing = landing_chance(mission, find_spreads(mission), *probability);
             if (!least_below || landing.below < least_below->below) least_below = landing;
             const double slack_percent = landing.spare_percent(*probability);
+            if (slack_percent < 0.0) search.learn_kept(landing.stated_spare_percent);
             search.learn(slack_percent, 0.0);
             const bool is_close = std::abs(slack_percent) <= close_part * landing.sd_percent ||
                                   std::abs(landing.below - (1.0 - *probability)) <= landing.resolution;

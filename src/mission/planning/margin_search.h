@@ -22,6 +22,9 @@ class MarginSearch {
         move_to(margin_percent_ + step * (wanted_percent - slack_percent));
     }
 
+    /// The answer keeps so much, though it need not: it is that of every margin up to this one.
+    void learn_kept(double kept_percent) { margin_percent_ = std::max(margin_percent_, kept_percent); }
+
     /// There is no answer with so much.
     void learn_too_much() {
         enough_percent_ = margin_percent_;
