@@ -2,6 +2,8 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
+#include "mission/sampling/level_deviation.h"
+#include "mission/sampling/student.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +18,30 @@ KnapsackEffort effort_for(const Planner& planner, double slots_left) {
     const bool searches = slots_left <= searched_slots;
     if (planner.step_s) return {1e-4, searches ? std::size_t{200} : std::size_t{20}, 16};
     return {searches ? 1e-4 : 1.0, 200};
+}
+
+/// How far mechanical power may be above the model's with the policy's probability, as a part of it: as the policy
+/// states, or as flights differ (levels independent from phase to phase), or where nothing says so by 5 %.
+double expected_reach(const PlanningProblem& mission) {
+    constexpr double sd_if_unknown_percent = 5.0;
+    const auto& policy = *mission.adaptive;
+    if (policy.mechanical_sd_percent || !says_how_flights_differ(mission)) {
+        const double sd_percent = policy.mechanical_sd_percent.value_or(sd_if_unknown_percent);
+        return sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
+    }
+    double energy = 0.0;
+    double variance = 0.0;
+    double freedom = as_if_known;
+    for (const auto phase : all_phases) {
+        const double duration_s = mission.duration_s[phase];
+        if (!(duration_s > 0.0)) continue;
+        const auto deviation = level_deviation(mission, phase);
+        energy += mean_level_w(mission, phase) * duration_s;
+        variance += std::pow(deviation.sd_w * duration_s, 2);
+        freedom = std::min(freedom, deviation.degrees_of_freedom);
+    }
+    const double deviations = student_of_normal(normal_quantile(policy.probability), freedom);
+    return energy > 0.0 ? deviations * std::sqrt(variance) / energy : 0.0;
 }
 
 constexpr double jump_factor = 2.0;  ///< of the depletion predicted: beyond, charge was lost otherwise
@@ -37,8 +63,7 @@ FlightDecider::FlightDecider(const AdaptivePlanner& planner)
       known_(planner.known),
       planned_(timeline_of(known_.duration_s)),
       known_load_(load_of(known_)) {
-    const auto& policy = *known_.adaptive;
-    reach_ = policy.mechanical_sd_percent / units::percent_per_whole * normal_quantile(policy.probability);
+    reach_ = expected_reach(known_);
 }
 
 double FlightDecider::mechanical_factor() const {

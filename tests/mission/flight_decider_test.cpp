@@ -1,6 +1,11 @@
 #include "mission/flight_decider.h"
 
 #include "helpers/paper_missions.h"
+#include "mission/sampling/level_deviation.h"
+
+#include <cmath>
+#include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -44,6 +49,33 @@ TEST(FlightDecider, RunsWhatDemandsLeastFromHereOnWhereNoPlanKeepsTheReserve) {
     ASSERT_FALSE(poor.schedule.empty());
     EXPECT_EQ(poor.schedule.front().phase, Phase::cruise);
     EXPECT_EQ(poor.schedule.front().start_s, 200.0);
+}
+
+/// Levels that differ by 10 % from flight to flight, each phase's for itself, are energy that differs by less.
+TEST(FlightDecider, ExpectsFlightsToDifferAsTheMissionSaysTheyDo) {
+    auto problem = test::paper_problem("adaptive-replanned");
+    double energy_j = 0.0;
+    double squares = 0.0;
+    for (const auto phase : all_phases) {
+        problem.uncertainty.level_sd_percent[phase] = 10.0;
+        const double own_j = mean_level_w(problem, phase) * problem.duration_s[phase];
+        energy_j += own_j;
+        squares += own_j * own_j;
+    }
+    const auto decided = [&](std::optional<double> sd_percent) {
+        problem.adaptive->mechanical_sd_percent = sd_percent;
+        const auto adaptive = make_adaptive_planner(problem);
+        std::vector<Schedule> schedules;
+        for (double soc_percent = 10.0; soc_percent < 95.0; soc_percent += 1.0)
+            schedules.push_back(FlightDecider(adaptive).decide({Phase::cruise, 200.0}, {soc_percent, 0.0}).schedule);
+        return schedules;
+    };
+    const auto by_flights = decided(std::nullopt);
+    EXPECT_EQ(by_flights, decided(10.0 * std::sqrt(squares) / energy_j));
+    EXPECT_NE(by_flights, decided(0.0));
+    for (const auto phase : all_phases) problem.uncertainty.level_sd_percent[phase].reset();
+    problem.mechanical->phases[Phase::cruise].level_spread.reset();
+    EXPECT_EQ(decided(std::nullopt), decided(5.0)) << "nothing says how they differ";
 }
 
 TEST(FlightDecider, APartOfAPlanLiesWithinItsInterval) {

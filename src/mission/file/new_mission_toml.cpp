@@ -239,7 +239,7 @@ std::string plan(const NewMission& mission) {
 #[policy]
 #kind = "adaptive"
 #decide_every_s = 60          # how often a plan is made in each phase [s]
-#mechanical_sd_percent = 5    # how far a flight's power is expected from the model's [%]
+#mechanical_sd_percent = 5    # how far a flight's power is expected from the model's [%]; else as its flights differ
 #learning_time_s = 60         # after so long, what was seen counts as much as what was expected [s]
 #probability = 0.95           # with which every decision keeps the reserve
 

@@ -169,8 +169,7 @@ std::optional<AdaptivePolicy> read_adaptive_policy(const TomlTable& mission) {
     }
     AdaptivePolicy read;
     read.decide_every_s = number_in_or(between(0.1, 1e6), *policy, "decide_every_s", 0.0);
-    read.mechanical_sd_percent =
-        number_in_or(between(0.0, 100.0), *policy, "mechanical_sd_percent", read.mechanical_sd_percent);
+    read.mechanical_sd_percent = optional_number_in(between(0.0, 100.0), *policy, "mechanical_sd_percent");
     read.learning_time_s = number_in_or(between(0.0, 1e6), *policy, "learning_time_s", read.learning_time_s);
     read.probability = number_in_or(between(0.5, 0.999999), *policy, "probability", read.probability);
     return read;

@@ -3,22 +3,37 @@
 #include "base/units.h"
 #include "mechanical/prediction.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 namespace flightwatt::mission {
+namespace {
+
+bool is_of_flights(const LevelDeviation& deviation) {
+    return deviation.source != DeviationSource::none && deviation.source != DeviationSource::fit_error;
+}
+
+}  // namespace
+
+double mean_level_w(const MissionSetup& mission, Phase phase) {
+    if (phase == Phase::cruise && mission.cruise_path) return mean_power_w(*mission.cruise_path);
+    const double duration_s = mission.duration_s[phase];
+    const auto flown = flown_model(mission.mechanical->phases[phase], duration_s, mission.phase_clock);
+    return std::abs(energy_j(flown, duration_s) / duration_s);
+}
+
+bool says_how_flights_differ(const MissionSetup& mission) {
+    return mission.mechanical && std::ranges::all_of(all_phases, [&](Phase phase) {
+               return !(mission.duration_s[phase] > 0.0) || is_of_flights(level_deviation(mission, phase));
+           });
+}
 
 LevelDeviation level_deviation(const MissionSetup& mission, Phase phase) {
     const auto& model = mission.mechanical->phases[phase];
-    if (const auto percent = mission.uncertainty.level_sd_percent[phase]) {
-        const double duration_s = mission.duration_s[phase];
-        const auto flown = flown_model(model, duration_s, mission.phase_clock);
-        const bool has_path = phase == Phase::cruise && mission.cruise_path;
-        const double mean_w =
-            has_path ? mean_power_w(*mission.cruise_path) : std::abs(energy_j(flown, duration_s) / duration_s);
-        return {units::part_of(mean_w, *percent), DeviationSource::stated};
-    }
+    if (const auto percent = mission.uncertainty.level_sd_percent[phase])
+        return {units::part_of(mean_level_w(mission, phase), *percent), DeviationSource::stated};
     if (phase == Phase::cruise && mission.cruise_level && mission.cruise_level->sd_w)
         return {*mission.cruise_level->sd_w, mission.cruise_path ? DeviationSource::path : DeviationSource::conditions,
                 0, mission.cruise_level->degrees_of_freedom};
@@ -33,8 +48,7 @@ LevelDeviation level_deviation(const MissionSetup& mission, Phase phase) {
 
 double level_sd_w(const MissionSetup& mission, Phase phase) {
     const auto deviation = level_deviation(mission, phase);
-    if (deviation.source != DeviationSource::none && deviation.source != DeviationSource::fit_error)
-        return deviation.sd_w;
+    if (is_of_flights(deviation)) return deviation.sd_w;
     throw InputError(
         {mission.file},
         fmt::format("the mechanical model does not say how flights differ: [{}] has no spread", to_string(phase)),

@@ -31,6 +31,12 @@ struct LevelDeviation {
 /// few; estimated from so few, it goes with Student's t. Needs a mechanical model.
 LevelDeviation level_deviation(const MissionSetup& mission, Phase phase);
 
+/// The mean mechanical power [W] of a phase, as the mission has it. Needs a mechanical model.
+double mean_level_w(const MissionSetup& mission, Phase phase);
+
+/// Whether the mission says of each phase that is flown how flights differ.
+bool says_how_flights_differ(const MissionSetup& mission);
+
 /// The deviation [W] where it is how flights differ. Throws InputError where the model does not say so. Needs one too.
 double level_sd_w(const MissionSetup& mission, Phase phase);
 
