@@ -28,7 +28,6 @@
 #include <iterator>
 
 #include <fmt/chrono.h>
-#include <unistd.h>
 
 namespace {
 
@@ -56,22 +55,6 @@ ReportInputs read_inputs(const cli::StageCall& call) {
     }
     return inputs;
 }
-
-/// On a terminal, a bar of what is done of `unit` while it lives.
-class Doing {
-  public:
-    explicit Doing(const char* unit) {
-        if (::isatty(STDERR_FILENO) != 0) bar_.emplace(stderr, unit);
-    }
-    report::Progress progress() {
-        return [this](std::size_t done, std::size_t all) {
-            if (bar_) bar_->show(done, all);
-        };
-    }
-
-  private:
-    std::optional<cli::ProgressBar> bar_;
-};
 
 /// Now, or what SOURCE_DATE_EPOCH says (reproducible-builds.org).
 std::string time_of_report() {
@@ -113,7 +96,8 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
         return;
     }
     if (auto section = report::physical_section(content.measured)) page.sections.push_back(std::move(*section));
-    page.answers.validated = leave_one_out(content.measured, content.fit->options);
+    cli::TerminalProgress validating("fits");
+    page.answers.validated = leave_one_out(content.measured, content.fit->options, {}, validating.shown());
     page.sections.push_back(report::validation_section(page.answers.validated, synthetic));
 }
 
@@ -130,10 +114,10 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
     auto battery = std::async(std::launch::async, [&, most = cli::count_option(call, "max-battery-flights")] {
         return mix.empty() ? std::optional(identify_for_report(content.flights, identification, most)) : std::nullopt;
     });
-    Doing drawing("flights");
+    cli::TerminalProgress drawing("flights");
     page.sections.push_back(report::flights_section(
         content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt,
-        predict_each_minute(content, cli::count_option(call, "max-validation-flights")), drawing.progress()));
+        predict_each_minute(content, cli::count_option(call, "max-validation-flights")), drawing.shown()));
     add_model(page, call, content, figures);
     if (const auto identified = battery.get()) {
         page.sections.push_back(report::battery_section(*identified));
@@ -148,11 +132,11 @@ void add_missions(Page& page, const ReportInputs& inputs, const report::Publishe
     std::string names;
     for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + setup_of(mission).file;
     page.head.facts.emplace_back("missions", names);
-    Doing flying("missions");
-    page.answers.missions = report::simulate_for_report(inputs.missions, flying.progress());
-    Doing answering("answers");
+    cli::TerminalProgress flying("missions");
+    page.answers.missions = report::simulate_for_report(inputs.missions, flying.shown());
+    cli::TerminalProgress answering("answers");
     for (std::size_t i = 0; i < inputs.missions.size(); ++i) {
-        answering.progress()(i, inputs.missions.size());
+        answering.show(i, inputs.missions.size());
         const std::filesystem::path file = setup_of(inputs.missions[i]).file;
         page.answers.answers.push_back(report::answer_for(
             page.answers.missions[i],
