@@ -6,6 +6,7 @@
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
+#include "cli/progress.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 
@@ -13,6 +14,7 @@
 #include <filesystem>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -95,11 +97,20 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
     }
 }
 
+/// On all records, and on all but each in turn: that is long work.
+std::pair<battery::BatteryIdentification, std::vector<battery::LeftOutCheck>> identify_and_check(
+    const std::vector<battery::DischargeRecord>& records, const battery::IdentificationOptions& options) {
+    cli::TerminalProgress identifying("identifications");
+    auto identified = identify_battery(records, options);
+    return {std::move(identified), leave_each_out(records, options, [&](std::size_t done, std::size_t all) {
+                identifying.show(done + 1, all + 1);
+            })};
+}
+
 int identify(const cli::StageCall& call) {
     const auto options = read_options(call);
     const auto records = read_records(call);
-    const auto identified = identify_battery(records, options);
-    const auto left_out = leave_each_out(records, options);
+    const auto [identified, left_out] = identify_and_check(records, options);
     note_what_it_rests_on(call, identified);
     if (left_out.empty()) cli::note(call, "a single flight: there is no other one to check the battery with");
     cli::write_result(call, cli::provenance(identified) + to_toml(identified.battery));

@@ -11,11 +11,13 @@
 #include "mechanical/model_difference.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
+#include "mission/sampled_flights.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -100,6 +102,25 @@ std::optional<Difference> soc_difference(const mission::SocCurve& a, const missi
     return row;
 }
 
+/// By how flights differ, where both missions say it: as drawn for both.
+void add_intervals(const mission::SampledDifference& drawn, std::vector<Difference>& rows) {
+    const std::map<std::string_view, const mission::DrawnIntervals*> intervals{
+        {"duration_s", &drawn.duration_s},
+        {"mechanical_energy_wh", &drawn.mechanical_energy_wh},
+        {"compute_energy_wh", &drawn.compute_energy_wh},
+        {"energy_wh", &drawn.energy_wh},
+        {"final_soc_percent", &drawn.final_soc_percent}};
+    const auto of = [](const battery::Interval& from) { return mechanical::Interval{from.low, from.high}; };
+    for (auto& row : rows) {
+        const auto found = intervals.find(row.quantity);
+        if (row.part != "mission" || found == intervals.end() || !row.a || !row.b) continue;
+        row.a->interval = of(found->second->a);
+        row.b->interval = of(found->second->b);
+        row.interval = of(found->second->difference);
+        row.basis = mechanical::DifferenceBasis::flights;
+    }
+}
+
 std::vector<Difference> mission_difference(const mission::Simulation& a, const mission::Simulation& b) {
     std::vector<Difference> all;
     all.reserve(mission::all_phases.size() + 8);  // and of the whole mission
@@ -126,7 +147,7 @@ std::vector<Difference> mission_difference(const mission::Simulation& a, const m
 
 /// "yes", "no", or "-" where nobody can say. A computed difference is one wherever it is more than rounding.
 std::string verdict(const Difference& row, Kind kind) {
-    if (kind != Kind::mission) {
+    if (kind != Kind::mission || row.interval) {
         const auto significant = is_significant(row);
         return !significant ? "-" : *significant ? "yes" : "no";
     }
@@ -134,6 +155,10 @@ std::string verdict(const Difference& row, Kind kind) {
     if (!difference) return "yes";  // only one of them has it
     constexpr double rounding = 1e-9;
     return std::abs(*difference) > rounding * std::max(std::abs(row.a->value), std::abs(row.b->value)) ? "yes" : "no";
+}
+
+std::string basis_of(const Difference& row, Kind kind) {
+    return kind == Kind::mission && !row.interval ? "computed" : to_string(row.basis);
 }
 
 template <typename Form>
@@ -155,7 +180,7 @@ TextTable difference_table(const std::vector<Difference>& rows, Kind kind, const
         number(difference_of(row));
         interval(row.interval);
         cells.push_back(verdict(row, kind));
-        const auto basis = kind == Kind::mission ? std::string("computed") : to_string(row.basis);
+        const auto basis = basis_of(row, kind);
         cells.push_back(basis.empty() ? "-" : basis);
         number(row.at_s);
         table.rows.push_back(std::move(cells));
@@ -183,7 +208,7 @@ nlohmann::ordered_json difference_json(const std::vector<Difference>& rows, Kind
         item["interval"] = interval(row.interval);
         const auto differs = verdict(row, kind);
         item["differs"] = differs == "-" ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(differs == "yes");
-        item["basis"] = kind == Kind::mission ? "computed" : to_string(row.basis);
+        item["basis"] = basis_of(row, kind);
         item["at_s"] = cli::optional_json(row.at_s);
         json["differences"].push_back(std::move(item));
     }
@@ -236,7 +261,13 @@ int show_difference(const cli::StageCall& call) {
             std::pair(mission::read_mission(a, {true, std::nullopt}), mission::read_mission(b, {true, std::nullopt}));
         cli::warn_of_setup(call, setup_of(missions.first));
         cli::warn_of_setup(call, setup_of(missions.second));
-        rows = mission_difference(fly(prepare(missions.first)).simulation, fly(prepare(missions.second)).simulation);
+        const auto prepared_a = prepare(missions.first);
+        const auto prepared_b = prepare(missions.second);
+        rows = mission_difference(fly(prepared_a).simulation, fly(prepared_b).simulation);
+        if (const auto drawn = sample_difference(prepared_a, prepared_b)) {
+            add_intervals(*drawn, rows);
+            cli::note(call, describe(*drawn));
+        }
     } else {
         const auto of_a = read_model(a, kind);
         const auto of_b = read_model(b, kind);
@@ -269,7 +300,8 @@ int main(int argc, char** argv) {
         R"(Says what differs between two mechanical models, two folders of flightwatt batch, or two missions: B minus A
 with its 95 % interval, and whether that excludes 0. Coefficients are judged by the noise of the samples (basis noise),
 durations, mean powers, energies and physical terms by how flights differ (basis flights). Flights that both models
-rest on narrow the intervals. Missions are computed: each difference is one.)"};
+rest on narrow the intervals. Missions are computed: each difference is one; where both say how flights differ, duration,
+energies and final charge are judged by what 95 of 100 flights drawn for both differ by (basis flights).)"};
     stage.min_inputs = 2;
     stage.max_inputs = 2;
     stage.shows_table = true;

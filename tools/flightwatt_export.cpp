@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/numeric_options.h"
+#include "cli/output/battery_output.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
@@ -17,8 +18,12 @@
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 #include "report/batch_content.h"
+#include "report/battery_section.h"
 #include "report/flights_section.h"
+#include "report/in_flight.h"
 #include "report/missions_section.h"
+#include "report/physical_section.h"
+#include "report/replay_section.h"
 #include "report/simulated_mission.h"
 
 #include <algorithm>
@@ -123,11 +128,11 @@ void require_fitting(const Input& input, const Format& format) {
 void refuse_idle_options(const cli::StageCall& call, const Format& format) {
     const std::set<std::string> tracks{"geojson", "kml", "gpx"};
     const std::set<std::string> parameters{"px4", "inav", "paparazzi", "paparazzi-map"};
-    std::map<std::string, std::set<std::string>> heeded{{"colour", tracks},
-                                                        {"message", {"csv"}},
-                                                        {"cells", parameters},
-                                                        {"parallel", {"paparazzi", "paparazzi-map"}},
-                                                        {"idle-power", {"inav"}}};
+    std::map<std::string, std::set<std::string>> heeded{
+        {"colour", tracks},       {"message", {"csv"}},
+        {"cells", parameters},    {"parallel", {"paparazzi", "paparazzi-map"}},
+        {"idle-power", {"inav"}}, {"replay", {"latex"}},
+        {"capacity", {"latex"}}};
     for (const auto* option : {"aircraft", "sortie", "exclude", "keep", "correct-idle-offset", "messages"})
         heeded[option] = {"geojson", "kml", "gpx", "csv"};
     for (const auto& [option, names] : heeded) {
@@ -238,40 +243,49 @@ std::string model_latex(const mechanical::MechanicalModel& model) {
     return text;
 }
 
-std::string battery_latex(const battery::Battery& pack) {
-    TextTable table{{"parameter", "value", "95 %"}, {}};
-    const auto add = [&](const char* name, double value, const std::optional<battery::Interval>& interval) {
-        table.rows.push_back({name, fmt::format("{:.4g}", value),
-                              interval ? fmt::format("{:.4g} to {:.4g}", interval->low, interval->high) : "-"});
-    };
-    add("capacity [Ah]", pack.capacity_ah, pack.intervals.capacity_ah);
-    if (!pack.thevenin) add("voltage [V]", pack.voltage_v, pack.intervals.voltage_v);
-    add("resistance [ohm]", pack.resistance_ohm, pack.intervals.resistance_ohm);
-    if (const auto& circuit = pack.thevenin; circuit && circuit->rc_resistance_ohm > 0.0) {
-        add("RC resistance [ohm]", circuit->rc_resistance_ohm, pack.intervals.rc_resistance_ohm);
-        add("RC time constant [s]", circuit->rc_time_constant_s, pack.intervals.rc_time_constant_s);
-    }
-    return to_latex(table, fmt::format("Battery {}", pack.name), "tab:battery");
+/// Of flights that are left out in turn, as the report has them: the work grows with their square.
+std::string validation_latex(const report::BatchContent& content) {
+    constexpr std::size_t most_flights = 30;
+    if (content.measured.size() < 2 || content.measured.size() > most_flights) return "";
+    auto tables = report::physical_tables(content.measured);
+    tables.push_back(
+        {report::predictions_table(predict_each_minute(content, most_flights)),
+         "Energy of each flight as it would have been predicted while it cruised, from what was flown until "
+         "then and a model of the other flights",
+         "tab:predictions"});
+    tables.push_back({cli::scores_table(leave_one_out(content.measured, content.fit->options)),
+                      "Errors of the models on flights that they were not fitted to", "tab:validation"});
+    return to_latex(tables);
 }
 
-std::string batch_latex(const cli::StageCall& call, const std::string& folder) {
-    const auto content = report::read_batch_content(folder);
+std::string identified_battery_latex(const cli::StageCall& call, const report::BatchContent& content) {
+    constexpr std::size_t most_flights = 12;  // likewise
+    if (!report::aircraft_mix(content).empty()) return "";
+    battery::IdentificationOptions options;
+    options.capacity_ah = cli::positive_option(call, "capacity", "Ah");
+    const auto identified = identify_for_report(content.flights, options, most_flights);
+    if (!identified.identified) cli::note(call, "no table of the battery: " + identified.no_answer);
+    return to_latex(battery_tables(identified));
+}
+
+std::string batch_latex(const cli::StageCall& call, const report::BatchContent& content) {
     for (const auto& damaged : content.damaged) cli::warn(call, damaged);
-    auto text = to_latex(report::flights_table(content.flights), "Flights", "tab:flights");
-    if (!content.fit) return text;
-    text += "\n" + model_latex(content.fit->model);
-    constexpr std::size_t most_flights = 30;  // the work grows with their square: as the report
-    if (content.measured.size() < 2 || content.measured.size() > most_flights) return text;
-    const auto validated = leave_one_out(content.measured, content.fit->options);
-    return text + "\n" +
-           to_latex(cli::scores_table(validated), "Errors of the models on flights that they were not fitted to",
-                    "tab:validation");
+    auto text = to_latex(report::flights_tables(content.flights));
+    if (content.fit) text += "\n" + model_latex(content.fit->model) + "\n" + validation_latex(content);
+    return text + "\n" + identified_battery_latex(call, content);
 }
 
-std::string missions_latex(const std::vector<Input>& inputs) {
-    std::vector<mission::AnyMission> missions;
-    missions.reserve(inputs.size());
-    for (const auto& input : inputs) missions.push_back(mission::read_mission(input.file, {true, std::nullopt}));
+std::string replay_latex(const cli::StageCall& call, const report::BatchContent& content,
+                         const std::vector<mission::AnyMission>& missions) {
+    mission::ReplayOptions options;
+    if (content.fit) options.fit = content.fit->options;
+    const auto replays = replay_flights(missions, flights_with_power(content), options);
+    for (const auto& left : replays.not_replayed)
+        cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
+    return to_latex(report::replay_tables(replays.replays));
+}
+
+std::string missions_latex(const std::vector<mission::AnyMission>& missions) {
     const auto simulated = report::simulate_for_report(missions);
     auto text = to_latex(report::ranking_table(simulated), "Missions by final state of charge", "tab:missions");
     const auto plans = report::plans_table(simulated);
@@ -281,31 +295,49 @@ std::string missions_latex(const std::vector<Input>& inputs) {
 
 Exported export_latex(const cli::StageCall& call, const std::vector<Input>& inputs) {
     const auto& [file, kind] = inputs.front();
-    switch (kind) {
-        case Kind::model:
-            return {model_latex(mechanical::read_mechanical_model(file))};
-        case Kind::battery:
-            return {battery_latex(battery::read_battery(file))};
-        case Kind::batch:
-            return {batch_latex(call, file)};
-        default:
-            return {missions_latex(inputs)};
+    if (kind == Kind::model) return {model_latex(mechanical::read_mechanical_model(file))};
+    if (kind == Kind::battery) {
+        const auto pack = battery::read_battery(file);
+        return {to_latex(cli::pack_table(pack), fmt::format("Battery {}", pack.name), "tab:battery")};
     }
+    std::optional<report::BatchContent> content;
+    std::vector<mission::AnyMission> missions;
+    missions.reserve(inputs.size());
+    for (const auto& input : inputs) {
+        if (input.kind == Kind::batch)
+            content = report::read_batch_content(input.file);
+        else
+            missions.push_back(mission::read_mission(input.file, {true, std::nullopt}));
+    }
+    if (call.has("replay") && (!content || missions.empty()))
+        throw UsageError(
+            "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
+    if (call.has("capacity") && !content)
+        throw UsageError("--capacity is that of the battery of flights: give a folder of flightwatt batch");
+    std::vector<std::string> parts;
+    if (content) parts.push_back(batch_latex(call, *content));
+    if (!missions.empty()) parts.push_back(missions_latex(missions));
+    if (call.has("replay")) parts.push_back(replay_latex(call, *content, missions));
+    return {fmt::format("{}", fmt::join(parts, "\n"))};
 }
 
-/// One input, but for tables of several missions, and parameters from a model and a battery.
+/// One input, but for tables of several missions with or without a batch, and parameters from a model and a battery.
 void require_few(const std::vector<Input>& inputs, const Format& format) {
     if (inputs.size() == 1) return;
     const auto all = [&](Kind kind) {
         return std::ranges::all_of(inputs, [&](const auto& in) { return in.kind == kind; });
     };
-    const bool tables = format.name == "latex" && all(Kind::mission);
+    const auto of_kind = [&](Kind kind) {
+        return static_cast<std::size_t>(std::ranges::count(inputs, kind, &Input::kind));
+    };
+    const bool tables = format.name == "latex" && of_kind(Kind::batch) <= 1 &&
+                        of_kind(Kind::batch) + of_kind(Kind::mission) == inputs.size();
     const std::set<std::string> of_both{"px4", "inav", "paparazzi"};
     const bool pair = inputs.size() == 2 && of_both.contains(format.name) && inputs[0].kind != inputs[1].kind &&
                       !all(Kind::mission) && inputs[0].kind != Kind::mission && inputs[1].kind != Kind::mission;
     if (tables || pair) return;
     throw UsageError(fmt::format("{} is made of one input{}", format.name,
-                                 format.name == "latex"          ? ", or of several missions"
+                                 format.name == "latex"          ? ", or of missions and one folder of flightwatt batch"
                                  : of_both.contains(format.name) ? ": a mission, or a model and a battery"
                                                                  : ""));
 }
@@ -355,6 +387,8 @@ missions and the folder OUT of flightwatt batch: tables (latex). The form is tha
     add("cells", cli::value("N"), "in series, of the battery; default: as few as 4.25 V a cell allow");
     add("parallel", cli::value("N"), "cells in parallel, of the battery; 1 if not given");
     add("idle-power", cli::value<double>("W"), "of inav: while the motor stands; default: the mission's computer");
+    add("capacity", cli::value<double>("AH"), "of latex: of the flights' battery; default: as flightwatt battery says");
+    add("replay", "of latex: also fly the missions on the flights of OUT (flightwatt replay)");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, export_inputs);
 }

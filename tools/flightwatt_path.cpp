@@ -1,6 +1,7 @@
 // The path of a mission as it is flown, leg by leg; or the path that was flown in a log, as waypoints for a mission.
 
 #include "base/csv.h"
+#include "base/duration_text.h"
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/flight_options.h"
@@ -26,8 +27,8 @@ void print_summary(const cli::StageCall& call, const mission::MissionSetup& miss
     const double duration_s = mission::duration_s(cruise);
     const double energy_wh = units::wh_from_joule(energy_j(cruise));
     if (!call.json) {
-        cli::note(call, fmt::format("{}: {:.2f} km over ground in {:.1f} s; {:.3f} Wh, {:.2f} W on average",
-                                    mission.name, length_m / 1000.0, duration_s, energy_wh, mean_power_w(cruise)));
+        cli::note(call, fmt::format("{}: {:.2f} km over ground in {}; {:.3f} Wh, {:.2f} W on average", mission.name,
+                                    length_m / 1000.0, duration_text(duration_s), energy_wh, mean_power_w(cruise)));
         return;
     }
     nlohmann::ordered_json json;
@@ -97,10 +98,9 @@ int take_path(const cli::StageCall& call, const std::string& file) {
         json["duration_s"] = duration_s;
         cli::print(cli::json_text(json));
     } else {
-        cli::note(call,
-                  fmt::format("{}: {} waypoints of a cruise of {:.1f} s, each with how long the way there took: a "
-                              "mission that is to fly them in another wind leaves duration_s out",
-                              loaded.series.flight, path.places.size(), duration_s));
+        cli::note(call, fmt::format("{}: {} waypoints of a cruise of {}, each with how long the way there took: a "
+                                    "mission that is to fly them in another wind leaves duration_s out",
+                                    loaded.series.flight, path.places.size(), duration_text(duration_s)));
     }
     return cli::ok;
 }

@@ -187,7 +187,8 @@ one that demands least energy. On a battery whose voltage falls with its charge 
 cut-off voltage, the battery itself is followed through every schedule that could be the best.)"};
     stage.max_inputs = 1;
     auto add = stage.options.add_options();
-    add("probability", cli::value<double>("P"), "keep the reserve with this chance, as flights differ (0.95)");
+    add("probability", cli::value<double>("P"),
+        "keep the reserve with this chance, 0.5 or more, as flights differ; default: as modelled");
     add("longest-cruise",
         "instead: the longest cruise that lands with the reserve [s]; of a [path] the most circles, or without any the "
         "farthest from where the mission returns [m]");

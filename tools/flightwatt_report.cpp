@@ -8,7 +8,6 @@
 #include "cli/output/mission_output.h"
 #include "cli/progress.h"
 #include "cli/stage.h"
-#include "flight/flight_identity.h"
 #include "mechanical/model_check.h"
 #include "mission/mission_file.h"
 #include "report/answers_section.h"
@@ -29,7 +28,6 @@
 #include <iterator>
 
 #include <fmt/chrono.h>
-#include <unistd.h>
 
 namespace {
 
@@ -57,22 +55,6 @@ ReportInputs read_inputs(const cli::StageCall& call) {
     }
     return inputs;
 }
-
-/// On a terminal, a bar of what is done of `unit` while it lives.
-class Doing {
-  public:
-    explicit Doing(const char* unit) {
-        if (::isatty(STDERR_FILENO) != 0) bar_.emplace(stderr, unit);
-    }
-    report::Progress progress() {
-        return [this](std::size_t done, std::size_t all) {
-            if (bar_) bar_->show(done, all);
-        };
-    }
-
-  private:
-    std::optional<cli::ProgressBar> bar_;
-};
 
 /// Now, or what SOURCE_DATE_EPOCH says (reproducible-builds.org).
 std::string time_of_report() {
@@ -119,18 +101,9 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
         return;
     }
     if (auto section = report::physical_section(content.measured)) page.sections.push_back(std::move(*section));
-    page.answers.validated = leave_one_out(content.measured, content.fit->options);
+    cli::TerminalProgress validating("fits");
+    page.answers.validated = leave_one_out(content.measured, content.fit->options, {}, validating.shown());
     page.sections.push_back(report::validation_section(page.answers.validated, synthetic));
-}
-
-/// Why there is no battery of these flights: they are of several aircraft, and the batch was not asked to mix them.
-std::string mix_of(const report::BatchContent& content) {
-    std::vector<flight::FlownBy> flown;
-    for (const auto& flight : content.flights) {
-        if (!flight.rejected.empty() || !flight.unusable_power.empty()) continue;
-        flown.push_back({flight.name, flight.series.aircraft_id, flight.series.aircraft_name});
-    }
-    return content.fit ? "" : describe_mix(flown);
 }
 
 /// What the batch's folder has to say: flights, model, validation and battery.
@@ -141,15 +114,15 @@ void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::pa
     auto content = report::read_batch_content(out);
     for (const auto& damaged : content.damaged) cli::warn(call, damaged);
     page.head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
-    const auto mix = mix_of(content);
+    const auto mix = report::aircraft_mix(content);
     // Of many flights, it takes as long as their figures do.
     auto battery = std::async(std::launch::async, [&, most = cli::count_option(call, "max-battery-flights")] {
         return mix.empty() ? std::optional(identify_for_report(content.flights, identification, most)) : std::nullopt;
     });
-    Doing drawing("flights");
+    cli::TerminalProgress drawing("flights");
     page.sections.push_back(report::flights_section(
         content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt,
-        predict_each_minute(content, cli::count_option(call, "max-validation-flights")), drawing.progress()));
+        predict_each_minute(content, cli::count_option(call, "max-validation-flights")), drawing.shown()));
     add_model(page, call, content, figures);
     if (const auto identified = battery.get()) {
         page.sections.push_back(report::battery_section(*identified));
@@ -164,11 +137,11 @@ void add_missions(Page& page, const ReportInputs& inputs, const report::Publishe
     std::string names;
     for (const auto& mission : inputs.missions) names += (names.empty() ? "" : ", ") + setup_of(mission).file;
     page.head.facts.emplace_back("missions", names);
-    Doing flying("missions");
-    page.answers.missions = report::simulate_for_report(inputs.missions, flying.progress());
-    Doing answering("answers");
+    cli::TerminalProgress flying("missions");
+    page.answers.missions = report::simulate_for_report(inputs.missions, flying.shown());
+    cli::TerminalProgress answering("answers");
     for (std::size_t i = 0; i < inputs.missions.size(); ++i) {
-        answering.progress()(i, inputs.missions.size());
+        answering.show(i, inputs.missions.size());
         const std::filesystem::path file = setup_of(inputs.missions[i]).file;
         page.answers.answers.push_back(report::answer_for(
             page.answers.missions[i],
@@ -178,26 +151,12 @@ void add_missions(Page& page, const ReportInputs& inputs, const report::Publishe
     std::move(sections.begin(), sections.end(), std::back_inserter(page.sections));
 }
 
-/// What the batch's fit took of its flights, with the power that their series hold.
-std::vector<mechanical::MeasuredFlight> flights_with_power(const report::BatchContent& content) {
-    auto flights = content.measured;
-    for (const auto& logged : content.flights) {
-        if (!logged.rejected.empty()) continue;
-        for (auto& measured : mechanical::measure_flights(logged.series, logged.phases, 1).flights) {
-            const auto same = std::ranges::find_if(
-                flights, [&](const auto& flight) { return flight.samples.flight == measured.samples.flight; });
-            if (same != flights.end()) same->power = std::move(measured.power);
-        }
-    }
-    return flights;
-}
-
 /// The missions on the batch's flights.
 void add_replay(Page& page, const cli::StageCall& call, const ReportInputs& inputs) {
     const auto content = report::read_batch_content(*inputs.out);
     mission::ReplayOptions options;
     if (content.fit) options.fit = content.fit->options;
-    const auto replays = replay_flights(inputs.missions, flights_with_power(content), options);
+    const auto replays = replay_flights(inputs.missions, report::flights_with_power(content), options);
     for (const auto& left : replays.not_replayed)
         cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
     if (replays.replays.empty())

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
+#include "base/duration_text.h"
 #include "base/error.h"
 #include "base/file_use.h"
 #include "cli/numeric_options.h"
@@ -105,7 +106,8 @@ std::size_t write_log(const cli::StageCall& call, const synthetic::SyntheticScen
     write_file_atomically(stem.string() + ".data", log.data);
     if (call.has("truth")) write_file_atomically(stem.string() + ".truth.csv", truth_csv(scenario));
     if (!call.json) {
-        cli::note(call, fmt::format("{}: synthetic log of {:.0f} s", stem.string(), scenario.end_s - scenario.begin_s));
+        cli::note(call, fmt::format("{}: synthetic log of {}", stem.string(),
+                                    duration_text(scenario.end_s - scenario.begin_s)));
     }
     return log.data.size() + log.log.size();
 }

@@ -6,6 +6,7 @@
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/validation_output.h"
+#include "cli/progress.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "flight/chosen_track.h"
@@ -77,12 +78,19 @@ std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
     return covariates;
 }
 
+std::vector<mechanical::ValidatedFlight> validate(const std::vector<mechanical::MeasuredFlight>& flights,
+                                                  const mechanical::ModelFitOptions& options,
+                                                  const std::vector<mechanical::Covariate>& covariates) {
+    cli::TerminalProgress fitting("fits");
+    return leave_one_out(flights, options, covariates, fitting.shown());
+}
+
 int validate_flights(const cli::StageCall& call) {
     const auto options = read_fit_options(call);
     const auto until_s = cli::positive_option(call, "until", "s since lift-off");
     const auto covariates = read_covariates(call);
     const auto flights = read_flights(call, mechanical::samples_needed(options.phases.order));
-    const auto validated = leave_one_out(flights, options, covariates);
+    const auto validated = validate(flights, options, covariates);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     cli::write_result(call, cli::validation_text(validated, covariates, until_s.has_value(), screen));
     if (call.json) cli::print(cli::json_text(cli::scores_json(validated)));

@@ -13,6 +13,13 @@ struct TextTable {
     std::vector<std::vector<std::string>> rows;  ///< each as long as the header
 };
 
+/// A table with what stands above it, and what a text refers to it by ("tab:flights").
+struct CaptionedTable {
+    TextTable table;
+    std::string caption;
+    std::string label;
+};
+
 /// A number with so many decimals, for a cell; '-' for what is not known.
 std::string fixed(const std::optional<double>& number, int decimals);
 
@@ -31,5 +38,8 @@ std::string latex_number(std::string_view number);
 /// A table environment with the rules of the package booktabs; a comment says what packages it needs. Columns that are
 /// all numbers, or '-', stand to the right. A table that is wider than a page's text is scaled to it.
 std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label);
+
+/// The same of several, an empty line apart; tables without rows are left out.
+std::string to_latex(const std::vector<CaptionedTable>& tables);
 
 }  // namespace flightwatt

@@ -309,11 +309,12 @@ PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& 
     return predicted;
 }
 
-std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records,
-                                         const IdentificationOptions& options) {
+std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records, const IdentificationOptions& options,
+                                         const std::function<void(std::size_t, std::size_t)>& progress) {
     std::vector<LeftOutCheck> checks;
     if (records.size() < 2) return checks;
     for (std::size_t k = 0; k < records.size(); ++k) {
+        if (progress) progress(k, records.size());
         std::vector<DischargeRecord> others(records.begin(), records.end());
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
         checks.push_back(checked(told_by(others, options), records[k], options.chain));

@@ -8,6 +8,7 @@
 #include "battery/identification/open_circuit.h"
 #include "battery/identification/pack_link.h"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -80,8 +81,8 @@ PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& 
 
 /// Identifies the battery without each record in turn and predicts that record from its current, and from what is known
 /// before take-off: whose pack it is, or else its resting voltage; and with its initial charge free, to tell how much of
-/// the error is that charge's. Empty for a single record.
-std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records,
-                                         const IdentificationOptions& options);
+/// the error is that charge's. Empty for a single record. `progress` is told how many of how many records are done.
+std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records, const IdentificationOptions& options,
+                                         const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 }  // namespace flightwatt::battery

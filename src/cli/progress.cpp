@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
+#include <unistd.h>
 
 namespace flightwatt::cli {
 namespace {
@@ -78,6 +79,12 @@ void ProgressBar::show(std::size_t done, std::size_t all) {
     drawn_width_ = text.size();
 }
 
+void ProgressBar::hide() {
+    const std::lock_guard lock(mutex_);
+    erase();
+    std::fflush(terminal_);
+}
+
 void ProgressBar::clear() {
     const std::lock_guard lock(mutex_);
     erase();
@@ -92,6 +99,22 @@ void ProgressBar::erase() {
         std::fwrite(blanks.data(), 1, blanks.size(), terminal_);
     }
     drawn_width_ = 0;
+}
+
+TerminalProgress::TerminalProgress(const std::string& unit) {
+    if (::isatty(STDERR_FILENO) != 0) bar_.emplace(stderr, unit);
+}
+
+void TerminalProgress::show(std::size_t done, std::size_t all) {
+    if (bar_) bar_->show(done, all);
+}
+
+void TerminalProgress::hide() {
+    if (bar_) bar_->hide();
+}
+
+std::function<void(std::size_t, std::size_t)> TerminalProgress::shown() {
+    return [this](std::size_t done, std::size_t all) { show(done, all); };
 }
 
 }  // namespace flightwatt::cli

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdio>
 #include <deque>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 
 namespace flightwatt::cli {
@@ -31,6 +33,7 @@ class ProgressBar {
     ProgressBar& operator=(const ProgressBar&) = delete;
 
     void show(std::size_t done, std::size_t all);
+    void hide();  ///< until it is shown again: something else is to be told
     void clear();
 
   private:
@@ -48,6 +51,19 @@ class ProgressBar {
     bool cleared_ = false;
 
     void erase();
+};
+
+/// A progress bar of what is done of `unit` where the standard error is a terminal, and nothing elsewhere; gone with it.
+class TerminalProgress {
+  public:
+    explicit TerminalProgress(const std::string& unit);
+    void show(std::size_t done, std::size_t all);
+    void hide();
+    /// show(), for what takes a function; not longer than this lives.
+    std::function<void(std::size_t done, std::size_t all)> shown();
+
+  private:
+    std::optional<ProgressBar> bar_;
 };
 
 }  // namespace flightwatt::cli

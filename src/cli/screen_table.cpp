@@ -49,8 +49,12 @@ const UnitOfSuffix* unit_of(std::string_view column) {
     return found == units_of_suffixes.end() ? nullptr : found;
 }
 
-/// Columns of durations are told in minutes, in a table for people.
-bool is_duration(std::string_view column) { return column.starts_with("duration") && column.ends_with("_s"); }
+/// Columns of durations are told in minutes, in a table for people; so are moments since a mission began.
+bool is_duration(std::string_view column) {
+    constexpr std::array<std::string_view, 7> others{"depleted_at_s", "cut_off_at_s", "planned s", "flown s",
+                                                     "take-off s",    "cruise s",     "landing s"};
+    return (column.starts_with("duration") && column.ends_with("_s")) || std::ranges::count(others, column) > 0;
+}
 
 std::size_t characters_of(std::string_view text) {
     return static_cast<std::size_t>(
@@ -128,6 +132,7 @@ ShownColumn shown_column(const TextTable& table, std::size_t index) {
         head.remove_suffix(unit->suffix.size());
         if (!is_duration(table.header[index])) column.unit = std::string(unit->unit);
     }
+    if (is_duration(table.header[index]) && head.ends_with(" s")) head.remove_suffix(2);
     column.name = std::string(head);
     std::ranges::replace(column.name, '_', ' ');
     std::size_t widest = characters_of(column.unit);

@@ -178,7 +178,8 @@ bool was_predicted(const ValidatedFlight& flight, std::optional<flight::Phase> p
 }  // namespace
 
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
-                                           std::span<const Covariate> covariates) {
+                                           std::span<const Covariate> covariates,
+                                           const std::function<void(std::size_t, std::size_t)>& progress) {
     if (flights.size() < 2) {
         throw NoAnswerError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
@@ -190,6 +191,7 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     }
     std::vector<ValidatedFlight> validated;
     for (const auto& excluded : flights) {
+        if (progress) progress(validated.size(), flights.size());
         Others others;
         std::vector<FlightMotion> motions;
         for (const auto& other : flights) {

@@ -5,6 +5,7 @@
 #include "mechanical/physical/motion_bins.h"
 #include "mechanical/prediction.h"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -60,9 +61,11 @@ struct ValidatedFlight {
 ///   in_flight_constant   predict_rest by the curve's mean
 ///   in_flight_airspeed   predict_rest by the airspeed so far and the others' later airspeed
 ///   in_flight_path       predict_path: the rest's airspeed and climb as flown, as if they had been known
+/// `progress` is told how many of how many flights are done.
 /// Throws NoAnswerError for fewer than 2 flights, and what fit_phase_model throws.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
-                                           std::span<const Covariate> covariates = {});
+                                           std::span<const Covariate> covariates = {},
+                                           const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 /// How one model did over the flights, in one phase or in the whole.
 struct ModelScore {

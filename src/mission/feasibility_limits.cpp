@@ -1,5 +1,6 @@
 #include "mission/feasibility_limits.h"
 
+#include "base/duration_text.h"
 #include "base/units.h"
 #include "mission/planning/depletion_table.h"
 #include "mission/planning/margin_search.h"
@@ -315,6 +316,19 @@ std::optional<double> spare_without_fixed(PlanningProblem problem, const std::op
 
 }  // namespace
 
+bool cruise_differs(const MissionSetup& mission) {
+    return !mission.duration_is_stated[Phase::cruise] && !mission.uncertainty.duration_sd_s[Phase::cruise] &&
+           find_spreads(mission).duration_sd_s[Phase::cruise] > 0.0;
+}
+
+std::string describe_stated_cruise(double longest_s, double now_s) {
+    const double stated_s = std::floor(longest_s * 10.0) / 10.0;  // as it is printed, it has to do
+    return fmt::format(
+        "a stated cruise of at most {} (duration_s = {{ cruise = {:.1f} }}: the {} of the model's flights differ from "
+        "flight to flight)",
+        duration_text(stated_s), stated_s, duration_text(now_s));
+}
+
 InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,
                                          const MissionOfCruise& mission_of, const std::optional<double>& probability) {
     InfeasibilityReport report;
@@ -323,9 +337,7 @@ InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const M
     report.short_wh = units::part_of(full_energy_wh(problem.battery), report.short_percent);
     report.cut_off_at_s = plan.summary.cut_off_at_s;
     report.cruise_s = cruise_that_lands(mission_of, probability);
-    report.cruise_differs_now = probability && !problem.duration_is_stated[Phase::cruise] &&
-                                !problem.uncertainty.duration_sd_s[Phase::cruise] &&
-                                find_spreads(problem).duration_sd_s[Phase::cruise] > 0.0;
+    report.cruise_differs_now = probability && cruise_differs(problem);
     report.fixed_spare_percent = spare_without_fixed(problem, probability);
     if (possible >= 0.0 && plan.summary.feasible) report.reserve_soc_percent = possible;
     report.capacity_ah = least_capacity_ah(problem, probability);
@@ -338,12 +350,9 @@ namespace {
 std::string cruise_remedy(const MissionSetup& mission, const InfeasibilityReport& report) {
     const double now_s = mission.duration_s[Phase::cruise];
     if (!report.cruise_differs_now)
-        return fmt::format("a cruise {:.1f} s shorter ({:.1f} s)", now_s - *report.cruise_s, *report.cruise_s);
-    const double stated_s = std::floor(*report.cruise_s * 10.0) / 10.0;  // as it is printed, it has to do
-    return fmt::format(
-        "a stated cruise of at most {0:.1f} s (duration_s = {{ cruise = {0:.1f} }}: the {1:.1f} s of the model's flights "
-        "differ from flight to flight)",
-        stated_s, now_s);
+        return fmt::format("a cruise {} shorter ({:.1f} s: {})", duration_text(now_s - *report.cruise_s),
+                           *report.cruise_s, duration_text(*report.cruise_s));
+    return describe_stated_cruise(*report.cruise_s, now_s);
 }
 
 }  // namespace
@@ -364,8 +373,8 @@ std::string describe(const MissionSetup& mission, const InfeasibilityReport& rep
     auto text = fmt::format(
         "no schedule lands with the reserve: the one that demands least energy is {}short by {:.2f} points "
         "({:.3f} Wh)",
-        report.cut_off_at_s ? fmt::format("cut off at {:.1f} s, ", *report.cut_off_at_s) : "", report.short_percent,
-        report.short_wh);
+        report.cut_off_at_s ? fmt::format("cut off after {}, ", duration_text(*report.cut_off_at_s)) : "",
+        report.short_percent, report.short_wh);
     if (!remedies.empty()) text += fmt::format("; any one of these would do: {}", fmt::join(remedies, ", "));
     return text;
 }

@@ -58,6 +58,12 @@ std::optional<double> least_capacity_ah(const AnyMission& mission,
 /// if the reserve is not kept, and the more so the earlier the battery ends.
 double spare_percent(const Mission& mission);
 
+/// Whether the length of the cruise differs between flights, as nothing states it of the mission.
+bool cruise_differs(const MissionSetup& mission);
+
+/// What to state of such a cruise instead of `now_s` [s]: "a stated cruise of at most 20 min 1 s (duration_s = ...".
+std::string describe_stated_cruise(double longest_s, double now_s);
+
 /// By how much a mission that no schedule lands with its reserve misses it, and what would mend that, each
 /// measure on its own; a measure that alone is not enough is none.
 struct InfeasibilityReport {

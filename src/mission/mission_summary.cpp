@@ -1,5 +1,7 @@
 #include "mission/mission_summary.h"
 
+#include "base/duration_text.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -41,15 +43,16 @@ std::string describe(const DrawnSources& sources) {
 
 std::string describe(const MissionSummary& summary) {
     if (const auto& failure = summary.undeliverable) {
-        return fmt::format("{}: the battery cannot deliver {:.6g} W at {:.6g} s: its limit U^2 / (4 R) is {:.6g} W",
-                           summary.mission, failure->power_w, failure->time_s, failure->limit_w);
+        return fmt::format("{}: the battery cannot deliver {:.6g} W after {}: its limit U^2 / (4 R) is {:.6g} W",
+                           summary.mission, failure->power_w, duration_text(failure->time_s), failure->limit_w);
     }
-    auto end = fmt::format("{:.2f} % left after {:.1f} s", *summary.final_soc_percent, summary.duration_s);
+    auto end = fmt::format("{:.2f} % left after {}", *summary.final_soc_percent, duration_text(summary.duration_s));
     if (summary.depleted_at_s) {
-        end = fmt::format("empty at {:.1f} s of {:.1f} s", *summary.depleted_at_s, summary.duration_s);
+        end = fmt::format("empty after {} of {}", duration_text(*summary.depleted_at_s),
+                          duration_text(summary.duration_s));
     } else if (summary.cut_off_at_s) {
-        end = fmt::format("cut off at {:.1f} s of {:.1f} s with {:.2f} % left", *summary.cut_off_at_s,
-                          summary.duration_s, *summary.final_soc_percent);
+        end = fmt::format("cut off after {} of {} with {:.2f} % left", duration_text(*summary.cut_off_at_s),
+                          duration_text(summary.duration_s), *summary.final_soc_percent);
     } else if (!summary.keeps_reserve) {
         end += fmt::format(", less than the reserve of {:.6g} %", summary.reserve_soc_percent);
     }

@@ -11,11 +11,22 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::mission {
 namespace {
 
 constexpr double most_samples = 1e7;
+
+/// A drawn flight with its schedule, under disturbances that are given for the flight as planned.
+DrawnFlight scheduled(const PreparedMission& prepared, const MissionSetup& drawn, const Disturbances& as_planned) {
+    const auto& planned_s = prepared.setup.duration_s;
+    const auto disturbances = rescale_to_flown_durations(as_planned, planned_s, drawn.duration_s);
+    const auto schedule = prepared.adaptive
+                              ? fly_adaptively(*prepared.adaptive, drawn, disturbances).schedule
+                              : rescale_to_flown_durations(prepared.schedule, planned_s, drawn.duration_s);
+    return {drawn, disturbed(drawn.battery, disturbances), disturbed(load_segments(drawn, schedule), disturbances)};
+}
 
 /// Draws and flies flights, and hands each to the place of its number.
 class Sampler {
@@ -45,15 +56,9 @@ class Sampler {
     Landing fly_one(std::size_t index) const {
         const auto& planned_s = setup_.duration_s;
         const auto setup = draw_flight(setup_, spreads_, options_.seed, index);
-        const auto disturbances = rescale_to_flown_durations(disturbances_, planned_s, setup.duration_s);
         auto times_s = times_s_;
         for (auto& time_s : times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
-        const auto schedule = prepared_.adaptive
-                                  ? fly_adaptively(*prepared_.adaptive, setup, disturbances).schedule
-                                  : rescale_to_flown_durations(prepared_.schedule, planned_s, setup.duration_s);
-        return land(
-            {setup, disturbed(setup.battery, disturbances), disturbed(load_segments(setup, schedule), disturbances)},
-            times_s);
+        return land(scheduled(prepared_, setup, disturbances_), times_s);
     }
 
     const PreparedMission& prepared_;
@@ -100,6 +105,66 @@ std::vector<SocBand> bands_of(const std::vector<Landing>& landings, const std::v
     return bands;
 }
 
+void require_samples(const SamplingOptions& options) {
+    if (options.samples >= 2 && static_cast<double>(options.samples) <= most_samples) return;
+    throw UsageError(
+        fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples, most_samples));
+}
+
+/// What two missions are compared by, of one drawn flight.
+struct FlownQuantities {
+    double duration_s = 0.0;
+    double mechanical_energy_wh = 0.0;
+    double compute_energy_wh = 0.0;
+    double energy_wh = 0.0;
+    double final_soc_percent = 0.0;
+};
+
+FlownQuantities flown_quantities(const PreparedMission& prepared, const MissionSetup& drawn) {
+    const auto flight = scheduled(prepared, drawn, {});
+    FlownQuantities flown;
+    for (const auto& segment : flight.segments) {
+        flown.mechanical_energy_wh += units::wh_from_joule(mechanical_energy_j(segment, segment.end_s));
+        flown.compute_energy_wh += units::wh_from_joule(compute_energy_j(segment, segment.end_s));
+    }
+    flown.duration_s = timeline_of(drawn.duration_s).duration_s;
+    flown.energy_wh = flown.mechanical_energy_wh + flown.compute_energy_wh;
+    const auto landing = land(flight);
+    flown.final_soc_percent = landing.battery_failure ? 0.0 : landing.final_soc_percent;
+    return flown;
+}
+
+battery::Interval middle_95(std::vector<double> values) {
+    std::ranges::sort(values);
+    return {quantile(values, 0.025), quantile(values, 0.975)};
+}
+
+DrawnIntervals intervals_of(const std::vector<FlownQuantities>& of_a, const std::vector<FlownQuantities>& of_b,
+                            double FlownQuantities::*quantity) {
+    std::vector<double> a;
+    std::vector<double> b;
+    std::vector<double> difference;
+    for (std::size_t i = 0; i < of_a.size(); ++i) {
+        a.push_back(of_a[i].*quantity);
+        b.push_back(of_b[i].*quantity);
+        difference.push_back(b.back() - a.back());
+    }
+    return {middle_95(a), middle_95(b), middle_95(difference)};
+}
+
+/// Says of what two missions have whether it deviates alike in both.
+void name_sources(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
+                  SampledDifference& difference) {
+    const auto add = [&](bool alike, const std::string& name) {
+        (alike ? difference.in_common : difference.apart).push_back(name);
+    };
+    if (a.mechanical || b.mechanical) add(common.mechanical, "mechanical model");
+    add(common.battery, "battery");
+    for (std::size_t i = 0; i < common.components.size(); ++i)
+        add(common.components[i].has_value(), b.compute.components[i].name);
+    if (a.cruise_path && b.cruise_path) add(true, "wind");
+}
+
 }  // namespace
 
 bool has_spread(const MissionSetup& mission) { return !find_spreads(mission).sources.drawn.empty(); }
@@ -116,10 +181,7 @@ void require_spread(const MissionSetup& mission) {
 
 SampledFlights sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                               const SamplingOptions& options) {
-    if (options.samples < 2 || static_cast<double>(options.samples) > most_samples) {
-        throw UsageError(
-            fmt::format("{} samples make no distribution; expected 2 to {:.0f}", options.samples, most_samples));
-    }
+    require_samples(options);
     require_spread(prepared.setup);
     const auto spreads = find_spreads(prepared.setup);
     const Sampler sampler(prepared, disturbances, spreads, options);
@@ -144,6 +206,50 @@ SampledFlights sample_flights(const PreparedMission& prepared, const Disturbance
     count_landings(landings, flights);
     flights.bands = bands_of(landings, sampler.times_s());
     return flights;
+}
+
+std::optional<SampledDifference> sample_difference(const PreparedMission& a, const PreparedMission& b,
+                                                   const SamplingOptions& options) {
+    require_samples(options);
+    const auto spreads_a = find_spreads(a.setup);
+    const auto spreads_b = find_spreads(b.setup);
+    if (spreads_a.sources.drawn.empty() || spreads_b.sources.drawn.empty()) return std::nullopt;
+    const auto common = common_sources(a.setup, b.setup);
+    const auto setup_a = without_evidence(a.setup);
+    const auto setup_b = without_evidence(b.setup);
+    const auto other_seed = ~options.seed;  // of what is not in common
+    std::vector<FlownQuantities> of_a(options.samples);
+    std::vector<FlownQuantities> of_b(options.samples);
+    for_each_index(options.samples, [&](std::size_t i) {
+        const auto normals_a = draw_normals(count_normals(setup_a), options.seed, i);
+        const auto normals_b =
+            normals_beside(setup_a, setup_b, common, normals_a, draw_normals(count_normals(setup_b), other_seed, i));
+        of_a[i] = flown_quantities(a, flight_of(setup_a, spreads_a, normals_a));
+        of_b[i] = flown_quantities(b, flight_of(setup_b, spreads_b, normals_b));
+    });
+    SampledDifference difference;
+    difference.samples = options.samples;
+    difference.duration_s = intervals_of(of_a, of_b, &FlownQuantities::duration_s);
+    difference.mechanical_energy_wh = intervals_of(of_a, of_b, &FlownQuantities::mechanical_energy_wh);
+    difference.compute_energy_wh = intervals_of(of_a, of_b, &FlownQuantities::compute_energy_wh);
+    difference.energy_wh = intervals_of(of_a, of_b, &FlownQuantities::energy_wh);
+    difference.final_soc_percent = intervals_of(of_a, of_b, &FlownQuantities::final_soc_percent);
+    difference.sources_a = spreads_a.sources;
+    difference.sources_b = spreads_b.sources;
+    name_sources(a.setup, b.setup, common, difference);
+    return difference;
+}
+
+std::string describe(const SampledDifference& difference) {
+    const auto list = [](const char* what, const std::vector<std::string>& names) {
+        return names.empty() ? "" : fmt::format("; {}: {}", what, fmt::join(names, ", "));
+    };
+    const auto a = describe(difference.sources_a);
+    const auto b = describe(difference.sources_b);
+    return fmt::format("intervals hold 95 in 100 of {} flights drawn for both{}{}; {}", difference.samples,
+                       list("deviating alike in both", difference.in_common),
+                       list("deviating on its own in each", difference.apart),
+                       a == b ? a : fmt::format("a: {}; b: {}", a, b));
 }
 
 std::string describe(const SampledFlights& flights) {

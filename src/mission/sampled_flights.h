@@ -33,8 +33,29 @@ std::optional<battery::Interval> capacity_interval_ah(const MissionSetup& missio
 SampledFlights sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                               const SamplingOptions& options);
 
+/// What 95 of 100 flights of two missions, and their difference b - a, lie between.
+struct DrawnIntervals {
+    battery::Interval a, b, difference;
+};
+
+/// Two missions on flights drawn for both. What they have in common (the same mechanical model, the same battery, a
+/// component with the same profile, the wind) deviates alike in both; what they do not deviates on its own.
+struct SampledDifference {
+    std::size_t samples = 0;
+    DrawnIntervals duration_s, mechanical_energy_wh, compute_energy_wh, energy_wh, final_soc_percent;
+    DrawnSources sources_a, sources_b;
+    std::vector<std::string> in_common;  ///< "mechanical model", "battery" ...
+    std::vector<std::string> apart;
+};
+
+/// Flies both with common random numbers (docs/methods.md, Two missions); a battery that failed has 0 % left. None where
+/// nothing says how flights of one of them differ. Throws as sample_flights for a number of samples.
+std::optional<SampledDifference> sample_difference(const PreparedMission& a, const PreparedMission& b,
+                                                   const SamplingOptions& options = {});
+
 /// For people.
 std::string describe(const SampledFlights& flights);
+std::string describe(const SampledDifference& difference);
 
 /// time_s,soc_p05_percent,soc_p50_percent,soc_p95_percent
 std::string to_csv(const std::vector<SocBand>& bands);

@@ -2,6 +2,7 @@
 
 #include "batch/batch_files.h"
 #include "batch/batch_run.h"
+#include "flight/flight_identity.h"
 
 #include <algorithm>
 #include <iterator>
@@ -45,6 +46,28 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
     // Readers look at the first ones first.
     std::ranges::stable_sort(content.flights, {}, [](const auto& flight) { return !flight.unusable_power.empty(); });
     return content;
+}
+
+std::vector<mechanical::MeasuredFlight> flights_with_power(const BatchContent& content) {
+    auto flights = content.measured;
+    for (const auto& logged : content.flights) {
+        if (!logged.rejected.empty()) continue;
+        for (auto& measured : mechanical::measure_flights(logged.series, logged.phases, 1).flights) {
+            const auto same = std::ranges::find_if(
+                flights, [&](const auto& flight) { return flight.samples.flight == measured.samples.flight; });
+            if (same != flights.end()) same->power = std::move(measured.power);
+        }
+    }
+    return flights;
+}
+
+std::string aircraft_mix(const BatchContent& content) {
+    std::vector<flight::FlownBy> flown;
+    for (const auto& flight : content.flights) {
+        if (!flight.rejected.empty() || !flight.unusable_power.empty()) continue;
+        flown.push_back({flight.name, flight.series.aircraft_id, flight.series.aircraft_name});
+    }
+    return content.fit ? "" : describe_mix(flown);
 }
 
 }  // namespace flightwatt::report

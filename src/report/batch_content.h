@@ -41,4 +41,10 @@ struct BatchContent {
 /// read_batch_fit.
 BatchContent read_batch_content(const std::filesystem::path& out);
 
+/// Which flights are of which aircraft, where they are of several and the batch was not asked to mix them; else empty.
+std::string aircraft_mix(const BatchContent& content);
+
+/// `measured`, with the power that the flights' series hold: what is flown in a replay.
+std::vector<mechanical::MeasuredFlight> flights_with_power(const BatchContent& content);
+
 }  // namespace flightwatt::report

@@ -89,17 +89,18 @@ std::string some_of(const std::vector<std::string>& names) {
     return text;
 }
 
-std::string excluded_html(const ReportBattery& battery) {
-    if (battery.excluded.empty()) return "";
+TextTable excluded_table(const ReportBattery& battery) {
     std::map<std::string, std::vector<std::string>> flights_of_reason;
     for (const auto& [flight, reason] : battery.excluded) flights_of_reason[reason].push_back(flight);
     TextTable table{{"flights", "number", "why"}, {}};
     for (const auto& [reason, flights] : flights_of_reason) {
         table.rows.push_back({some_of(flights), fmt::format("{}", flights.size()), reason});
     }
-    return "<h3>Not used for the battery</h3>\n" +
-           table_html(table, {"Flights that were excluded, and why", false, {}});
+    return table;
 }
+
+constexpr auto parameters_caption = "Parameters of the battery";
+constexpr auto flights_caption = "Flights in the fit of the battery";
 
 void add_identified(Section& section, const ReportBattery& battery) {
     const auto& identified = *battery.identified;
@@ -115,10 +116,10 @@ void add_identified(Section& section, const ReportBattery& battery) {
     } else if (identified.errors.rc_resistance_ohm.low == 0.0) {
         section.html += paragraph("The RC pair may be none: its resistance's interval reaches down to 0.");
     }
-    section.html += table_html(parameters_table(identified), {"Parameters of the battery", false, {}});
+    section.html += table_html(parameters_table(identified), {parameters_caption, false, {}});
     add_figure(section, voltage_figure(identified, battery.records, "battery-voltage"));
-    section.html += table_html(cli::flights_table(*battery.identified, battery.leave_one_out),
-                               {"Flights in the fit of the battery", true, {}});
+    section.html +=
+        table_html(cli::flights_table(*battery.identified, battery.leave_one_out), {flights_caption, true, {}});
     section.html += paragraph(
         "Missing: from the full pack when the flight began, with its 95 % interval; own ohm: the series resistance that "
         "this flight alone shows, with its own.",
@@ -156,6 +157,17 @@ ReportBattery identify_for_report(std::span<const ReportFlight> flights, const b
     return battery;
 }
 
+std::vector<CaptionedTable> battery_tables(const ReportBattery& battery) {
+    std::vector<CaptionedTable> tables;
+    if (battery.identified) {
+        tables.push_back({parameters_table(*battery.identified), parameters_caption, "tab:identified-battery"});
+        tables.push_back(
+            {cli::flights_table(*battery.identified, battery.leave_one_out), flights_caption, "tab:battery-flights"});
+    }
+    tables.push_back({excluded_table(battery), "Flights not used for the battery, and why", "tab:battery-excluded"});
+    return tables;
+}
+
 Section battery_section(const ReportBattery& battery) {
     Section section{"battery", "Battery"};
     if (battery.identified) {
@@ -170,7 +182,9 @@ Section battery_section(const ReportBattery& battery) {
         section.html += paragraph("The battery was not identified: " + battery.no_answer + ".", "warning");
     }
     if (!battery.notes.empty()) section.html += list_html(battery.notes);
-    section.html += excluded_html(battery);
+    if (!battery.excluded.empty())
+        section.html += "<h3>Not used for the battery</h3>\n" +
+                        table_html(excluded_table(battery), {"Flights that were excluded, and why", false, {}});
     return section;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/text_table.h"
 #include "battery/identification.h"
 #include "report/batch_content.h"
 #include "report/html.h"
@@ -32,6 +33,9 @@ struct ReportBattery {
 /// where there are more (the work grows with their square). Throws UsageError as identify_battery.
 ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
                                   std::size_t most);
+
+/// Parameters with intervals, the flights that they rest on, and those that were excluded: the section's tables.
+std::vector<CaptionedTable> battery_tables(const ReportBattery& battery);
 
 /// Measured against modelled voltage, the open-circuit curve, parameters with intervals and how well each
 /// flight is predicted by the others; or why there is no such battery.

@@ -109,7 +109,7 @@ std::string flights_table_html(std::span<const ReportFlight> flights, const std:
 }
 
 /// Every reason once, with the flights that it holds for, in their order.
-std::string excluded_html(std::span<const ReportFlight> flights) {
+TextTable excluded_table(std::span<const ReportFlight> flights) {
     TextTable table{{"flights", "excluded", "reason"}, {}};
     const auto add = [&](const std::string& flight, const std::string& what, const std::string& reason) {
         const auto same =
@@ -127,8 +127,15 @@ std::string excluded_html(std::span<const ReportFlight> flights) {
             add(flight.name, "from the model", reason.starts_with(name) ? reason.substr(name.size()) : reason);
         }
     }
+    return table;
+}
+
+constexpr auto excluded_caption = "What was excluded, and why";
+
+std::string excluded_html(std::span<const ReportFlight> flights) {
+    const auto table = excluded_table(flights);
     if (table.rows.empty()) return paragraph("Nothing was excluded.");
-    return "<h3>Excluded, and why</h3>\n" + table_html(table, {"What was excluded, and why", false, {}});
+    return "<h3>Excluded, and why</h3>\n" + table_html(table, {excluded_caption, false, {}});
 }
 
 /// The edges of a flight's phases with what was seen there and what the autopilot says of them.
@@ -228,6 +235,11 @@ TextTable flights_table(std::span<const ReportFlight> flights) {
         for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) table.rows.push_back(cells_of(flight, s));
     }
     return table;
+}
+
+std::vector<CaptionedTable> flights_tables(std::span<const ReportFlight> flights) {
+    return {{flights_table(flights), "Flights", "tab:flights"},
+            {excluded_table(flights), excluded_caption, "tab:excluded"}};
 }
 
 Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model,

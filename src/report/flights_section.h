@@ -10,11 +10,15 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace flightwatt::report {
 
 /// One row a sortie of the flights that were not rejected: durations, power, energy, closure, gaps, warnings.
 TextTable flights_table(std::span<const ReportFlight> flights);
+
+/// That one, and what was excluded with the reasons: the section's tables.
+std::vector<CaptionedTable> flights_tables(std::span<const ReportFlight> flights);
 
 /// All flights as a table (durations, power, energy, closure of integral and counter, gaps, warnings), those
 /// that are excluded with their reasons, and a part a flight that is drawn when it is opened, with what would have

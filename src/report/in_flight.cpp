@@ -1,10 +1,13 @@
 #include "report/in_flight.h"
 
 #include "base/error.h"
+#include "base/units.h"
 #include "flight/phase_statistics.h"
 #include "live/prediction.h"
 
 #include <algorithm>
+
+#include <fmt/format.h>
 
 namespace flightwatt::report {
 namespace {
@@ -83,6 +86,25 @@ std::map<std::string, PredictedFlight> predict_each_minute(const BatchContent& c
         if (!result.moments.empty()) flights.emplace(flight.name, std::move(result));
     }
     return flights;
+}
+
+TextTable predictions_table(const std::map<std::string, PredictedFlight>& flights) {
+    TextTable table{{"flight", "measured [Wh]", "first minute [Wh]", "95 % [Wh]", "half way [Wh]", "95 % [Wh]",
+                     "last minute [Wh]", "95 % [Wh]", "held [%]"},
+                    {}};
+    for (const auto& [name, flight] : flights) {
+        const auto& moments = flight.moments;
+        const auto held = std::ranges::count_if(
+            moments, [&](const auto& moment) { return moment.interval.contains(flight.measured_wh); });
+        std::vector<std::string> row{name, fixed(flight.measured_wh, 2)};
+        for (const auto* moment : {&moments.front(), &moments[moments.size() / 2], &moments.back()}) {
+            row.push_back(fixed(moment->energy_wh, 2));
+            row.push_back(fmt::format("{:.2f} to {:.2f}", moment->interval.low_wh, moment->interval.high_wh));
+        }
+        row.push_back(fixed(units::percent_of(static_cast<double>(held), static_cast<double>(moments.size())), 0));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
 }
 
 }  // namespace flightwatt::report

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/text_table.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/prediction.h"
 #include "report/batch_content.h"
@@ -29,5 +30,9 @@ struct PredictedFlight {
 /// the durations of cruise and landing, taken as known. By the flights' names; flights without a prediction are not in
 /// it, and none is where there are less than 3 flights or more than `most_flights`.
 std::map<std::string, PredictedFlight> predict_each_minute(const BatchContent& content, std::size_t most_flights);
+
+/// A row a flight: the energy [Wh] that was predicted in the first, the middle and the last of these moments, with its
+/// 95 % interval, beside the measured one, and the percentage of all moments' intervals that hold it.
+TextTable predictions_table(const std::map<std::string, PredictedFlight>& flights);
 
 }  // namespace flightwatt::report

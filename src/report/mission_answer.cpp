@@ -78,8 +78,8 @@ std::string reach_line(const SimulatedMission& simulated, const MissionAnswer& a
     if (!answer.reach) return "How long it could fly is not known: " + answer.no_reach;
     auto line = fmt::format("At most {}{} as modelled", in_words(*answer.reach), now_flown(simulated, *answer.reach));
     if (answer.likely_reach)
-        line += fmt::format(", {} with a chance of {:.0f} %", in_words(*answer.likely_reach),
-                            units::percent_of(likely, 1.0));
+        line += fmt::format(", {} with a chance of {:.0f} %{}", in_words(*answer.likely_reach),
+                            units::percent_of(likely, 1.0), answer.cruise_differs_now ? " if that is stated" : "");
     if (answer.is_unplanned) line += ", with as little software as it may run";
     return line;
 }
@@ -98,6 +98,14 @@ bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reac
            reach.limit.value < simulated.mission.duration_s[flight::Phase::cruise];
 }
 
+/// "fly 24 min of cruise at most". Such a length has to be stated: where nothing states that of the mission, flights differ
+/// in it, and a longer one on average may land as well.
+std::string shorter_way(const SimulatedMission& simulated, const MissionAnswer& answer, const mission::Reach& reach) {
+    if (!answer.cruise_differs_now) return fmt::format("fly {} at most", in_words(reach));
+    const double now_s = simulated.mission.duration_s[flight::Phase::cruise];
+    return "fly " + mission::describe_stated_cruise(reach.limit.value, now_s);
+}
+
 /// What would make the mission keep its reserve; empty where nothing is known that would.
 std::string remedy_line(const SimulatedMission& simulated, const MissionAnswer& answer) {
     const auto& reach = answer.likely_reach ? answer.likely_reach : answer.reach;
@@ -107,7 +115,7 @@ std::string remedy_line(const SimulatedMission& simulated, const MissionAnswer& 
     // Beyond what the least software reaches, no plan does.
     const bool is_in_reach = answer.likely_reach && (!shorter || reach->unit != mission::ReachUnit::cruise_s);
     if (simulated.planned && is_in_reach) ways.emplace_back("plan it with --probability 0.95");
-    if (shorter) ways.push_back(fmt::format("fly {} at most", in_words(*reach)));
+    if (shorter) ways.push_back(shorter_way(simulated, answer, *reach));
     if (answer.capacity_ah)
         ways.push_back(fmt::format("take a battery of {:.2f} Ah (it has {:.4g})", *answer.capacity_ah, capacity_ah));
     if (ways.empty()) return "";
@@ -142,6 +150,8 @@ MissionAnswer answer_for(const SimulatedMission& simulated, const mission::Missi
     answer.reach = ask([&] { return longest_reach(mission_of); }, &answer.no_reach);
     const bool knows_chance = simulated.simulation.summary.samples.has_value();
     if (answer.reach && knows_chance) answer.likely_reach = ask([&] { return longest_reach(mission_of, likely); });
+    answer.cruise_differs_now = answer.likely_reach && answer.likely_reach->unit == mission::ReachUnit::cruise_s &&
+                                mission::cruise_differs(setup_of(*mission));
     if (verdict_of(simulated) == Verdict::keeps) return answer;
     const auto chance = answer.likely_reach ? std::optional(likely) : std::nullopt;
     const auto capacity_ah = ask([&] { return least_capacity_ah(*mission, chance); }).value_or(std::nullopt);

@@ -20,6 +20,7 @@ struct MissionAnswer {
     std::optional<mission::Reach> likely_reach;  ///< with which `likely` of the flights keep the reserve
     std::string no_reach;                        ///< why there is none
     std::optional<double> capacity_ah;           ///< the least that would keep the reserve, if more than it has
+    bool cruise_differs_now = false;             ///< between flights, and likely_reach is a length that is stated
     bool is_unplanned = false;  ///< reach and capacity are those of the schedule that demands least energy
 };
 

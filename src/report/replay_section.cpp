@@ -50,7 +50,15 @@ Figure replay_figure(const std::vector<const mission::Replay*>& replays, const s
     return figure;
 }
 
+constexpr auto results_caption = "What each schedule came to on each flight";
+constexpr auto basis_caption = "What the replays rest on";
+
 }  // namespace
+
+std::vector<CaptionedTable> replay_tables(std::span<const mission::Replay> replays) {
+    return {{cli::replay_table(replays), results_caption, "tab:replay"},
+            {cli::replay_basis_table(replays), basis_caption, "tab:replay-basis"}};
+}
 
 Section replay_section(std::span<const mission::Replay> replays) {
     Section section{"replay", "Replay"};
@@ -68,8 +76,8 @@ Section replay_section(std::span<const mission::Replay> replays) {
         add_figure(section, replay_figure(of_mission, fmt::format("replay-{}", drawn.size())));
     }
     section.html += list_html(cli::replay_sentences(replays));
-    section.html += table_html(cli::replay_table(replays), {"What each schedule came to on each flight", true, {}});
-    section.html += table_html(cli::replay_basis_table(replays), {"What the replays rest on", true, {}});
+    section.html += table_html(cli::replay_table(replays), {results_caption, true, {}});
+    section.html += table_html(cli::replay_basis_table(replays), {basis_caption, true, {}});
     std::vector<std::string> notes;
     for (const auto& replay : replays)
         for (const auto& note : replay.notes)

@@ -111,7 +111,10 @@ TEST(Identification, AlignsFlightsByTheirVoltage) {
     EXPECT_GT(found.flights[1].initial_charge_interval_ah.high, 0.4);
     EXPECT_NEAR(found.fit.knots_ah.back(), 0.4 + found.flights[1].drawn_ah, 0.03);
     EXPECT_LT(found.fit.rms_v, 0.015);
-    const auto checks = leave_each_out(records, {2.4, {}, ""});
+    std::vector<std::size_t> done;
+    const auto checks =
+        leave_each_out(records, {2.4, {}, ""}, [&](std::size_t record, std::size_t) { done.push_back(record); });
+    EXPECT_EQ(done, (std::vector<std::size_t>{0, 1}));
     ASSERT_EQ(checks.size(), 2U);
     EXPECT_EQ(checks[0].flight, "synthetic_1");
     EXPECT_GT(checks[1].beyond_percent, 20.0);  // its end was never flown before

@@ -56,7 +56,30 @@ TEST(ExportLatex, IsCompiledByLatex) {
     EXPECT_THAT(read_file(folder / "flights.tex"), HasSubstr("\\label{tab:validation}"));
     EXPECT_THAT(read_file(folder / "published.tex"), HasSubstr("$a_{0}$ & $29.97$ & $27.22$ & $27.21$"));
     EXPECT_THAT(read_file(folder / "missions.tex"), HasSubstr("\\label{tab:plans}"));
+    for (const auto* label : {"predictions", "identified-battery", "battery-flights"})
+        EXPECT_THAT(read_file(folder / "flights.tex"), HasSubstr(std::string("\\label{tab:") + label + "}"));
     expect_compiled({"flights", "published", "wing", "pack", "errors", "missions"}, folder);
+}
+
+TEST(ExportLatex, HasTheReplayOfMissionsOnTheFlights) {
+    const auto folder = test::scratch_dir();
+    const auto made = test::run_shell("S=" + test::shell_quoted(test::source_dir()) +
+                                          "; flightwatt batch $S/logs/opterra_synthetic_0[1-3].data -o out",
+                                      folder);
+    ASSERT_EQ(made.code, 0) << made.err;
+    const std::string mission = "$S/missions/paper/phased.toml";
+    const auto result = exported(mission + " out --replay --capacity 4 -o both.tex", folder);
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto text = read_file(folder / "both.tex");
+    for (const auto* label : {"flights", "missions", "replay", "replay-basis"})
+        EXPECT_THAT(text, HasSubstr(std::string("\\label{tab:") + label + "}"));
+    EXPECT_THAT(text, HasSubstr("capacity\\_ah & $4$ & -- & -- & given"));
+    EXPECT_EQ(exported("out --replay -o t.tex", folder).code, 2);
+    EXPECT_EQ(exported(mission + " --replay -o t.tex", folder).code, 2);
+    EXPECT_EQ(exported(mission + " --capacity 4 -o t.tex", folder).code, 2);
+    EXPECT_EQ(exported("out out -o t.tex", folder).code, 2);
+    EXPECT_EQ(exported("out --capacity -4 -o t.tex", folder).code, 2);
+    if (test::run_shell("kpsewhich booktabs.sty", folder).code == 0) expect_compiled({"both"}, folder);
 }
 
 TEST(Export, TakesTheFormFromTheNameOfTheFile) {

@@ -126,5 +126,32 @@ TEST(ProgressBar, StaysOnOneLineAndIsGoneInTheEnd) {
     EXPECT_EQ(terminal.printed(), "");
 }
 
+TEST(ProgressBar, GoesOnAfterItWasHidden) {
+    if (!has_terminals()) GTEST_SKIP() << "no pseudo-terminal here";
+    Terminal terminal(30);
+    ProgressBar bar(terminal.stream(), "logs");
+    std::this_thread::sleep_for(beyond_interval);
+    bar.show(3, 8);
+    const auto drawn = terminal.printed();
+    bar.hide();
+    EXPECT_EQ(terminal.printed(), "\r" + std::string(drawn.size(), ' ') + "\r");
+    std::this_thread::sleep_for(beyond_interval);
+    bar.show(4, 8);
+    EXPECT_THAT(terminal.printed(), HasSubstr("4/8"));
+}
+
+TEST(TerminalProgress, SaysNothingWhereTheStandardErrorIsNoTerminal) {
+    if (::isatty(STDERR_FILENO) != 0) GTEST_SKIP() << "the standard error is a terminal here";
+    testing::internal::CaptureStderr();
+    {
+        TerminalProgress progress("logs");
+        const auto show = progress.shown();
+        std::this_thread::sleep_for(beyond_interval);
+        show(1, 2);
+        progress.hide();
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 }  // namespace
 }  // namespace flightwatt::cli

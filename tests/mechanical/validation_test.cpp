@@ -26,7 +26,12 @@ TEST(Validation, PredictsFlightsThatAreAllAlikeExactly) {
     for (const auto* name : {"a", "b", "c"}) {
         flights.push_back(measured(name, published_model().phases, random));
     }
-    const auto validated = leave_one_out(flights);
+    std::vector<std::size_t> done;
+    const auto validated = leave_one_out(flights, {}, {}, [&](std::size_t flight, std::size_t all) {
+        done.push_back(flight);
+        EXPECT_EQ(all, 3U);
+    });
+    EXPECT_THAT(done, ElementsAre(0U, 1U, 2U));
     ASSERT_EQ(validated.size(), 3u);
     EXPECT_THAT(model_names(validated), ElementsAre("fourier", "constant_mean", "nearest_flight"));
     for (const auto& model : model_names(validated)) {

@@ -124,10 +124,11 @@ TEST(InfeasibilityReport, NamesTheCruiseToStateWhereItsDurationDiffers) {
     InfeasibilityReport report;
     report.cruise_s = 628.4;
     report.cruise_differs_now = true;
-    EXPECT_THAT(describe(mission, report), testing::HasSubstr("do: a stated cruise of at most 628.4 s (duration_s"));
+    EXPECT_THAT(describe(mission, report),
+                testing::HasSubstr("do: a stated cruise of at most 10 min 28 s (duration_s = { cruise = 628.4 }"));
     report.cruise_s = 590.0;
     report.cruise_differs_now = false;
-    EXPECT_THAT(describe(mission, report), testing::HasSubstr("do: a cruise 10.5 s shorter (590.0 s)"));
+    EXPECT_THAT(describe(mission, report), testing::HasSubstr("do: a cruise 10.5 s shorter (590.0 s: 9 min 50 s)"));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(Simulate, PrintsTheCurveAndASummaryLine) {
               "time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v\n"
               "0,cruise,0,25,25,2.5,100,10\n1800,cruise,0,25,25,2.5,87.5,10\n3600,cruise,0,25,25,2.5,75,10\n");
     EXPECT_EQ(result.err,
-              "flightwatt-simulate: m: 75.00 % left after 3600.0 s; 25.000 Wh, 0.000 mechanical and 25.000 "
+              "flightwatt-simulate: m: 75.00 % left after 1 h; 25.000 Wh, 0.000 mechanical and 25.000 "
               "computing\n");
 }
 
@@ -106,7 +106,7 @@ TEST(Simulate, HasNoAnswerWhereTheBatteryCannotDeliver) {
     EXPECT_EQ(result.code, 4);
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(result.err,
-              "flightwatt-simulate: error: m: the battery cannot deliver 25 W at 0 s: its limit U^2 / (4 R) "
+              "flightwatt-simulate: error: m: the battery cannot deliver 25 W after 0.0 s: its limit U^2 / (4 R) "
               "is 12.5 W\n");
     EXPECT_FALSE(std::filesystem::exists(folder / "curve.csv"));
 }
@@ -164,7 +164,7 @@ TEST(Compare, RanksWhatCannotBeDeliveredLast) {
     const auto result = run(folder, "compare", "weak.toml small.toml --json");
     EXPECT_EQ(result.code, 4);
     EXPECT_EQ(result.err,
-              "flightwatt-compare: warning: weak: the battery cannot deliver 25 W at 0 s: its limit U^2 / (4 R) "
+              "flightwatt-compare: warning: weak: the battery cannot deliver 25 W after 0.0 s: its limit U^2 / (4 R) "
               "is 12.5 W\n");
     const auto json = nlohmann::json::parse(result.out);
     EXPECT_EQ(json[0]["mission"], "small");

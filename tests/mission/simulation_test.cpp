@@ -189,7 +189,7 @@ TEST(Simulation, ReportsPowerThatTheBatteryCannotDeliver) {
     EXPECT_LT(summary.delivered_energy_wh, summary.energy_wh);
     for (const auto& row : curve.rows) EXPECT_TRUE(std::isfinite(row.current_a));
     EXPECT_EQ(describe(summary),
-              "phased: the battery cannot deliver 68.2975 W at 268 s: its limit U^2 / (4 R) is 61.605 W");
+              "phased: the battery cannot deliver 68.2975 W after 4 min 28 s: its limit U^2 / (4 R) is 61.605 W");
 }
 
 /// 12 V at full, 10 V at empty, 0.1 ohm; 0.06 ohm with 30 s.
@@ -251,7 +251,7 @@ TEST(Simulation, EndsAtCutOff) {
     // Without a load the voltage recovers to that of the open circuit.
     EXPECT_NEAR(curve.rows.back().terminal_voltage_v,
                 open_circuit_voltage_v(mission.battery, *summary.final_soc_percent), 1e-3);
-    EXPECT_EQ(describe(summary).substr(0, 18), "flight: cut off at");
+    EXPECT_EQ(describe(summary).substr(0, 21), "flight: cut off after");
     for (const auto& steps : {SimulationSteps{7.77, 0.1}, {1.0, 0.01}, {1e6, 0.05}}) {
         EXPECT_NEAR(*simulate(mission, steps).summary.cut_off_at_s, *summary.cut_off_at_s, 1e-6);
     }
@@ -264,17 +264,16 @@ TEST(Simulation, KeepsTheReserveOrSaysThatItDoesNot) {
     EXPECT_TRUE(missed.feasible);  // the battery lasts
     EXPECT_FALSE(missed.keeps_reserve);
     EXPECT_EQ(missed.reserve_soc_percent, 75.001);
-    EXPECT_EQ(describe(missed).substr(0, 74),
-              "constant: 75.00 % left after 3600.0 s, less than the reserve of 75.001 %; ");
+    EXPECT_EQ(describe(missed).substr(0, 69), "constant: 75.00 % left after 1 h, less than the reserve of 75.001 %; ");
     mission.reserve_soc_percent = 74.999;
     EXPECT_TRUE(simulate(mission).summary.keeps_reserve);
 }
 
 TEST(Simulation, DescribesItsOutcome) {
     EXPECT_EQ(describe(simulate(constant(25.0, 100.0)).summary),
-              "constant: 75.00 % left after 3600.0 s; 25.000 Wh, 0.000 mechanical and 25.000 computing");
+              "constant: 75.00 % left after 1 h; 25.000 Wh, 0.000 mechanical and 25.000 computing");
     EXPECT_EQ(describe(simulate(constant(25.0, 20.0)).summary),
-              "constant: empty at 2880.0 s of 3600.0 s; 25.000 Wh, 0.000 mechanical and 25.000 computing");
+              "constant: empty after 48 min of 1 h; 25.000 Wh, 0.000 mechanical and 25.000 computing");
 }
 
 TEST(Simulation, WritesCsv) {

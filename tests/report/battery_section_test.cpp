@@ -49,6 +49,10 @@ TEST(BatterySection, ShowsVoltagesParametersAndTheCurve) {
     EXPECT_THAT(section.html, HasSubstr("resistance_ohm"));
     EXPECT_THAT(section.html, HasSubstr("identified from voltage, current and charge of 2 flights"));
     EXPECT_THAT(section.html, testing::Not(HasSubstr("Not used for the battery")));
+    const auto tables = battery_tables(battery);
+    ASSERT_EQ(tables.size(), 3U);
+    EXPECT_EQ(tables[1].table.rows.size(), 2U) << "flights";
+    EXPECT_TRUE(tables[2].table.rows.empty()) << "excluded";
 }
 
 TEST(BatterySection, LimitsTheFlightsAndSaysSo) {

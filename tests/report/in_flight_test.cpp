@@ -44,6 +44,19 @@ TEST(PredictEachMinute, ComesToWhatWasMeasured) {
     }
 }
 
+TEST(PredictEachMinute, IsATableOfItsFirstMiddleAndLastMoment) {
+    PredictedFlight flight;
+    flight.measured_wh = 5.0;
+    for (const double energy_wh : {4.0, 4.5, 4.9, 5.1})
+        flight.moments.push_back({60.0, energy_wh, {energy_wh - 0.3, energy_wh + 0.3}});
+    const auto table = predictions_table({{"f", flight}});
+    ASSERT_EQ(table.rows.size(), 1U);
+    EXPECT_EQ(table.rows[0], (std::vector<std::string>{"f", "5.00", "4.00", "3.70 to 4.30", "4.90", "4.60 to 5.20",
+                                                       "5.10", "4.80 to 5.40", "50"}));
+    EXPECT_EQ(table.header.size(), table.rows[0].size());
+    EXPECT_TRUE(predictions_table({}).rows.empty());
+}
+
 TEST(PredictEachMinute, LooksAtNothingThatComesLater) {
     auto content = content_of(3);
     const auto whole = predict_each_minute(content, 30);

@@ -33,6 +33,15 @@ TEST(PhysicalSection, ShowsConstantsTrialsAndFigure) {
     EXPECT_EQ(section->figures.front().spec["layer"].size(), 2u);
 }
 
+TEST(PhysicalTables, AreThoseOfTheSection) {
+    const auto tables = physical_tables(measured_motions(4));
+    ASSERT_EQ(tables.size(), 2U);
+    EXPECT_EQ(tables[0].label, "tab:physical");
+    EXPECT_FALSE(tables[0].table.rows.empty());
+    EXPECT_FALSE(tables[1].table.rows.empty());
+    EXPECT_TRUE(physical_tables({}).empty());
+}
+
 TEST(PhysicalSection, PromisesNoIntervalFromASingleFlight) {
     const auto section = physical_section(measured_motions(1));
     ASSERT_TRUE(section.has_value());

@@ -33,6 +33,22 @@ std::string describe(const battery::ResistanceTrend& trend) {
                        units::mohm_from_ohm(high), low <= 0.0 && high >= 0.0 ? ": no trend is seen" : "");
 }
 
+TextTable pack_table(const battery::Battery& pack) {
+    TextTable table{{"parameter", "value", "95 %"}, {}};
+    const auto add = [&](const char* name, double value, const std::optional<battery::Interval>& interval) {
+        table.rows.push_back({name, fmt::format("{:.4g}", value),
+                              interval ? fmt::format("{:.4g} to {:.4g}", interval->low, interval->high) : "-"});
+    };
+    add("capacity [Ah]", pack.capacity_ah, pack.intervals.capacity_ah);
+    if (!pack.thevenin) add("voltage [V]", pack.voltage_v, pack.intervals.voltage_v);
+    add("resistance [ohm]", pack.resistance_ohm, pack.intervals.resistance_ohm);
+    if (const auto& circuit = pack.thevenin; circuit && circuit->rc_resistance_ohm > 0.0) {
+        add("RC resistance [ohm]", circuit->rc_resistance_ohm, pack.intervals.rc_resistance_ohm);
+        add("RC time constant [s]", circuit->rc_time_constant_s, pack.intervals.rc_time_constant_s);
+    }
+    return table;
+}
+
 TextTable parameters_table(const battery::BatteryIdentification& identified) {
     TextTable table;
     table.header = {"parameter", "value", "low 95 %", "high 95 %"};

@@ -20,6 +20,9 @@ std::string describe_link(const battery::IdentifiedFlight& flight);
 /// How the resistance goes on over the flights: "series resistance over 6 flights in time order: +0.4 mohm a flight ...".
 std::string describe(const battery::ResistanceTrend& trend);
 
+/// Capacity, voltage and resistances of a battery file with their 95 % intervals.
+TextTable pack_table(const battery::Battery& pack);
+
 /// One row a resistance or time constant, with its 95 % interval.
 TextTable parameters_table(const battery::BatteryIdentification& identified);
 

@@ -4,6 +4,7 @@
 #include "base/toml_reader.h"
 #include "base/units.h"
 #include "cli/numeric_options.h"
+#include "cli/progress.h"
 #include "flight/flight_identity.h"
 
 #include <algorithm>
@@ -178,11 +179,16 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     flights.clear();
     UsedFlights used(call);
     std::optional<flight::OtherAircraftError> other;
+    TerminalProgress reading("logs");
+    std::size_t done = 0;
     for (const auto& file : call.inputs) {
+        if (call.inputs.size() > 1) reading.show(done++, call.inputs.size());
         flight::LoadedFlight loaded;
         try {
             loaded = flight::load_flight(std::filesystem::path(file), options);
+            reading.hide();  // it may be warned of
         } catch (const flight::OtherAircraftError& error) {
+            reading.hide();
             flights.push_back(flight_of_file(file));
             note(call, fmt::format("{} is left out: {}; {}", flights.back(), error.what(), error.hint()));
             other = error;

@@ -1,5 +1,6 @@
 #include "cli/output/prediction_output.h"
 
+#include "base/duration_text.h"
 #include "base/units.h"
 #include "cli/output/json_text.h"
 
@@ -12,14 +13,13 @@ using live::BatteryPrediction;
 
 std::string landing_text(const battery::LandingForecast& forecast, const battery::LandingLimits& limits) {
     if (forecast.fails_after_s) {
-        return fmt::format("the battery {} in {:.1f} min",
-                           limits.cutoff_voltage_v > 0.0 ? "fails or is cut off" : "fails",
-                           *forecast.fails_after_s / 60.0);
+        return fmt::format("the battery {} in {}", limits.cutoff_voltage_v > 0.0 ? "fails or is cut off" : "fails",
+                           duration_text(*forecast.fails_after_s));
     }
     auto text = fmt::format("{:.1f} % and {:.2f} V at landing, ", forecast.soc_percent, forecast.voltage_v);
     if (!forecast.keeps_reserve)
         return text + fmt::format("short of the reserve of {:g} %", limits.reserve_soc_percent);
-    text += fmt::format("{:.1f} min of cruise left", forecast.seconds_left / 60.0);
+    text += fmt::format("{} of cruise left", duration_text(forecast.seconds_left));
     return limits.reserve_soc_percent > 0.0
                ? text + fmt::format(" to the reserve of {:g} %", limits.reserve_soc_percent)
                : text;
@@ -68,15 +68,16 @@ std::string text_of(const Prediction& prediction) {
     const auto& [flown, began_in_air, on_path_s, is_sighted, remaining_s, by_motion, cruise, power_ahead, landing,
                  landing_s, rest, interval, battery] = prediction;
     return fmt::format(
-               "flown      {:.3f} Wh from {} at {:.1f} s to {:.1f} s of the log ({:.1f} s)\n"
-               "cruise     {:.3f} Wh in {:.0f} s more: {:.2f} W; so far {:.2f} W, {}\n"
-               "landing    {:.3f} Wh in {:.0f} s, as in the model\n"
+               "flown      {:.3f} Wh from {} at {:.1f} s to {:.1f} s of the log ({})\n"
+               "cruise     {:.3f} Wh in {} more: {:.2f} W; so far {:.2f} W, {}\n"
+               "landing    {:.3f} Wh in {}, as in the model\n"
                "remaining  {:.3f} Wh, 95 % interval {:.3f} to {:.3f} Wh\n"
                "total      {:.3f} Wh\n",
                flown.energy_wh, began_in_air ? "the first message" : "lift-off", flown.lift_off_s, flown.until_s,
-               flown.until_s - flown.lift_off_s, cruise.energy.energy_wh, remaining_s, cruise.remaining_mean_w,
-               cruise.flown_w, expectation_text(prediction), landing.energy_wh, landing_s, rest.energy_wh,
-               interval.low_wh, interval.high_wh, flown.energy_wh + rest.energy_wh) +
+               duration_text(flown.until_s - flown.lift_off_s), cruise.energy.energy_wh, duration_text(remaining_s),
+               cruise.remaining_mean_w, cruise.flown_w, expectation_text(prediction), landing.energy_wh,
+               duration_text(landing_s), rest.energy_wh, interval.low_wh, interval.high_wh,
+               flown.energy_wh + rest.energy_wh) +
            battery_text(battery);
 }
 

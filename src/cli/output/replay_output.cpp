@@ -1,6 +1,7 @@
 #include "cli/output/replay_output.h"
 
 #include "base/csv.h"
+#include "base/duration_text.h"
 #include "base/units.h"
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
@@ -45,9 +46,10 @@ std::optional<double> undeliverable_at_s(const ReplayedSchedule& replayed) {
 
 std::string how_it_ended(const ReplayedSchedule& replayed) {
     const auto& summary = replayed.summary;
-    if (summary.undeliverable) return fmt::format("beyond power at {:.0f} s", summary.undeliverable->time_s);
-    if (summary.depleted_at_s) return fmt::format("empty at {:.0f} s", *summary.depleted_at_s);
-    if (summary.cut_off_at_s) return fmt::format("cut off at {:.0f} s", *summary.cut_off_at_s);
+    if (summary.undeliverable)
+        return fmt::format("beyond power after {}", duration_text(summary.undeliverable->time_s));
+    if (summary.depleted_at_s) return fmt::format("empty after {}", duration_text(*summary.depleted_at_s));
+    if (summary.cut_off_at_s) return fmt::format("cut off after {}", duration_text(*summary.cut_off_at_s));
     return summary.keeps_reserve ? "kept" : "below";
 }
 

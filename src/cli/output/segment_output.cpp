@@ -1,5 +1,6 @@
 #include "cli/output/segment_output.h"
 
+#include "base/duration_text.h"
 #include "cli/output/json_text.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_identity.h"
@@ -95,8 +96,8 @@ Json to_json(const flight::PowerReport& report) {
 std::string heights_text(const flight::Sortie& sortie) {
     std::string text;
     for (const auto& hold : sortie.held) {
-        text += fmt::format("sortie {}: held {:.1f} m from {:.1f} to {:.1f} s ({:.0f} s): {}\n", sortie.number,
-                            hold.height_m, hold.start_s, hold.end_s, hold.duration_s(),
+        text += fmt::format("sortie {}: held {:.1f} m from {:.1f} to {:.1f} s ({}): {}\n", sortie.number, hold.height_m,
+                            hold.start_s, hold.end_s, duration_text(hold.duration_s()),
                             hold.of_landing ? "a step of the landing" : "cruise");
     }
     return text;

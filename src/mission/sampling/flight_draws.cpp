@@ -153,13 +153,51 @@ void move_component(const ComponentSpread& spread, Normals& normal, std::vector<
     }
 }
 
+constexpr std::size_t of_battery = 5;
+constexpr std::size_t of_wind = 2;
+
+/// Numbers of the phases, the battery and the components before this one.
+std::size_t normals_before_component(const MissionSetup& mission, std::size_t component) {
+    std::size_t count = phase_quantities + of_battery;
+    for (std::size_t i = 0; i < component; ++i) count += 1 + mission.compute.components[i].profile.power_w.size();
+    return count;
+}
+
 }  // namespace
 
 std::size_t count_normals(const MissionSetup& mission) {
-    constexpr std::size_t of_battery = 5;
-    std::size_t count = phase_quantities + of_battery + (mission.cruise_path ? 2 : 0);
-    for (const auto& component : mission.compute.components) count += 1 + component.profile.power_w.size();
-    return count;
+    return normals_before_component(mission, mission.compute.components.size()) + (mission.cruise_path ? of_wind : 0);
+}
+
+CommonSources common_sources(const MissionSetup& a, const MissionSetup& b) {
+    CommonSources common;
+    common.mechanical = a.mechanical && b.mechanical && to_toml(*a.mechanical) == to_toml(*b.mechanical);
+    common.battery = to_toml(a.battery) == to_toml(b.battery);
+    const auto& of_a = a.compute.components;
+    for (const auto& component : b.compute.components) {
+        const auto same = std::ranges::find_if(of_a, [&](const auto& other) {
+            return other.name == component.name && other.profile.power_w == component.profile.power_w;
+        });
+        common.components.push_back(same == of_a.end() ? std::nullopt
+                                                       : std::optional<std::size_t>(same - of_a.begin()));
+    }
+    return common;
+}
+
+std::vector<double> normals_beside(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
+                                   std::span<const double> of_a, std::vector<double> own) {
+    const auto take = [&](std::size_t from, std::size_t to, std::size_t count) {
+        std::ranges::copy(of_a.subspan(from, count), own.begin() + static_cast<std::ptrdiff_t>(to));
+    };
+    if (common.mechanical) take(0, 0, phase_quantities);
+    if (common.battery) take(phase_quantities, phase_quantities, of_battery);
+    for (std::size_t i = 0; i < common.components.size(); ++i) {
+        if (const auto& same = common.components[i])
+            take(normals_before_component(a, *same), normals_before_component(b, i),
+                 normals_before_component(b, i + 1) - normals_before_component(b, i));
+    }
+    if (a.cruise_path && b.cruise_path) take(of_a.size() - of_wind, own.size() - of_wind, of_wind);
+    return own;
 }
 
 std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uint64_t index) {

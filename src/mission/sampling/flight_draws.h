@@ -4,6 +4,7 @@
 #include "mission/sampling/flight_spreads.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,19 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 /// error. An interval has a deviation for each side; a time constant is normal in its logarithm. Durations stop at a
 /// tenth of the planned and at ten times it, what cannot be negative at 0 (or a thousandth).
 MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals);
+
+/// Which of two missions' sources are the same, and deviate alike on the same day.
+struct CommonSources {
+    bool mechanical = false;
+    bool battery = false;
+    std::vector<std::optional<std::size_t>> components;  ///< of each of b's the one of a with its profile
+};
+CommonSources common_sources(const MissionSetup& a, const MissionSetup& b);
+
+/// b's numbers of a flight of which a has the numbers `of_a`: those of what is in common, and `own` ones of the rest. The
+/// wind is that of a where both have a path.
+std::vector<double> normals_beside(const MissionSetup& a, const MissionSetup& b, const CommonSources& common,
+                                   std::span<const double> of_a, std::vector<double> own);
 
 /// The flight that draw_normals makes.
 MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,

@@ -81,7 +81,7 @@ TEST(ReplayTable, TellsWhereASchedulesBatteryEnded) {
     ASSERT_EQ(table.rows.size(), 12U);
     EXPECT_EQ(table.rows[0][6], "below");
     EXPECT_EQ(table.rows[1][6], "kept");
-    EXPECT_EQ(table.rows[10][6], "empty at 500 s");
+    EXPECT_EQ(table.rows[10][6], "empty after 8 min 20 s");
 }
 
 TEST(ReplayBasis, SaysWhatTheModelSaw) {
