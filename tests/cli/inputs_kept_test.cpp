@@ -67,6 +67,7 @@ std::vector<Command> commands() {
         {"convert", "card.LOG", {"card.LOG", "card.log"}, "--output"},
         {"convert", "bare.tlm --messages a.log", {"bare.tlm", "a.log"}, "--output"},
         {"validate", "a.data s.series.csv", flight_files, "--output"},
+        {"trends", "a.data s.series.csv", flight_files, "--output"},
         {"battery", "a.data s.series.csv", flight_files, "--output"},
         {"predict",
          "a.data --model spread.toml --until 300 --remaining 100 --battery fits/battery/synthetic-3s.toml",
