@@ -75,6 +75,10 @@ std::vector<FlownFlight> read_flights(const cli::StageCall& call) {
     const auto options = cli::read_flight_options(call);
     const auto chosen = cli::with_chosen_flights(call, options);
     return cli::from_flights<FlownFlight>(chosen, options, [&](const std::string& file, flight::LoadedFlight& loaded) {
+        if (!loaded.exclusion.empty()) {
+            cli::warn(call, fmt::format("excluded: {}: {}", loaded.series.flight, loaded.exclusion));
+            return std::vector<FlownFlight>{};
+        }
         FlownFlight flown;
         flown.name = loaded.series.flight;
         flown.aircraft = flight::describe_aircraft(loaded.series.aircraft_id, loaded.series.aircraft_name);
