@@ -100,6 +100,7 @@ std::vector<FlownFlight> read_flights(const cli::StageCall& call) {
 
 std::vector<std::string> aircraft_of(const std::vector<FlownFlight>& flights) {
     std::vector<std::string> names;
+    names.reserve(flights.size());
     for (const auto& flight : flights) names.push_back(flight.aircraft);
     std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
