@@ -38,6 +38,7 @@ constexpr StageLine stages[] = {
     {"predict", "the energy to the end of a flight that is in the air"},
     {"watch", "the same and more, once a second, from telemetry as it comes in"},
     {"diff", "what differs between two models, batches or missions, and whether it is chance"},
+    {"trends", "how aircraft and pack age: energy, power and resistance over the dates of flights"},
     {"battery", "flights to the battery that they were flown on"},
     {"batch", "parse, segment and fit every log of a folder, incrementally"},
     {"profile", "software to its power by quality of service, measured while it runs"},

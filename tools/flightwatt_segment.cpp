@@ -1,11 +1,26 @@
 // flightwatt segment: take-off, cruise and landing of every sortie in a log.
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_use.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/output/segment_output.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "exchange/log_cut.h"
 #include "flight/phases_file.h"
+#include "telemetry/log_configuration.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,10 +28,68 @@ namespace {
 
 using namespace flightwatt;
 
+/// The pieces of a log as files: .data and .log of each.
+struct CutFiles {
+    std::vector<std::pair<std::filesystem::path, std::string>> files;
+    std::vector<std::string> told;
+};
+
+std::vector<exchange::LogPiece> chosen_pieces(const cli::StageCall& call, const flight::LoadedFlight& loaded,
+                                              const flight::LoadOptions& options) {
+    if (call.has("cut-phases")) return exchange::phase_pieces(loaded.phases);
+    // Of all sorties, as the ground of one ends where another begins, even if --sortie leaves that out.
+    auto pieces = exchange::sortie_pieces(loaded.series, flight::segment(loaded.series, options.segmentation));
+    if (options.sortie) pieces = {pieces.at(*options.sortie - 1)};
+    return pieces;
+}
+
+/// Not an input: it may be written over if that changes nothing.
+bool holds(const std::filesystem::path& file, const std::string& content) {
+    std::ifstream stream(file, std::ios::binary);
+    return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == content;
+}
+
+/// Throws UsageError where a file is there already that holds something else.
+CutFiles cut_log(const cli::StageCall& call, const flight::FlightFile& file, const flight::LoadedFlight& loaded,
+                 const flight::LoadOptions& options) {
+    const auto text = exchange::text_of_log(file);
+    const auto own_log = telemetry::find_log_file(file.path());
+    const std::filesystem::path folder = call.get<std::string>("cut");
+    CutFiles cut;
+    for (const auto& piece : chosen_pieces(call, loaded, options)) {
+        const auto name = telemetry::flight_name(file.path()) + "_" + piece.name;
+        auto lines = exchange::lines_of(text, piece);
+        const auto count = std::ranges::count(lines, '\n');
+        cut.told.push_back(fmt::format("{}: {} lines", (folder / (name + ".data")).string(), count));
+        // The .log first: no text stands without its definitions.
+        if (own_log && *own_log == file.log_file()) cut.files.emplace_back(folder / (name + ".log"), *file.log_text());
+        cut.files.emplace_back(folder / (name + ".data"), std::move(lines));
+    }
+    file.require_unchanged();
+    std::error_code error;
+    for (const auto& [path, content] : cut.files) {
+        declare_output(path, "--cut");
+        if (std::filesystem::exists(path, error) && !holds(path, content)) {
+            throw UsageError(
+                fmt::format("{} is there already and holds something else: move it away, or name another "
+                            "folder",
+                            path.string()));
+        }
+    }
+    return cut;
+}
+
+void write(const cli::StageCall& call, const CutFiles& cut) {
+    make_directories(call.get<std::string>("cut"));
+    for (const auto& [path, content] : cut.files) write_file_atomically(path, content);
+    for (const auto& told : cut.told) cli::note(call, told);
+}
+
 int segment_flight(const cli::StageCall& call) {
     const auto& file = call.inputs.front();
     auto options = cli::read_flight_options(call);
     options.power_required = false;
+    if (call.has("cut-phases") && !call.has("cut")) throw UsageError("--cut-phases says how --cut DIR cuts: give that");
     const auto loaded = cli::load_flight(call, file, options);
     const auto& series = loaded.series;
     const auto& phases = loaded.phases;
@@ -27,6 +100,9 @@ int segment_flight(const cli::StageCall& call) {
     }
     for (const auto& fault : power.power_faults) {
         cli::warn(call, fmt::format("{}: power fault: {}", file, fault));
+    }
+    if (call.has("cut")) {
+        write(call, cut_log(call, flight::FlightFile(file, options.most_log_bytes, options.messages), loaded, options));
     }
     const bool explain = call.has("explain");
     if (!explain || call.output) {
@@ -57,7 +133,9 @@ touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses;
 A log without measured power is segmented too; its columns of power are then empty.)"};
     stage.max_inputs = 1;
     stage.shows_table = true;
-    stage.options.add_options()("explain", "show the reasons for each edge, and how good the power record is");
+    stage.options.add_options()("explain", "show the reasons for each edge, and how good the power record is")(
+        "cut", cli::output_file("DIR"), "write each sortie, with the ground beside it, as a log of its own into DIR")(
+        "cut-phases", "with --cut: each phase instead");
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, segment_flight);
 }

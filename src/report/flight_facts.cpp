@@ -1,11 +1,11 @@
 #include "report/flight_facts.h"
 
+#include "base/units.h"
 #include "flight/chosen_track.h"
 #include "flight/log_name.h"
 #include "flight/phase_statistics.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include <boost/geometry/algorithms/distance.hpp>
@@ -16,12 +16,16 @@
 namespace flightwatt::report {
 namespace {
 
-std::string date_of(const ReportFlight& flight) {
-    const auto& start_s = flight.series.start_clock_s;
-    if (start_s && *start_s > 0.0)
-        return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(*start_s)));
+std::optional<double> start_clock_s(const ReportFlight& flight) {
+    const auto& logged_s = flight.series.start_clock_s;
+    if (logged_s && *logged_s > 0.0) return logged_s;
     const auto start = flight::start_in_name(flight.name);
-    return start ? fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::chrono::system_clock::to_time_t(*start))) : "";
+    if (!start) return std::nullopt;
+    return static_cast<double>(start->time_since_epoch().count());
+}
+
+std::string date_of(const std::optional<double>& clock_s) {
+    return clock_s ? fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(*clock_s))) : "";
 }
 
 using Place = boost::geometry::model::point<double, 2, boost::geometry::cs::geographic<boost::geometry::degree>>;
@@ -52,6 +56,12 @@ std::optional<double> highest_m(const flight::Track& altitude, double start_s, d
     return highest_m - value_at(altitude, start_s);
 }
 
+/// All that were flown in one log.
+struct Cruises {
+    double energy_wh = 0.0;
+    double duration_s = 0.0;
+};
+
 /// The sum where both are known.
 void add(std::optional<double>& sum, const std::optional<double>& more) {
     if (!more) sum.reset();
@@ -64,8 +74,14 @@ FlightFacts facts_of(const ReportFlight& flight, std::optional<std::size_t> sort
     const auto& series = flight.series;
     const flight::PowerStatistics power(series);
     const auto altitude = chosen_track(series, "altitude_m");
-    FlightFacts facts{date_of(flight), 0.0, 0.0, std::nullopt, std::nullopt};
+    const auto airspeed = chosen_track(series, "airspeed_m_per_s");
+    FlightFacts facts;
+    facts.start_clock_s = start_clock_s(flight);
+    facts.date = date_of(facts.start_clock_s);
+    facts.distance_m = 0.0;
+    if (!airspeed.empty()) facts.air_distance_m = 0.0;
     if (power.has_power()) facts.energy_wh = 0.0;
+    Cruises cruises;
     for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) {
         if (sortie && s != *sortie) continue;
         const double start_s = flight.phases.sorties[s].phases.front().start.time_s;
@@ -74,8 +90,17 @@ FlightFacts facts_of(const ReportFlight& flight, std::optional<std::size_t> sort
         add(facts.distance_m, flown_m(series, start_s, end_s));
         if (const auto height_m = highest_m(altitude, start_s, end_s))
             facts.height_m = std::max(*height_m, facts.height_m.value_or(*height_m));
+        if (facts.air_distance_m)
+            *facts.air_distance_m += flight::integrated(airspeed.time_s, airspeed.value, start_s, end_s);
         if (facts.energy_wh) *facts.energy_wh += power.between(start_s, end_s).energy_wh;
+        for (const auto& span : flight.phases.sorties[s].phases) {
+            if (span.phase != flight::Phase::cruise) continue;
+            cruises.energy_wh += power.between(span.start.time_s, span.end.time_s).energy_wh;
+            cruises.duration_s += span.duration_s();
+        }
     }
+    if (power.has_power() && cruises.duration_s > 0.0)
+        facts.cruise_power_w = units::joule_from_wh(cruises.energy_wh) / cruises.duration_s;
     return facts;
 }
 

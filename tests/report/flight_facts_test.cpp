@@ -38,6 +38,20 @@ TEST(FlightFacts, AreThoseOfTheTimeInTheAir) {
     EXPECT_DOUBLE_EQ(*facts.distance_m, 400.0);
     EXPECT_DOUBLE_EQ(*facts.height_m, 60.0);
     EXPECT_DOUBLE_EQ(*facts.energy_wh, 36.0 * 20.0 / 3600.0);
+    EXPECT_DOUBLE_EQ(facts.cruise_power_w.value(), 36.0);
+    EXPECT_FALSE(facts.air_distance_m) << "no airspeed was measured";
+}
+
+TEST(FlightFacts, MeasureTheWayThroughTheAirByAirspeed) {
+    auto flight = square_flight();
+    flight.series.tracks.push_back(track("airspeed_m_per_s", {0, 10, 20, 30, 40}, {50, 10, 12, 10, 50}));
+    EXPECT_DOUBLE_EQ(facts_of(flight).air_distance_m.value(), 220.0) << "11 m/s for 20 s";
+}
+
+TEST(FlightFacts, HaveNoCruisePowerWithoutACruise) {
+    auto flight = square_flight();
+    flight.phases.sorties[0].phases.erase(flight.phases.sorties[0].phases.begin() + 1);
+    EXPECT_FALSE(facts_of(flight).cruise_power_w);
 }
 
 TEST(FlightFacts, MeasureDegreesOnTheEarth) {
@@ -55,6 +69,7 @@ TEST(FlightFacts, HaveTheDateOfTheClockOrElseOfTheName) {
     EXPECT_EQ(facts_of(flight).date, "2020-07-03 12:17");
     flight.series.start_clock_s = 1593771465.0;
     EXPECT_EQ(facts_of(flight).date, "2020-07-03 10:17") << "UTC";
+    EXPECT_EQ(facts_of(flight).start_clock_s, 1593771465.0);
     flight.series.start_clock_s.reset();
     flight.name = "survey";
     EXPECT_EQ(facts_of(flight).date, "");

@@ -4,6 +4,7 @@
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
 #include "flight/segmentation/motor_record.h"
+#include "flight/segmentation_clock.h"
 
 #include <cstddef>
 #include <string>
@@ -20,7 +21,7 @@ struct GridSpan {
 /// A flight on an even clock, for the segmentation: spikes of single samples are gone.
 struct FlightGrid {
     double start_s = 0.0;
-    double step_s = 0.5;
+    double step_s = segmentation_step_s;
     std::vector<double> altitude_m;
     std::vector<double> throttle_percent;      ///< empty if unknown
     std::vector<double> motor_percent;         ///< see MotorRecord; empty if unknown
