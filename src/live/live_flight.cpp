@@ -194,7 +194,7 @@ void LiveFlight::Watch::look_at_flight(const flight::ChosenTracks& tracks, LiveS
     if (phases_.sorties.empty()) return;
     const auto& sortie = phases_.sorties.back();
     const double now_s = mechanical::last_time_s(tracks.series());
-    set_flight_clock(sortie, now_s, state);
+    set_flight_clock(sortie, tracks["altitude_m"], now_s, ended_ || state.silent_s >= options_.silence_s, state);
     if (!state.power_w) return;
     state.energy_wh = integrated_energy_wh(tracks["power_w"], sortie.start_s(), state.landed ? sortie.end_s() : now_s);
 }

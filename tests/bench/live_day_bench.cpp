@@ -1,12 +1,14 @@
 // A day of made-up telemetry through the live watch: how long a look takes, how much memory it needs.
 //   live_day_bench MISSION.toml [HOURS [LOOK_EVERY_S [--decide]]]
 // Ten messages a second: 40 minutes on the ground, 30 in the air, again and again; lost and doubled messages, gaps of
-// 22 s, another aircraft. Times are of the processor; every 30 s a look judges the whole record, and with --decide one a
+// 22 s, another aircraft; where the mission has a path, positions along it, 20 m to its side. Times are of the processor; every 30 s a look judges the whole record, and with --decide one a
 // slot plans.
 
 #include "live/live_flight.h"
 #include "live/prediction_basis.h"
+#include "live/turn_home.h"
 #include "mission/mission_file.h"
+#include "mission/remaining_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,6 +56,9 @@ double height_part(double in_air_s) { return std::clamp(std::min(in_air_s, fligh
 /// The messages of a tenth of a second.
 class MadeUpDay {
   public:
+    /// `path`: none, or what is flown.
+    explicit MadeUpDay(const mission::PathForecast* path) : path_(path) {}
+
     std::vector<std::string> at(long tick) {
         const double time_s = 0.1 * static_cast<double>(tick);
         const double in_air_s = std::fmod(time_s, ground_s + flight_s) - ground_s;
@@ -75,6 +80,10 @@ class MadeUpDay {
                 messages.push_back(
                     fmt::format("7 ESTIMATOR {:.2f} 0", 180.0 + height_m * part + 0.1 * noise_(random_)));
                 break;
+            case 1:
+            case 6:
+                if (path_ != nullptr) messages.push_back(position_at(in_air_s));
+                break;
             case 5:
                 messages.push_back(
                     fmt::format("7 AIR_DATA 101325 0 20 0 180 {:.2f}", flies ? 13.0 + 0.3 * noise_(random_) : 0.0));
@@ -92,6 +101,15 @@ class MadeUpDay {
     }
 
   private:
+    std::string position_at(double in_air_s) {
+        const double on_path_s = std::clamp(in_air_s - climb_s, 0.0, path_->flown().duration_s);
+        const auto at = live::displacement_at(path_->plan().path, place_at(path_->flown(), on_path_s));
+        const double side_m = on_path_s > 0.0 ? 20.0 : 0.0;
+        return fmt::format("7 NAVIGATION 0 0 {:.1f} {:.1f} 0 0 0 0", at.east_m + side_m + 4.0 * noise_(random_),
+                           at.north_m + side_m + 4.0 * noise_(random_));
+    }
+
+    const mission::PathForecast* path_;
     std::mt19937 random_{1};
     std::normal_distribution<double> noise_{0.0, 1.0};
     double charge_ah_ = 0.0;
@@ -120,11 +138,12 @@ int main(int argc, char** argv) {
     reading.may_lack_schedule = true;
     const auto mission = mission::read_mission(argv[1], reading);
     const auto& setup = setup_of(mission);
-    live::LiveFlight flight({}, live::mission_basis(setup, argv[1]),
-                            std::make_unique<live::LiveSchedule>(mission, decides));
-    MadeUpDay day;
+    const auto basis = live::mission_basis(setup, argv[1]);
+    live::LiveFlight flight({}, basis, std::make_unique<live::LiveSchedule>(mission, decides));
+    MadeUpDay day(basis.path.get());
     Times predicting;
     Times others;
+    std::size_t sighted = 0;
     std::size_t changes = 0;
     std::size_t most_rows = 0;
     for (long tick = 0; tick < static_cast<long>(hours * 36000.0); ++tick) {
@@ -134,6 +153,7 @@ int main(int argc, char** argv) {
             const auto state = flight.look();
             const double took_ms = processor_ms() - start_ms;
             (state.prediction ? predicting : others).ms.push_back(took_ms);
+            sighted += state.prediction && state.prediction->is_sighted ? 1 : 0;
             changes = state.decision ? state.decision->changes : changes;
             most_rows = std::max(most_rows, state.rows);
         }
@@ -142,6 +162,7 @@ int main(int argc, char** argv) {
     }
     predicting.print("looks with a prediction");
     others.print("looks without");
+    std::printf("%-28s %zu\n", "looks that tell the place", sighted);
     std::printf("most rows %zu, changes of what runs %zu, %.1f MB resident\n", most_rows, changes, resident_mb());
     return 0;
 }

@@ -5,10 +5,13 @@
 #include "helpers/sample_logs.h"
 #include "helpers/watched_logs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -116,6 +119,59 @@ TEST(LiveFlight, KnowsPhasesAndSaysWhatItWaitsFor) {
     EXPECT_EQ(state.sortie, 1U);
     EXPECT_THAT(state.waits_for, testing::HasSubstr("has landed"));
     EXPECT_TRUE(flight.last_predicted().has_value());
+}
+
+/// A flight at 100 m that comes down at 300 s, stays for some seconds and climbs again; down for good at 600 s.
+std::vector<IncomingMessage> touch_and_go(double ground_s, double bounce_m) {
+    std::vector<IncomingMessage> messages;
+    for (int tick = 0; tick < 6600; ++tick) {
+        const double time_s = 0.1 * tick;
+        const double touched_s = time_s - 300.0;
+        double height_m = std::clamp(std::min(2.5 * (time_s - 40.0), 2.5 * (600.0 - time_s)), 0.0, 100.0);
+        if (touched_s > -40.0 && touched_s < ground_s + 40.0)
+            height_m = std::min(100.0, 2.5 * std::max({-touched_s, touched_s - ground_s, 0.0}));
+        if (touched_s > 0.0 && touched_s < ground_s) height_m = bounce_m * std::abs(std::sin(3.0 * touched_s));
+        const bool flies = time_s > 40.0 && time_s < 600.0;
+        const bool idles = !flies || (touched_s > -20.0 && touched_s < ground_s);
+        const double power_w = idles ? 1.0 : 30.0;
+        if (tick % 5 == 0)
+            messages.push_back(
+                {time_s, fmt::format("7 ENERGY {} 11.5 {:.3f} {:.1f} 0 0", idles ? 0 : 60, power_w / 11.5, power_w)});
+        if (tick % 5 == 2) messages.push_back({time_s, fmt::format("7 ESTIMATOR {:.2f} 0", 180.0 + height_m)});
+    }
+    return messages;
+}
+
+TEST(LiveFlight, ATouchAndGoIsNoLanding) {
+    for (const auto& [ground_s, bounce_m] : {std::pair{0.2, 0.0}, {1.0, 0.0}, {3.0, 0.8}, {6.0, 0.0}, {6.0, 1.5}}) {
+        LiveFlight flight({}, std::nullopt, nullptr);
+        double looked_s = 0.0;
+        double landed_s = 0.0;
+        double energy_wh = 0.0;
+        for (const auto& message : touch_and_go(ground_s, bounce_m)) {
+            flight.receive(message, 0.0);
+            if (*message.time_s < looked_s + 0.5) continue;
+            looked_s = *message.time_s;
+            const auto state = flight.look();
+            EXPECT_GE(state.energy_wh.value_or(0.0), energy_wh - 0.05) << looked_s << " s, " << ground_s;
+            energy_wh = state.energy_wh.value_or(0.0);
+            EXPECT_LE(state.sortie, 1U);
+            if (state.landed && landed_s == 0.0) landed_s = looked_s;
+        }
+        EXPECT_NEAR(landed_s, 611.0, 4.0) << ground_s << " s on the ground, bounces " << bounce_m;
+        EXPECT_NEAR(energy_wh, 30.0 * 520.0 / 3600.0, 0.4);
+    }
+}
+
+TEST(LiveFlight, ALogThatEndsOrFallsSilentOnTheGroundHasLanded) {
+    LiveFlight flight({}, std::nullopt, nullptr);
+    for (const auto& message : touch_and_go(1.0, 0.0))
+        if (*message.time_s < 605.0) flight.receive(message, 0.0);
+    EXPECT_FALSE(flight.look().landed);
+    EXPECT_FALSE(flight.look(20.0).landed);
+    EXPECT_TRUE(flight.look(31.0).landed) << "switched off";
+    flight.end();
+    EXPECT_TRUE(flight.look().landed);
 }
 
 TEST(LiveFlight, ACruiseThatTakesLongerThanPlannedHasNoEndThatIsKnown) {

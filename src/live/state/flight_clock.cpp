@@ -10,14 +10,30 @@ namespace {
 constexpr double rest_kept_s = 300.0;    // before a lift-off: longer than any rest that is looked at
 constexpr double ground_kept_s = 600.0;  // on the ground
 
+/// Whether what looks like a touchdown is no touch-and-go, which climbs a little before the segmentation calls it one.
+bool has_stayed(const flight::Track& altitude_m, double touchdown_s, double now_s) {
+    constexpr double beyond_doubt_s = 60.0;
+    const flight::SegmentationOptions rest;
+    if (now_s - touchdown_s < rest.rest_s) return false;
+    if (now_s - touchdown_s >= beyond_doubt_s) return true;
+    const auto& times_s = altitude_m.time_s;
+    const auto from = std::ranges::lower_bound(times_s, now_s - rest.rest_s) - times_s.begin();
+    const auto last = std::ranges::upper_bound(times_s, now_s) - times_s.begin();
+    if (from >= last) return false;
+    const auto [least, most] = std::minmax_element(altitude_m.value.begin() + from, altitude_m.value.begin() + last);
+    return *most - *least <= rest.rest_height_m;
+}
+
 }  // namespace
 
-void set_flight_clock(const flight::Sortie& sortie, double now_s, LiveState& state) {
+void set_flight_clock(const flight::Sortie& sortie, const flight::Track& altitude_m, double now_s, bool is_over,
+                      LiveState& state) {
     using flight::Phase;
     const auto& first = sortie.phases.front();
     const auto& last = sortie.phases.back();
     state.began_in_air = first.phase != Phase::takeoff || !first.complete;
-    state.landed = last.phase == Phase::landing && last.complete;
+    state.landed =
+        last.phase == Phase::landing && last.complete && (is_over || has_stayed(altitude_m, last.end.time_s, now_s));
     if (!state.began_in_air) state.lift_off_s = first.start.time_s;
     state.flight_s = (state.landed ? sortie.end_s() : now_s) - sortie.start_s();
     if (state.landed) return;

@@ -12,6 +12,8 @@ constexpr double off_path_m = 25.0;        // one deviation: satellite navigatio
 constexpr double first_off_path_m = 60.0;  // while it is not known from where the path begins
 constexpr double least_on_path_s = 20.0;
 constexpr double least_on_path_part = 0.5;
+constexpr double moved_origin_m = 2.0;         // little beside `off_path_m`
+constexpr std::size_t caught_up_at_once = 32;  // observations, with each that is new: a look is to take 5 ms at most
 
 }  // namespace
 
@@ -32,12 +34,15 @@ Displacement PathOrigin::value() const {
 }
 
 PathPlaceFinder::PathPlaceFinder(const mission::PathForecast& path)
-    : places_(places_of(path)),
-      duration_s_(path.flown().duration_s),
-      settled_{PlaceFilter(places_)},
-      now_{PlaceFilter(places_)},
-      second_(places_) {
-    settled_.filter.begin(first_off_path_m, {});
+    : places_(places_of(path)), duration_s_(path.flown().duration_s), settled_(places_), now_(places_) {
+    begin(settled_);
+}
+
+void PathPlaceFinder::begin(Passes& passes) {
+    passes.first.begin(first_off_path_m, {});
+    passes.origin = {};
+    passes.second.begin(off_path_m, {});
+    passes.has_coming = false;
 }
 
 std::optional<PathSighting> PathPlaceFinder::find(const flight::ChosenTracks& tracks, double cruise_start_s,
@@ -50,47 +55,63 @@ std::optional<PathSighting> PathPlaceFinder::find(const flight::ChosenTracks& tr
     learn(seen_.settled, settled_);
     now_ = settled_;
     learn(seen_.of.size(), now_);
-    // With another origin all of it is likely elsewhere.
-    second_.begin(off_path_m, now_.origin.value());
-    for (const auto& seen : seen_.of) second_.take(seen);
     return sighting(cruise_start_s, until_s);
 }
 
-/// What the first filter took may have been changed since: rows were thinned, the log began anew, or it is another
-/// cruise.
+/// What the filters took may have been changed since: rows were thinned, the log began anew, or it is another cruise.
 void PathPlaceFinder::forget_changed() {
-    const auto taken = settled_.filter.taken();
+    const auto taken = settled_.first.taken();
     const bool is_as_before =
         taken <= seen_.settled &&
         std::equal(seen_.of.begin(), seen_.of.begin() + static_cast<std::ptrdiff_t>(taken), seen_before_.of.begin());
-    if (is_as_before) return;
-    settled_.filter.begin(first_off_path_m, {});
-    settled_.origin = {};
+    if (!is_as_before) begin(settled_);
 }
 
-void PathPlaceFinder::learn(std::size_t until, Beginning& beginning) const {
-    auto& filter = beginning.filter;
-    while (filter.taken() < until) {
-        const auto& seen = seen_.of[filter.taken()];
-        filter.take(seen);
-        if (!seen.is_known || !filter.is_on_path()) continue;
-        const double place = filter.place();
-        const auto& point = filter.point_of(place);
-        if (!point.is_anywhere) beginning.origin.add(filter.off(place), point.course);
+void PathPlaceFinder::learn(std::size_t until, Passes& passes) const {
+    auto& first = passes.first;
+    while (first.taken() < until) {
+        const auto& seen = seen_.of[first.taken()];
+        first.take(seen);
+        passes.second.take(seen);
+        if (seen.is_known && first.is_on_path()) {
+            const double place = first.place();
+            const auto& point = first.point_of(place);
+            if (!point.is_anywhere) passes.origin.add(first.off(place), point.course);
+        }
+        renew_second(passes);
     }
+}
+
+/// With another origin all of it is likely elsewhere: the second filter begins anew, and goes through what was seen a
+/// part at a time.
+void PathPlaceFinder::renew_second(Passes& passes) const {
+    if (!passes.has_coming) {
+        const auto moved = minus(passes.origin.value(), passes.second.origin());
+        if (std::hypot(moved.east_m, moved.north_m) <= moved_origin_m) return;
+        passes.coming.begin(off_path_m, passes.origin.value());
+        passes.has_coming = true;
+    }
+    auto& coming = passes.coming;
+    const auto taken = passes.first.taken();
+    for (const auto until = std::min(taken, coming.taken() + caught_up_at_once); coming.taken() < until;)
+        coming.take(seen_.of[coming.taken()]);
+    if (coming.taken() < taken) return;
+    std::swap(passes.second, passes.coming);
+    passes.has_coming = false;
 }
 
 PathSighting PathPlaceFinder::sighting(double cruise_start_s, double until_s) const {
     PathSighting sighting;
-    if (second_.seen_on_path_s() < std::max(least_on_path_s, least_on_path_part * second_.known_s())) return sighting;
-    sighting.is_on_path = second_.is_on_path();
+    const auto& second = now_.second;
+    if (second.seen_on_path_s() < std::max(least_on_path_s, least_on_path_part * second.known_s())) return sighting;
+    sighting.is_on_path = second.is_on_path();
     const bool is_seen = seen_.of.back().is_known;
-    const double place = sighting.is_on_path && is_seen ? second_.nearest_place() : second_.place();
+    const double place = sighting.is_on_path && is_seen ? second.nearest_place() : second.place();
     const double seen_s = cruise_start_s + static_cast<double>(seen_.of.size() - 1) * places_.step_s;
     sighting.on_path_s =
         std::clamp(place * places_.step_s + (sighting.is_on_path ? until_s - seen_s : 0.0), 0.0, duration_s_);
     if (is_seen) {
-        const auto off = second_.off(place);
+        const auto off = second.off(place);
         sighting.off_m = std::hypot(off.east_m, off.north_m);
     }
     return sighting;

@@ -29,8 +29,8 @@ class PathOrigin {
 
 /// Where a flight is on its path, by the positions of its cruise from its start until a moment: two forward filters over
 /// places on the path (docs/methods.md, Flight along a path), the first for where the path begins. Nothing later is
-/// taken into account. The first goes on from moment to moment; where positions changed since, it begins anew, so that
-/// the answers depend on the series alone.
+/// taken into account. Both go on from moment to moment; where positions changed since, they begin anew, so that the
+/// answers depend on the series alone.
 class PathPlaceFinder {
   public:
     /// `path` takes some time.
@@ -42,23 +42,29 @@ class PathPlaceFinder {
     std::optional<PathSighting> find(const flight::ChosenTracks& tracks, double cruise_start_s, double until_s);
 
   private:
-    /// From where the path begins, by the first filter.
-    struct Beginning {
-        PlaceFilter filter;
-        PathOrigin origin = {};
+    /// By the observations until one of them.
+    struct Passes {
+        explicit Passes(const Places& places) : first(places), second(places), coming(places) {}
+
+        PlaceFilter first;
+        PathOrigin origin = {};  ///< of the path, by the first
+        PlaceFilter second;      ///< from the origin as it was known when it began
+        PlaceFilter coming;      ///< takes the place of the second when it has caught up: from a newer origin
+        bool has_coming = false;
     };
 
+    static void begin(Passes& passes);
     void forget_changed();
-    void learn(std::size_t until, Beginning& beginning) const;
+    void learn(std::size_t until, Passes& passes) const;
+    void renew_second(Passes& passes) const;
     PathSighting sighting(double cruise_start_s, double until_s) const;
 
     Places places_;
     double duration_s_ = 0.0;
     Observations seen_;
     Observations seen_before_;
-    Beginning settled_;  ///< by observations that are settled
-    Beginning now_;      ///< by all
-    PlaceFilter second_;
+    Passes settled_;  ///< by observations that are settled
+    Passes now_;      ///< by all
 };
 
 /// The same of one moment; std::nullopt of a path that takes no time, too.

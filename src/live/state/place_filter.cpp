@@ -24,13 +24,16 @@ constexpr std::array advances_on_path{Advance{0, 0.25}, Advance{1, 0.45}, Advanc
 constexpr std::array advances_off_path{Advance{0, 0.7},     Advance{1, 0.2},      Advance{2, 0.07},
                                        Advance{3, 0.029},   Advance{-30, 0.0002}, Advance{30, 0.0005},
                                        Advance{100, 0.0003}};
+constexpr std::size_t most_back = 30;
+constexpr std::size_t most_ahead = 100;
 constexpr double leaves = 0.02;
 constexpr double comes_back = 0.05;
 
 }  // namespace
 
 PlaceFilter::PlaceFilter(const Places& places) : places_(&places) {
-    for (auto* of : {&on_, &off_, &next_on_, &next_off_}) of->resize(places.of.size());
+    for (auto* of : {&on_, &off_, &next_on_}) of->resize(places.of.size());
+    next_off_.resize(most_back + places.of.size() + most_ahead);
 }
 
 void PlaceFilter::begin(double off_path_m, const Displacement& origin) {
@@ -58,25 +61,27 @@ void PlaceFilter::take(const Observation& seen) {
 void PlaceFilter::go_on() {
     std::ranges::fill(next_on_, 0.0);
     std::ranges::fill(next_off_, 0.0);
-    const auto last = static_cast<std::ptrdiff_t>(on_.size()) - 1;
-    const auto to = [&](std::size_t from, std::ptrdiff_t places) {
-        return static_cast<std::size_t>(
-            std::clamp(static_cast<std::ptrdiff_t>(from) + places, std::ptrdiff_t{0}, last));
-    };
-    for (std::size_t i = 0; i < on_.size(); ++i) {
-        if (on_[i] > negligible) {
-            for (const auto& [places, chance] : advances_on_path)
-                next_on_[to(i, places_->of[i].is_anywhere ? 1 : places)] += on_[i] * chance * (1.0 - leaves);
-            next_off_[i] += on_[i] * leaves;
+    const auto count = on_.size();
+    double* const next_off = next_off_.data() + most_back;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (off_[i] <= negligible) off_[i] = 0.0;
+        next_on_[i] += off_[i] * comes_back;
+        if (!(on_[i] > negligible)) continue;
+        for (const auto& [places, chance] : advances_on_path) {
+            const auto to = i + static_cast<std::size_t>(places_->of[i].is_anywhere ? 1 : places);
+            next_on_[std::min(to, count - 1)] += on_[i] * chance * (1.0 - leaves);
         }
-        if (off_[i] > negligible) {
-            for (const auto& [places, chance] : advances_off_path)
-                next_off_[to(i, places)] += off_[i] * chance * (1.0 - comes_back);
-            next_on_[i] += off_[i] * comes_back;
-        }
+        next_off[i] += on_[i] * leaves;
+    }
+    for (const auto& [places, chance] : advances_off_path) {
+        const double part = chance * (1.0 - comes_back);
+        double* const to = next_off + places;
+        for (std::size_t i = 0; i < count; ++i) to[i] += off_[i] * part;
     }
     on_.swap(next_on_);
-    off_.swap(next_off_);
+    std::copy_n(next_off, count, off_.begin());
+    off_.front() += std::accumulate(next_off_.data(), next_off, 0.0);
+    off_.back() += std::accumulate(next_off + count, next_off + count + most_ahead, 0.0);
     on_path_ = std::accumulate(on_.begin(), on_.end(), 0.0);
 }
 
@@ -91,12 +96,12 @@ void PlaceFilter::look(const Observation& seen) {
         on_path += on_[i];
         off_path += off_[i];
     }
-    const double sum = on_path + off_path;
+    const double scale = 1.0 / (on_path + off_path);
     for (std::size_t i = 0; i < on_.size(); ++i) {
-        on_[i] /= sum;
-        off_[i] /= sum;
+        on_[i] *= scale;
+        off_[i] *= scale;
     }
-    on_path_ = on_path / sum;
+    on_path_ = on_path * scale;
 }
 
 double PlaceFilter::logarithm(std::size_t i) const {

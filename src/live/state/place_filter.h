@@ -20,6 +20,7 @@ class PlaceFilter {
     void begin(double off_path_m, const Displacement& origin);
     void take(const Observation& seen);
 
+    const Displacement& origin() const { return origin_; }
     /// Observations since the beginning.
     std::size_t taken() const { return taken_; }
     /// Seconds of planned time that were seen, and those of them on the path.
@@ -51,9 +52,9 @@ class PlaceFilter {
     double seen_on_path_s_ = 0.0;
     std::vector<double> on_;
     std::vector<double> off_;
-    double on_path_ = 0.0;         ///< sum of `on_`
-    std::vector<double> next_on_;  ///< of go_on
-    std::vector<double> next_off_;
+    double on_path_ = 0.0;          ///< sum of `on_`
+    std::vector<double> next_on_;   ///< of go_on
+    std::vector<double> next_off_;  ///< and what goes over an end of the path
 };
 
 }  // namespace flightwatt::live

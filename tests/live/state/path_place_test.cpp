@@ -211,6 +211,61 @@ TEST(PathPlace, GoingOnFromMomentToMomentIsTheSameAsBeginningAnew) {
     }
 }
 
+/// The second filter over all observations, from the origin that the first gives.
+PlaceFilter second_anew(const mission::PathForecast& plan, const flight::FlightSeries& series, double until_s,
+                        const Places& places) {
+    Observations seen;
+    observe(flight::ChosenTracks(series), begin_s, until_s, places.step_s, seen);
+    PlaceFilter first(places);
+    first.begin(60.0, {});
+    PathOrigin origin;
+    for (const auto& at : seen.of) {
+        first.take(at);
+        if (!at.is_known || !first.is_on_path()) continue;
+        const auto& point = first.point_of(first.place());
+        if (!point.is_anywhere) origin.add(first.off(first.place()), point.course);
+    }
+    PlaceFilter second(places);
+    second.begin(25.0, origin.value());
+    for (const auto& at : seen.of) second.take(at);
+    EXPECT_LE(second.place() * places.step_s, plan.flown().duration_s);
+    return second;
+}
+
+/// A second pass that is behind by some seconds costs a place little, and its verdict nothing.
+TEST(PathPlace, ASecondPassInPartsTellsWhatAWholeOneDoes) {
+    const auto path = survey();
+    const mission::PathForecast plan({path, {}, test::made_up_wing()});
+    const auto places = places_of(plan);
+    std::mt19937 random(7);
+    std::vector<double> differences_s;
+    std::size_t other_verdicts = 0;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+        const auto flown = fly(path, made_up_conditions(random), seed);
+        for (double time_s = begin_s + 30.0; time_s < flown.end_s; time_s += 23.7) {
+            const auto series = cut_series(flown.series, time_s);
+            const auto found = sighted_on_path(plan, series, begin_s, time_s);
+            const auto whole = second_anew(plan, series, time_s, places);
+            if (!found || !found->on_path_s) continue;
+            other_verdicts += found->is_on_path == whole.is_on_path() ? 0 : 1;
+            if (!found->is_on_path || !whole.is_on_path()) continue;
+            const double last_seen_s = std::floor((time_s - begin_s) / places.step_s) * places.step_s + begin_s;
+            const double whole_s =
+                std::clamp(whole.nearest_place() * places.step_s + time_s - last_seen_s, 0.0, plan.flown().duration_s);
+            differences_s.push_back(std::abs(*found->on_path_s - whole_s));
+        }
+    }
+    ASSERT_GT(differences_s.size(), 150U);
+    std::ranges::sort(differences_s);
+    RecordProperty("most_s", std::to_string(differences_s.back()));
+    RecordProperty("p99_s", std::to_string(differences_s[differences_s.size() * 99 / 100]));
+    RecordProperty("looks", std::to_string(differences_s.size()));
+    RecordProperty("other_verdicts", std::to_string(other_verdicts));
+    EXPECT_LT(differences_s[differences_s.size() * 99 / 100], 2.5);
+    EXPECT_LT(differences_s.back(), 4.5);
+    EXPECT_EQ(other_verdicts, 0U);
+}
+
 /// As when rows are thinned, or a late message comes in.
 TEST(PathPlace, WhatChangedBeforeIsTakenAnew) {
     const auto path = survey();
