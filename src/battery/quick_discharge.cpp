@@ -131,14 +131,14 @@ class QuickRun {
     FallingVoltage voltage_;
 };
 
-/// Over longer steps the RC pair's transient is no parabola; what is faster than some seconds hardly counts.
-double longest_step_s(const TheveninCircuit& circuit, double longest_s) {
+}  // namespace
+
+// Over longer steps the RC pair's transient is no parabola; what is faster than some seconds hardly counts.
+double longest_quick_step_s(const TheveninCircuit& circuit, double longest_s) {
     constexpr double short_s = 2.0;
     if (circuit.rc_resistance_ohm == 0.0) return longest_s;
     return std::min(longest_s, std::max(short_s, circuit.rc_time_constant_s));
 }
-
-}  // namespace
 
 Discharge quick_discharge(const Battery& battery, const Load& load, const BatteryState& state,
                           const QuickSteps& steps) {
@@ -151,7 +151,7 @@ Discharge quick_discharge(const Battery& battery, const Load& load, const Batter
     if (state.soc_percent <= 0.0) return {{0.0, state.rc_voltage_v}, load.start_s};
     const double length_s = load.end_s - load.start_s;
     if (length_s == 0.0) return {state};
-    const double longest_s = longest_step_s(*battery.thevenin, steps.longest_s);
+    const double longest_s = longest_quick_step_s(*battery.thevenin, steps.longest_s);
     const auto count = static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / longest_s * (1.0 - 1e-12))));
     const double step_s = length_s / static_cast<double>(count);
     QuickRun run(battery, load, steps.cutoff_voltage_v, state.soc_percent);

@@ -17,4 +17,7 @@ struct QuickSteps {
 /// Thévenin's, or as discharge().
 Discharge quick_discharge(const Battery& battery, const Load& load, const BatteryState& state, const QuickSteps& steps);
 
+/// [s] How long its steps are at most, where the load allows `longest_s`: no longer than the RC pair's time constant.
+double longest_quick_step_s(const TheveninCircuit& circuit, double longest_s);
+
 }  // namespace flightwatt::battery

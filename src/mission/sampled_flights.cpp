@@ -4,6 +4,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/sampling/flight_draws.h"
+#include "mission/sampling/flight_lanes.h"
 #include "mission/sampling/flown_landing.h"
 #include "mission/sampling/workers.h"
 
@@ -48,11 +49,29 @@ class Sampler {
 
     std::vector<Landing> fly_all() const {
         std::vector<Landing> landings(options_.samples);
-        for_each_index(landings.size(), [&](std::size_t i) { landings[i] = fly_one(i); });
+        if (prepared_.adaptive || !disturbances_.empty())
+            for_each_index(landings.size(), [&](std::size_t i) { landings[i] = fly_one(i); });
+        else
+            fly_side_by_side(landings);
         return landings;
     }
 
   private:
+    void fly_side_by_side(std::vector<Landing>& landings) const {
+        constexpr std::size_t at_once = 256;
+        const FlightLanes lanes(setup_, spreads_, prepared_.schedule, times_s_);
+        const auto normal_count = count_normals(setup_);
+        for_each_index((landings.size() + at_once - 1) / at_once, [&](std::size_t block) {
+            const auto own = std::span(landings)
+                                 .subspan(block * at_once)
+                                 .first(std::min(at_once, landings.size() - block * at_once));
+            std::vector<std::vector<double>> normals;
+            for (std::size_t i = 0; i < own.size(); ++i)
+                normals.push_back(draw_normals(normal_count, options_.seed, block * at_once + i));
+            lanes.fly(normals, own);
+        });
+    }
+
     Landing fly_one(std::size_t index) const {
         const auto& planned_s = setup_.duration_s;
         const auto setup = draw_flight(setup_, spreads_, options_.seed, index);

@@ -10,7 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 #include <boost/random/normal_distribution.hpp>
@@ -37,16 +38,39 @@ double moved_logarithm(double value, const std::optional<battery::Interval>& int
     return value * std::exp(z * sd);
 }
 
+/// Numbers of one flight: Steele, Lea and Flood's SplitMix64 (OOPSLA 2014), which is begun in no time.
+class FlightNumbers {
+  public:
+    using result_type = std::uint64_t;
+
+    FlightNumbers(std::uint64_t seed, std::uint64_t index) : state_(mixed(mixed(seed) + step * (index + 1))) {}
+
+    static constexpr result_type min() { return 0; }
+    static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
+    result_type operator()() { return mixed(state_ += step); }
+
+  private:
+    static constexpr std::uint64_t step = 0x9e3779b97f4a7c15;
+
+    static std::uint64_t mixed(std::uint64_t bits) {
+        bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9;
+        bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111eb;
+        return bits ^ (bits >> 31U);
+    }
+
+    std::uint64_t state_;
+};
+
 /// A phase's level, `moved_w` from the model's.
 void move_level(mechanical::PhaseModel& phase, double moved_w, double shown_s) {
     auto& curve = phase.fourier;
-    const auto as_planned = curve;
+    const double planned_a0_w = curve.a0_w;
     curve.a0_w += moved_w;
-    if (moved_w >= 0.0) return;
-    const double mean_w = energy_j(as_planned, shown_s) / shown_s;
-    if (mean_w <= 0.0 || least_power_w(curve, {0.0, shown_s}).power_w >= 0.0) return;
+    if (moved_w >= 0.0 || least_power_w(curve, {0.0, shown_s}).power_w >= 0.0) return;
+    const double mean_w = energy_j(curve, shown_s) / shown_s - moved_w;
+    if (mean_w <= 0.0) return;
     const double factor = std::max(0.0, (mean_w + moved_w) / mean_w);
-    curve.a0_w = factor * as_planned.a0_w;
+    curve.a0_w = factor * planned_a0_w;
     for (auto* terms_w : {&curve.cos_w, &curve.sin_w})
         for (auto& term_w : *terms_w) term_w *= factor;
 }
@@ -103,6 +127,7 @@ void move_phases(const MissionSetup& mission, const PhaseDeviations& deviations,
         double moved_w = deviations.of.at(level);
         if (deviations.is_joint.at(level) && deviations.is_joint.at(duration)) moved_w *= planned_s / flown_s;
         auto& model = flight.mechanical->phases[phase];
+        model.fourier = mission.mechanical->phases[phase].fourier;
         const bool stretched = mission.phase_clock == mechanical::PhaseClock::stretched;
         move_level(model, moved_w, stretched ? model.duration_s : flown_s);
     }
@@ -201,8 +226,7 @@ std::vector<double> normals_beside(const MissionSetup& a, const MissionSetup& b,
 }
 
 std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uint64_t index) {
-    std::seed_seq words{seed & 0xFFFFFFFFU, seed >> 32U, index & 0xFFFFFFFFU, index >> 32U};
-    std::mt19937_64 engine(words);
+    FlightNumbers engine(seed, index);
     boost::random::normal_distribution<double> normal;
     std::vector<double> normals(count);
     for (auto& number : normals) number = normal(engine);
@@ -211,17 +235,26 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 
 MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals) {
     auto flight = mission;
+    draw_onto(mission, spreads, normals, flight);
+    return flight;
+}
+
+void draw_onto(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals,
+               MissionSetup& flight) {
     const auto deviations = phase_deviations(spreads, normals);
     move_phases(mission, deviations, flight);
     Normals normal(normals.subspan(phase_quantities));
+    flight.battery = mission.battery;
     move_battery(spreads.battery, normal, flight.battery);
-    for (std::size_t i = 0; i < spreads.components.size(); ++i)
-        move_component(spreads.components[i], normal, flight.compute.components[i].profile.power_w);
-    if (!mission.cruise_path) return flight;
+    for (std::size_t i = 0; i < spreads.components.size(); ++i) {
+        auto& power_w = flight.compute.components[i].profile.power_w;
+        power_w = mission.compute.components[i].profile.power_w;
+        move_component(spreads.components[i], normal, power_w);
+    }
+    if (!mission.cruise_path) return;
     const double wind_speed_z = normal();
     const double wind_direction_z = normal();
     fly_drawn_path(deviations.of.at(level_of(Phase::cruise)), wind_speed_z, wind_direction_z, mission, flight);
-    return flight;
 }
 
 MissionSetup draw_flight(const MissionSetup& mission, const FlightSpreads& spreads, std::uint64_t seed,

@@ -26,6 +26,10 @@ std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uin
 /// tenth of the planned and at ten times it, what cannot be negative at 0 (or a thousandth).
 MissionSetup flight_of(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals);
 
+/// The same onto `flight`, a copy of the mission that may have been another flight before: copying less is faster.
+void draw_onto(const MissionSetup& mission, const FlightSpreads& spreads, std::span<const double> normals,
+               MissionSetup& flight);
+
 /// Which of two missions' sources are the same, and deviate alike on the same day.
 struct CommonSources {
     bool mechanical = false;

@@ -62,22 +62,27 @@ FlightLines::FlightLines(const Mission& mission, const FlightSpreads& spreads)
     : spreads_(spreads),
       setup_(without_evidence(mission)),
       schedule_(mission.schedule),
+      lanes_(setup_, spreads_, schedule_),
       worse_(count_normals(mission)) {
     stated_percent_ = left_percent_of(worse_);
-    std::vector<double> worse(worse_.size());
-    for_each_index(worse.size(), [&](std::size_t k) { worse[k] = lost_percent_along(k); });
-    worse_ = std::move(worse);
+    std::vector<std::size_t> numbers(worse_.size());
+    std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+    worse_ = lost_percent_along(numbers);
     find_scale();
     set_direction(worse_);
 }
 
-/// What one deviation of one number costs, by central differences.
-double FlightLines::lost_percent_along(std::size_t normal) const {
-    std::vector<double> normals(worse_.size());
-    normals[normal] = 1.0;
-    const double left_percent = left_percent_of(normals);
-    normals[normal] = -1.0;
-    return (left_percent_of(normals) - left_percent) / 2.0;
+/// What one deviation of each of these numbers costs, by central differences.
+std::vector<double> FlightLines::lost_percent_along(const std::vector<std::size_t>& numbers) const {
+    std::vector<std::vector<double>> flights;
+    for (const auto number : numbers) {
+        for (const double side : {1.0, -1.0}) flights.emplace_back(worse_.size())[number] = side;
+    }
+    const auto left_percent = left_percent_of_all(flights);
+    std::vector<double> lost_percent;
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+        lost_percent.push_back((left_percent[2 * k + 1] - left_percent[2 * k]) / 2.0);
+    return lost_percent;
 }
 
 /// Of the differences: how widely the flights are spread, and what is drawn together turned to where they lose most.
@@ -99,7 +104,8 @@ void FlightLines::find_scale() {
         if (square == 0.0) continue;
         const Eigen::MatrixXd turn = lost_percent.householderQr().householderQ();
         joint.factor = (joint.factor * turn).eval();
-        for (const auto quantity : joint.quantities) worse_[quantity] = lost_percent_along(quantity);
+        const auto turned_percent = lost_percent_along(joint.quantities);
+        for (std::size_t k = 0; k < joint.quantities.size(); ++k) worse_[joint.quantities[k]] = turned_percent[k];
     }
     constexpr double of_rounding = 1e-9;
     sd_percent_ = std::sqrt(std::max(square_sum, 0.0));
@@ -107,17 +113,37 @@ void FlightLines::find_scale() {
     if (square_per_freedom > 0.0) degrees_of_freedom_ = square_sum * square_sum / square_per_freedom;
 }
 
+void FlightLines::count(std::span<const double> left_percent) const {
+    flown_ += left_percent.size();
+    if (std::ranges::any_of(left_percent, [](double percent) { return percent < 0.0; })) some_fail_ = true;
+}
+
 double FlightLines::left_percent_of(std::span<const double> normals) const {
-    const auto flight = flight_of(setup_, spreads_, normals);
-    const auto schedule = rescale_to_flown_durations(schedule_, setup_.duration_s, flight.duration_s);
-    const double left_percent = land({flight, flight.battery, load_segments(flight, schedule)}).left_percent;
-    ++flown_;
-    if (left_percent < 0.0) some_fail_ = true;
+    const double left_percent = lanes_.fly_alone(normals).left_percent;
+    count({&left_percent, 1});
     return left_percent;
 }
 
-double FlightLines::drawn_left_percent(std::size_t flight) const {
-    return left_percent_of(draw_normals(worse_.size(), seed_of_flights, flight));
+/// Side by side, and so within 1e-3 points of the same alone.
+std::vector<double> FlightLines::left_percent_of_all(std::span<const std::vector<double>> normals) const {
+    std::vector<Landing> landings(normals.size());
+    lanes_.fly(normals, landings);
+    std::vector<double> left_percent;
+    for (const auto& landing : landings) left_percent.push_back(landing.left_percent);
+    count(left_percent);
+    return left_percent;
+}
+
+void FlightLines::fly_drawn(std::size_t from, std::span<double> left_percent) const {
+    constexpr std::size_t at_once = 256;
+    for_each_index((left_percent.size() + at_once - 1) / at_once, [&](std::size_t block) {
+        const auto own =
+            left_percent.subspan(block * at_once).first(std::min(at_once, left_percent.size() - block * at_once));
+        std::vector<std::vector<double>> normals;
+        for (std::size_t i = 0; i < own.size(); ++i)
+            normals.push_back(draw_normals(worse_.size(), seed_of_flights, from + block * at_once + i));
+        std::ranges::copy(left_percent_of_all(normals), own.begin());
+    });
 }
 
 void FlightLines::set_direction(std::vector<double> direction) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mission/sampling/flight_draws.h"
+#include "mission/sampling/flight_lanes.h"
 #include "mission/sampling/student.h"
 
 #include <atomic>
@@ -43,14 +44,16 @@ class FlightLines {
     /// what is drawn together is far out together. Between them all flights keep more.
     void find_thresholds(std::size_t line, double left_percent, LineSearch& search) const;
 
-    /// What flight number `flight` is left with, drawn without regard to lines.
-    double drawn_left_percent(std::size_t flight) const;
+    /// What flights number `from` and on are left with, drawn without regard to lines.
+    void fly_drawn(std::size_t from, std::span<double> left_percent) const;
 
     /// From now on along where the flights beyond the thresholds of lines are, by their chance.
     void turn_to_beyond(const std::vector<LineSearch>& searches);
 
   private:
     double left_percent_of(std::span<const double> normals) const;
+    std::vector<double> left_percent_of_all(std::span<const std::vector<double>> normals) const;
+    void count(std::span<const double> left_percent) const;
     std::vector<double> across_of(std::size_t line) const;
     double fly(double at, LineSearch& search) const;
     /// Where nothing is spare if so much is at `at`, as what is left falls evenly with a Student t.
@@ -59,12 +62,13 @@ class FlightLines {
     void find_worse_threshold(double left_percent, LineSearch& search) const;
     void find_better_threshold(double left_percent, LineSearch& search) const;
     void set_direction(std::vector<double> direction);
-    double lost_percent_along(std::size_t normal) const;
+    std::vector<double> lost_percent_along(const std::vector<std::size_t>& numbers) const;
     void find_scale();
 
     FlightSpreads spreads_;
     MissionSetup setup_;
     const Schedule& schedule_;
+    FlightLanes lanes_;
     mutable std::atomic<std::size_t> flown_ = 0;
     mutable std::atomic<bool> some_fail_ = false;
     std::vector<double> worse_;  ///< the direction, of length 1

@@ -2,12 +2,12 @@
 
 #include "base/statistics.h"
 #include "mission/sampling/flight_lines.h"
-#include "mission/sampling/workers.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -90,7 +90,7 @@ bool are_lines_poor(const FlightLines& lines, const ChanceBelow& below, double w
 void draw_until(std::size_t flights, const FlightLines& lines, std::vector<double>& left_percent) {
     const auto from = left_percent.size();
     left_percent.resize(flights);
-    for_each_index(flights - from, [&](std::size_t i) { left_percent[from + i] = lines.drawn_left_percent(from + i); });
+    lines.fly_drawn(from, std::span(left_percent).subspan(from));
 }
 
 /// By flights drawn at random, as many as tell on which side of `wanted` the chance is, or all.

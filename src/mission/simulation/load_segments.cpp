@@ -39,38 +39,12 @@ void disturb_power(const Disturbance& disturbance, LoadSegment& segment) {
         for (auto& term_w : *terms_w) term_w *= disturbance.mechanical_factor;
 }
 
-/// Bounds of a segment's power: no harmonic is greater than its amplitude.
-struct PowerBounds {
-    double low_w = 0.0;
-    double high_w = 0.0;
-};
-
-PowerBounds bounds_of(const LoadSegment& segment) {
-    PowerBounds bounds{segment.compute_w, segment.compute_w};
-    if (!segment.mechanical) return bounds;
-    const auto& curve = *segment.mechanical;
-    double amplitude_w = 0.0;
-    for (std::size_t n = 0; n < curve.cos_w.size(); ++n) amplitude_w += std::hypot(curve.cos_w[n], curve.sin_w[n]);
-    bounds.low_w += curve.a0_w - amplitude_w;
-    bounds.high_w += curve.a0_w + amplitude_w;
-    return bounds;
-}
-
 /// Whether the source is constant, and nothing but an empty battery can end the segment.
 bool depends_on_power_alone(const battery::Battery& battery, double cutoff_voltage_v, const LoadSegment& segment) {
     if (battery.thevenin) return false;
     const auto [low_w, high_w] = bounds_of(segment);
     return low_w >= 0.0 && high_w < power_limit_w(battery) &&
            terminal_voltage_v(battery, {}, internal_current_a(battery, high_w)) >= cutoff_voltage_v;
-}
-
-/// Steps over which a segment's power is nearly a parabola.
-double quick_step_s(const LoadSegment& segment) {
-    constexpr double steps_a_turn = 12.0;  // of the highest harmonic
-    if (!segment.mechanical || segment.mechanical->cos_w.empty()) return longest_quick_step_s;
-    const double fastest_rad_per_s =
-        static_cast<double>(segment.mechanical->cos_w.size()) * segment.mechanical->omega_rad_per_s;
-    return std::min(longest_quick_step_s, units::rad_per_turn / (steps_a_turn * fastest_rad_per_s));
 }
 
 /// What such a segment takes: without resistance the closed integral of Eq. 1, with it Gauss quadrature.
@@ -99,6 +73,25 @@ double depleted_percent(const battery::Battery& battery, const LoadSegment& segm
 }
 
 }  // namespace
+
+PowerBounds bounds_of(const LoadSegment& segment) {
+    PowerBounds bounds{segment.compute_w, segment.compute_w};
+    if (!segment.mechanical) return bounds;
+    const auto& curve = *segment.mechanical;
+    double amplitude_w = 0.0;
+    for (std::size_t n = 0; n < curve.cos_w.size(); ++n) amplitude_w += std::hypot(curve.cos_w[n], curve.sin_w[n]);
+    bounds.low_w += curve.a0_w - amplitude_w;
+    bounds.high_w += curve.a0_w + amplitude_w;
+    return bounds;
+}
+
+double quick_step_s(const LoadSegment& segment) {
+    constexpr double steps_a_turn = 12.0;  // of the highest harmonic
+    if (!segment.mechanical || segment.mechanical->cos_w.empty()) return longest_quick_step_s;
+    const double fastest_rad_per_s =
+        static_cast<double>(segment.mechanical->cos_w.size()) * segment.mechanical->omega_rad_per_s;
+    return std::min(longest_quick_step_s, units::rad_per_turn / (steps_a_turn * fastest_rad_per_s));
+}
 
 MissionLoad load_of(const MissionSetup& mission) {
     MissionLoad load{mission, timeline_of(mission.duration_s), {}, {}};

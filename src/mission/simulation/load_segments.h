@@ -51,6 +51,16 @@ std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, con
 double mechanical_w(const LoadSegment& segment, double time_s);
 double power_w(const LoadSegment& segment, double time_s);
 
+/// Bounds of a segment's power: no harmonic is greater than its amplitude.
+struct PowerBounds {
+    double low_w = 0.0;
+    double high_w = 0.0;
+};
+PowerBounds bounds_of(const LoadSegment& segment);
+
+/// [s] Steps over which a segment's power is nearly a parabola, for quick_discharge.
+double quick_step_s(const LoadSegment& segment);
+
 /// Energies [J] demanded from the segment's start to `time_s`, a time within it.
 double mechanical_energy_j(const LoadSegment& segment, double time_s);
 double compute_energy_j(const LoadSegment& segment, double time_s);

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "battery/battery.h"
+
+#include <bitset>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flightwatt::battery {
+
+/// How many batteries are discharged side by side.
+inline constexpr int lane_count = 32;
+
+/// A number of each of them. Of fixed size, so that what happens in a lane is the same to the last bit whatever the
+/// others do and wherever it lies.
+using Lanes = Eigen::Array<double, lane_count, 1>;
+using LaneMask = std::bitset<lane_count>;
+
+/// Thévenin circuits side by side; their curves have the same knots.
+struct BatteryLanes {
+    Lanes resistance_ohm = Lanes::Zero();
+    Lanes percent_per_as = Lanes::Ones();  ///< what a coulomb takes [points]
+    Lanes rc_resistance_ohm = Lanes::Zero();
+    Lanes rc_time_constant_s = Lanes::Ones();
+    std::vector<double> knots_percent;
+    std::vector<Lanes> knots_v;  ///< one a knot
+};
+
+/// No circuits yet, but room for those of `battery`. Throws std::invalid_argument if that is none of Thévenin's.
+BatteryLanes lanes_like(const Battery& battery);
+void set_lane(BatteryLanes& lanes, int lane, const Battery& battery);
+
+struct StateLanes {
+    Lanes soc_percent = Lanes::Constant(100.0);
+    Lanes rc_voltage_v = Lanes::Zero();
+    LaneMask is_on;  ///< the others have ended, or are empty lanes
+};
+
+/// What the batteries feed: loads that never charge, each in as many steps as the others.
+struct LoadLanes {
+    Lanes length_s = Lanes::Zero();
+    std::size_t steps = 1;
+    /// At half step 0, 1, ... to twice the steps; called once each, in order.
+    std::function<void(std::size_t half_step, Lanes& power_w)> power_w;
+};
+
+/// Looks closer at a step that may end a lane's battery: from the state at its start to that at its end, or false if it
+/// ended.
+using LookCloser = std::function<bool(int lane, std::size_t step, BatteryState& state)>;
+
+/// As quick_discharge() with these steps, of all lanes at once. Lanes that may reach what ends a battery are passed to
+/// `look_closer`: empty, below the cut-off voltage (0: never), beyond the power limit.
+void discharge_lanes(const BatteryLanes& batteries, const LoadLanes& load, double cutoff_voltage_v,
+                     const LookCloser& look_closer, StateLanes& state);
+
+}  // namespace flightwatt::battery

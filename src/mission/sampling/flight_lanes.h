@@ -1,0 +1,36 @@
+#pragma once
+
+#include "mission/sampling/flight_draws.h"
+#include "mission/sampling/flown_landing.h"
+#include "mission/sampling/lane_schedule.h"
+
+#include <span>
+#include <vector>
+
+namespace flightwatt::mission {
+
+/// Flies flights of one schedule side by side. How one lands depends on its own numbers alone, whatever flies beside it:
+/// as land() of it within 1e-3 points.
+class FlightLanes {
+  public:
+    /// Charges are noted at `times_s` of the mission as planned, at the same part of each flight. All but the times has
+    /// to outlive it.
+    FlightLanes(const MissionSetup& setup, const FlightSpreads& spreads, const Schedule& schedule,
+                std::vector<double> times_s = {});
+
+    /// Each of the flights of these normals. For all threads.
+    void fly(std::span<const std::vector<double>> normals, std::span<Landing> landings) const;
+
+    /// One by itself, and by land(): on paths, in phases as they were measured, or where its numbers are far out.
+    Landing fly_alone(std::span<const double> normals) const;
+
+  private:
+    const MissionSetup& setup_;
+    const FlightSpreads& spreads_;
+    const Schedule& schedule_;
+    std::vector<double> times_s_;
+    bool have_lanes_;
+    LaneSchedule lanes_;
+};
+
+}  // namespace flightwatt::mission
