@@ -152,7 +152,7 @@ std::string verdict(const Difference& row, Kind kind) {
         return !significant ? "-" : *significant ? "yes" : "no";
     }
     const auto difference = difference_of(row);
-    if (!difference) return "yes";  // only one of them has it
+    if (!difference) return "-";  // only one of them has it
     constexpr double rounding = 1e-9;
     return std::abs(*difference) > rounding * std::max(std::abs(row.a->value), std::abs(row.b->value)) ? "yes" : "no";
 }

@@ -24,6 +24,12 @@ Contributions contributions_of(const MechanicalModel& model, flight::Phase phase
     return found;
 }
 
+/// Whether both are of one flight's phase, by what no way to fit it changes: names may be given twice.
+bool is_of_one_flight(const PhaseContribution& a, const PhaseContribution& b) {
+    constexpr double rounding = 1e-6;
+    return a.samples == b.samples && std::abs(a.duration_s - b.duration_s) <= rounding * a.duration_s;
+}
+
 /// Of two weighted means of independent values: sum over the shared flights of w_a w_b v, over the root of both sums of
 /// w^2 v. `variance` may be known up to a factor.
 double correlation_of(const Contributions& a, const Contributions& b,
@@ -36,7 +42,7 @@ double correlation_of(const Contributions& a, const Contributions& b,
     double shared = 0.0;
     for (const auto& [name, flight] : a) {
         const auto other = b.find(name);
-        if (other == b.end()) continue;
+        if (other == b.end() || !is_of_one_flight(flight, other->second)) continue;
         shared += flight.weight * other->second.weight * std::sqrt(variance(flight) * variance(other->second));
     }
     const auto both = std::sqrt(own(a) * own(b));
@@ -162,12 +168,16 @@ std::optional<Estimate> term_of(const std::optional<PhysicalModel>& model, Power
     return Estimate{value, Interval{value - half, value + half}};
 }
 
+/// `both` are the flights that both models rest on.
 void add_physical(std::vector<Difference>& all, const std::optional<PhysicalModel>& a,
-                  const std::optional<PhysicalModel>& b) {
+                  const std::optional<PhysicalModel>& b, const std::vector<std::string>& both) {
     double correlation = 0.0;
     if (a && b && !a->flights.empty() && !b->flights.empty()) {
-        const auto shared = std::ranges::count_if(
-            a->flights, [&](const auto& name) { return std::ranges::find(b->flights, name) != b->flights.end(); });
+        const auto rests_on = [](const PhysicalModel& model, const std::string& name) {
+            return std::ranges::find(model.flights, name) != model.flights.end();
+        };
+        const auto shared =
+            std::ranges::count_if(both, [&](const auto& name) { return rests_on(*a, name) && rests_on(*b, name); });
         correlation =
             static_cast<double>(shared) / std::sqrt(static_cast<double>(a->flights.size() * b->flights.size()));
     }
@@ -220,9 +230,16 @@ std::optional<bool> is_significant(const Difference& difference) {
 
 std::vector<std::string> shared_flights(const MechanicalModel& a, const MechanicalModel& b) {
     std::vector<std::string> shared;
-    for (const auto& flight : a.flights)
-        if (std::ranges::find(b.flights, flight.flight, &FlightContribution::flight) != b.flights.end())
-            shared.push_back(flight.flight);
+    for (const auto& flight : a.flights) {
+        const auto other = std::ranges::find(b.flights, flight.flight, &FlightContribution::flight);
+        if (other == b.flights.end()) continue;
+        const bool is_same = std::ranges::all_of(flight::all_phases, [&](flight::Phase phase) {
+            const auto& of_a = flight.phases[phase];
+            const auto& of_b = other->phases[phase];
+            return !of_a || !of_b || is_of_one_flight(*of_a, *of_b);
+        });
+        if (is_same) shared.push_back(flight.flight);
+    }
     return shared;
 }
 
@@ -235,7 +252,7 @@ std::vector<Difference> model_difference(const MechanicalModel& a, const Mechani
         add_means(all, pair);
         all.push_back(curve_difference(pair));
     }
-    add_physical(all, a.physical, b.physical);
+    add_physical(all, a.physical, b.physical, shared_flights(a, b));
     return all;
 }
 

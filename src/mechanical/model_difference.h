@@ -43,7 +43,7 @@ std::optional<double> difference_of(const Difference& difference);
 /// Whether its interval excludes 0; std::nullopt without one.
 std::optional<bool> is_significant(const Difference& difference);
 
-/// The flights, by name, that both models rest on.
+/// The flights that both models rest on: of one name, with phases as long and of as many samples.
 std::vector<std::string> shared_flights(const MechanicalModel& a, const MechanicalModel& b);
 
 /// Phase by phase coefficients, duration, mean power, energy and where the curves are furthest apart; then the terms of

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::mechanical {
@@ -39,6 +40,29 @@ TEST(ModelDifference, FindsNothingBetweenAModelAndItself) {
         EXPECT_EQ(difference_of(row), 0.0) << row.part << ' ' << row.quantity;
         EXPECT_FALSE(is_significant(row).value_or(false)) << row.part << ' ' << row.quantity;
     }
+}
+
+TEST(ModelDifference, TellsFlightsOfOneNameApart) {
+    auto model = test::published_model();
+    model.flights.clear();
+    for (const double mean_w : {25.0, 27.0, 29.0}) {
+        FlightContribution flight{fmt::format("flight at {} W", mean_w), {}};
+        for (const auto phase : flight::all_phases)
+            flight.phases[phase] = PhaseContribution{1.0 / 3.0, 600.0, 0.3, 545, mean_w};
+        model.flights.push_back(flight);
+    }
+    EXPECT_EQ(shared_flights(model, model).size(), model.flights.size());
+    auto other = model;
+    other.flights.front().phases[flight::Phase::cruise]->duration_s += 1.0;
+    const auto shared = shared_flights(model, other);
+    EXPECT_EQ(shared.size(), model.flights.size() - 1);
+    EXPECT_EQ(std::ranges::find(shared, model.flights.front().flight), shared.end());
+    const auto width = [](const std::vector<Difference>& rows) {
+        const auto row = std::ranges::find_if(
+            rows, [](const auto& r) { return r.part == "cruise" && r.quantity == "mean_power_w"; });
+        return row->interval->high - row->interval->low;
+    };
+    EXPECT_GT(width(model_difference(model, other)), 1.2 * width(model_difference(model, model)) + 1e-9);
 }
 
 TEST(ModelDifference, NamesTheLevelThatWasRaised) {
