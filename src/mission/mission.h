@@ -88,11 +88,11 @@ struct PlanSettings {
 
 /// How a schedule is made in flight; mission/replanning/adaptive_flight.h says what the numbers do.
 struct AdaptivePolicy {
-    double decide_every_s = 0.0;         ///< of each phase; by default the slot of the plan
+    double decide_every_s = 0.0;  ///< of each phase; by default the slot of the plan
     /// How far flights' mechanical power is expected from the model's; by default as its flights differ.
     std::optional<double> mechanical_sd_percent = {};
-    double learning_time_s = 60.0;       ///< after so long, what was seen counts as much as what is expected
-    double probability = 0.95;           ///< with which the reserve is to be kept, of every decision
+    double learning_time_s = 60.0;  ///< after so long, what was seen counts as much as what is expected
+    double probability = 0.95;      ///< with which the reserve is to be kept, of every decision
 };
 
 /// A mission whose schedule is yet to be made.
