@@ -14,7 +14,7 @@ std::optional<std::int64_t> as_hundred_millionths(double value) {
     constexpr double most = 1e7;    // 15 digits
     constexpr double least = 1e-4;  // what is less is written with an exponent
     if (!(value < most) || value < least) return std::nullopt;
-    const auto whole = static_cast<std::int64_t>(value * scale + 0.5);
+    const auto whole = std::llround(value * scale);
     if (static_cast<double>(whole) / scale != value) return std::nullopt;
     return whole;
 }

@@ -129,6 +129,7 @@ std::vector<double> FlightLines::left_percent_of_all(std::span<const std::vector
     std::vector<Landing> landings(normals.size());
     lanes_.fly(normals, landings);
     std::vector<double> left_percent;
+    left_percent.reserve(landings.size());
     for (const auto& landing : landings) left_percent.push_back(landing.left_percent);
     count(left_percent);
     return left_percent;

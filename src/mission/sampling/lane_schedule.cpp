@@ -64,10 +64,10 @@ void set_quadrature(double turns, Stretch& stretch) {
     using Gauss = boost::math::quadrature::gauss<double, 7>;
     constexpr double pieces_a_turn = 4.0;  // exact to rounding
     constexpr double most_pieces = 1e4;
-    const double pieces = std::min(1.0 + std::floor(turns * pieces_a_turn), most_pieces);
+    const auto pieces = static_cast<int>(std::min(1.0 + std::floor(turns * pieces_a_turn), most_pieces));
     const double half = 0.5 / pieces;
-    for (double piece = 0.0; piece < pieces; piece += 1.0) {
-        const double middle = (2.0 * piece + 1.0) * half;
+    for (int piece = 0; piece < pieces; ++piece) {
+        const double middle = (2 * piece + 1) * half;
         for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
             const double beside = Gauss::abscissa()[i];
             for (const double side : {-1.0, 1.0}) {
