@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/toml_reader.h"
+#include "base/units.h"
 #include "batch/batch_fit.h"
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
@@ -71,8 +72,7 @@ double phase_energy_wh(const mission::SocCurve& curve, mission::Phase phase) {
         const auto& to = curve.rows[i];
         if (from.phase == phase) energy_j += (to.time_s - from.time_s) * (from.power_w + to.power_w) / 2.0;
     }
-    constexpr double j_per_wh = 3600.0;
-    return energy_j / j_per_wh;
+    return units::wh_from_joule(energy_j);
 }
 
 double soc_at(const mission::SocCurve& curve, double time_s) {

@@ -48,13 +48,12 @@ struct Quantity {
     std::optional<double> (*of)(const FlownFlight&);
 };
 
-constexpr double seconds_per_minute = 60.0;
 constexpr double metres_per_km = 1000.0;
 
 /// What has a trend. The charge that was drawn has none: it says how long the flight was.
 constexpr std::array<Quantity, 5> quantities{{
     {"energy_wh_per_min",
-     [](const FlownFlight& f) { return per(f.facts.energy_wh, f.facts.in_air_s / seconds_per_minute); }},
+     [](const FlownFlight& f) { return per(f.facts.energy_wh, units::minute_from_second(f.facts.in_air_s)); }},
     {"energy_wh_per_km",
      [](const FlownFlight& f) { return per(f.facts.energy_wh, f.facts.distance_m.value_or(0.0) / metres_per_km); }},
     {"energy_wh_per_air_km",

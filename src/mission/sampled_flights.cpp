@@ -1,12 +1,12 @@
 #include "mission/sampled_flights.h"
 
 #include "base/csv.h"
+#include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/sampling/flight_draws.h"
 #include "mission/sampling/flight_lanes.h"
 #include "mission/sampling/flown_landing.h"
-#include "mission/sampling/workers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ class Sampler {
     std::vector<Landing> fly_all() const {
         std::vector<Landing> landings(options_.samples);
         if (prepared_.adaptive || !disturbances_.empty())
-            for_each_index(landings.size(), [&](std::size_t i) { landings[i] = fly_one(i); });
+            for_each_in_parallel(landings.size(), [&](std::size_t i) { landings[i] = fly_one(i); });
         else
             fly_side_by_side(landings);
         return landings;
@@ -61,7 +61,7 @@ class Sampler {
         constexpr std::size_t at_once = 256;
         const FlightLanes lanes(setup_, spreads_, prepared_.schedule, times_s_);
         const auto normal_count = count_normals(setup_);
-        for_each_index((landings.size() + at_once - 1) / at_once, [&](std::size_t block) {
+        for_each_in_parallel((landings.size() + at_once - 1) / at_once, [&](std::size_t block) {
             const auto own = std::span(landings)
                                  .subspan(block * at_once)
                                  .first(std::min(at_once, landings.size() - block * at_once));
@@ -239,7 +239,7 @@ std::optional<SampledDifference> sample_difference(const PreparedMission& a, con
     const auto other_seed = ~options.seed;  // of what is not in common
     std::vector<FlownQuantities> of_a(options.samples);
     std::vector<FlownQuantities> of_b(options.samples);
-    for_each_index(options.samples, [&](std::size_t i) {
+    for_each_in_parallel(options.samples, [&](std::size_t i) {
         const auto normals_a = draw_normals(count_normals(setup_a), options.seed, i);
         const auto normals_b =
             normals_beside(setup_a, setup_b, common, normals_a, draw_normals(count_normals(setup_b), other_seed, i));

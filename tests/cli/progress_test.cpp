@@ -109,13 +109,17 @@ TEST(ProgressBar, DrawsAtMostTenTimesASecond) {
     EXPECT_LE(drawn, most_per_s * taken.count()) << "of 100 calls";
 }
 
+std::string first_drawn(ProgressBar& bar, Terminal& terminal) {
+    std::this_thread::sleep_for(beyond_interval);
+    bar.show(3, 8);
+    return terminal.printed();
+}
+
 TEST(ProgressBar, StaysOnOneLineAndIsGoneInTheEnd) {
     if (!has_terminals()) GTEST_SKIP() << "no pseudo-terminal here";
     Terminal terminal(30);
     ProgressBar bar(terminal.stream(), "logs");
-    std::this_thread::sleep_for(beyond_interval);
-    bar.show(3, 8);
-    const auto drawn = terminal.printed();
+    const auto drawn = first_drawn(bar, terminal);
     EXPECT_THAT(drawn, HasSubstr("3/8"));
     EXPECT_LT(drawn.size(), 30U);
     bar.clear();
@@ -130,9 +134,7 @@ TEST(ProgressBar, GoesOnAfterItWasHidden) {
     if (!has_terminals()) GTEST_SKIP() << "no pseudo-terminal here";
     Terminal terminal(30);
     ProgressBar bar(terminal.stream(), "logs");
-    std::this_thread::sleep_for(beyond_interval);
-    bar.show(3, 8);
-    const auto drawn = terminal.printed();
+    const auto drawn = first_drawn(bar, terminal);
     bar.hide();
     EXPECT_EQ(terminal.printed(), "\r" + std::string(drawn.size(), ' ') + "\r");
     std::this_thread::sleep_for(beyond_interval);

@@ -35,7 +35,7 @@ clean_up() {
 trap clean_up EXIT
 
 quiet() { "$@" >"$scratch/log" 2>&1 || { tail -n 20 "$scratch/log" >&2 && fail "$1 failed"; }; }
-inside() { chroot "$root" /usr/bin/env -i PATH=/usr/bin:/usr/sbin:/bin:/sbin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+inside() { chroot "$root" /usr/bin/env -i PATH=/usr/bin:/usr/sbin:/bin:/sbin HOME=/srv LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
 
 step "a bare Debian 12"
 quiet debootstrap --variant=minbase bookworm "$root" "$mirror"
@@ -43,7 +43,7 @@ mount -t proc proc "$root/proc" # a program finds its files by /proc/self/exe
 
 # All files of the system with their contents, but those that apt and dpkg keep books in.
 files_of() {
-    (cd "$root" && find . -xdev \( -path ./proc -o -path ./var/lib/dpkg -o -path ./var/lib/apt -o -path ./var/cache -o -path ./var/log -o -path ./tmp -o -path ./root \) -prune \
+    (cd "$root" && find . -xdev \( -path ./proc -o -path ./var/lib/dpkg -o -path ./var/lib/apt -o -path ./var/cache -o -path ./var/log -o -path ./tmp -o -path ./srv \) -prune \
         -o -printf '%y %m %p %l\n' -type f -exec md5sum {} +) | sort
 }
 
@@ -62,13 +62,13 @@ files_of >"$scratch/installed"
 [[ $(inside sh -c 'command -v flightwatt') == /usr/bin/flightwatt ]] || fail "there is no /usr/bin/flightwatt"
 
 step "flightwatt batch and report"
-cp -r "$source/logs" "$root/root/logs"
-quiet inside flightwatt batch /root/logs -o /root/out
-quiet inside flightwatt report /root/out /usr/share/flightwatt/missions/paper/phased.toml -o /root/report.html --figures /root/figures
+cp -r "$source/logs" "$root/srv/logs"
+quiet inside flightwatt batch /srv/logs -o /srv/out
+quiet inside flightwatt report /srv/out /usr/share/flightwatt/missions/paper/phased.toml -o /srv/report.html --figures /srv/figures
 cat "$scratch/log"
-grep -q '<details class="flight" id="flight-opterra_synthetic_01"' "$root/root/report.html" || fail "the page shows no flight"
+grep -q '<details class="flight" id="flight-opterra_synthetic_01"' "$root/srv/report.html" || fail "the page shows no flight"
 for ending in vl.json svg pdf; do
-    [[ -s $root/root/figures/flight-opterra_synthetic_01-power.$ending ]] || fail "there is no figure as .$ending"
+    [[ -s $root/srv/figures/flight-opterra_synthetic_01-power.$ending ]] || fail "there is no figure as .$ending"
 done
 inside flightwatt help missions | grep -q . || fail "flightwatt help finds no documents"
 

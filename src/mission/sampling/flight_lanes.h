@@ -10,7 +10,7 @@
 namespace flightwatt::mission {
 
 /// Flies flights of one schedule side by side. How one lands depends on its own numbers alone, whatever flies beside it:
-/// as land() of it within 1e-3 points.
+/// as land() of it within 5e-3 points, and 2e-2 of what is left of flights that failed.
 class FlightLanes {
   public:
     /// Charges are noted at `times_s` of the mission as planned, at the same part of each flight. All but the times has

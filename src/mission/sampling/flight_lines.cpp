@@ -1,8 +1,8 @@
 #include "mission/sampling/flight_lines.h"
 
+#include "base/parallel.h"
 #include "base/statistics.h"
 #include "mission/sampling/flown_landing.h"
-#include "mission/sampling/workers.h"
 
 #include <algorithm>
 #include <array>
@@ -124,7 +124,7 @@ double FlightLines::left_percent_of(std::span<const double> normals) const {
     return left_percent;
 }
 
-/// Side by side, and so within 1e-3 points of the same alone.
+/// Side by side, and so not to the last digit as the same alone (flight_lanes.h).
 std::vector<double> FlightLines::left_percent_of_all(std::span<const std::vector<double>> normals) const {
     std::vector<Landing> landings(normals.size());
     lanes_.fly(normals, landings);
@@ -137,7 +137,7 @@ std::vector<double> FlightLines::left_percent_of_all(std::span<const std::vector
 
 void FlightLines::fly_drawn(std::size_t from, std::span<double> left_percent) const {
     constexpr std::size_t at_once = 256;
-    for_each_index((left_percent.size() + at_once - 1) / at_once, [&](std::size_t block) {
+    for_each_in_parallel((left_percent.size() + at_once - 1) / at_once, [&](std::size_t block) {
         const auto own =
             left_percent.subspan(block * at_once).first(std::min(at_once, left_percent.size() - block * at_once));
         std::vector<std::vector<double>> normals;
@@ -291,8 +291,8 @@ double ChanceBelow::standard_error() const {
 }
 
 void ChanceBelow::solve(std::size_t from) {
-    for_each_index(searches_.size() - from,
-                   [&](std::size_t i) { lines_->find_thresholds(from + i, left_percent_, searches_[from + i]); });
+    for_each_in_parallel(searches_.size() - from,
+                         [&](std::size_t i) { lines_->find_thresholds(from + i, left_percent_, searches_[from + i]); });
 }
 
 std::vector<double> ChanceBelow::of_pairs() const {

@@ -64,7 +64,7 @@ TEST(FlightLanes, LandAsRungeKuttaDoes) {
 }
 
 TEST(FlightLanes, LandAsFlightsAlone) {
-    for (unsigned seed = 1; seed <= 6; ++seed) {
+    for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U, 18U}) {  // of 18 flights fail one after the other
         const auto mission = flown_mission(seed, seed % 3 == 0 ? 0.8 : 1.0);
         const auto spreads = find_spreads(mission);
         const auto normals = drawn_numbers(mission, 70);
