@@ -64,12 +64,12 @@ int make_folder(const cli::StageCall& call) {
         nlohmann::ordered_json json{{"folder", root.string()}, {"folders", folders}, {"commands", list.string()}};
         cli::print(cli::json_text(json));
     } else {
-        cli::print(
-            fmt::format("{0}/logs      put each flight's .data and .log here\n"
-                        "{0}/fits      models, and what was found of each flight\n"
-                        "{0}/missions  what is to be flown\n"
-                        "{1}  the five commands from logs to report.html{2}\n",
-                        root.string(), list.string(), call.output ? "" : ": make -C " + root.string()));
+        cli::print(fmt::format(
+            "{0}/logs      put each flight's .data and .log here\n"
+            "{0}/fits      models, and what was found of each flight\n"
+            "{0}/missions  what is to be flown\n"
+            "{1}  the five commands from logs to report.html{2}\n",
+            root.string(), list.string(), call.output ? "" : ": make -C " + cli::typed_in_shell(root.string())));
     }
     return cli::ok;
 }

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -40,12 +39,6 @@ std::string component_name(const std::filesystem::path& profile, const std::vect
     for (int use = 2; std::ranges::find(others, name, &mission::NewComponent::name) != others.end(); ++use)
         name = fmt::format("{}_{}", stem, use);
     return name;
-}
-
-/// As a user types it.
-std::string typed_in_shell(const std::string& file) {
-    if (file.find_first_of(" \t\n'\"\\$`&;|<>()*?[]#~!{}") == std::string::npos) return file;
-    return "'" + std::regex_replace(file, std::regex("'"), R"('\'')") + "'";
 }
 
 int write_new_mission(const cli::StageCall& call) {
@@ -86,7 +79,7 @@ int write_new_mission(const cli::StageCall& call) {
         cli::print(cli::json_text(json));
     } else if (call.output) {
         cli::note(call, fmt::format("{} is written; next: flightwatt {} {}", file.string(),
-                                    fresh.is_planned ? "plan" : "simulate", typed_in_shell(file.string())));
+                                    fresh.is_planned ? "plan" : "simulate", cli::typed_in_shell(file.string())));
     }
     return cli::ok;
 }

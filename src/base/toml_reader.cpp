@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -347,6 +348,26 @@ std::uint64_t count_in(const TomlTable& table, std::string_view key, std::uint64
 
 std::uint64_t count_in_or(const TomlTable& table, std::string_view key, std::uint64_t least, std::uint64_t otherwise) {
     return table.has(key) ? count_in(table, key, least) : otherwise;
+}
+
+void refuse_other_kinds(const TomlTable& root, FileKind expected) {
+    struct Sign {
+        FileKind kind;
+        std::string_view key;  // that only this kind has, and always
+        std::string_view name;
+        std::string_view made_by;
+    };
+    constexpr std::array<Sign, 3> signs{
+        Sign{FileKind::mission, "battery", "a mission", "write one with `flightwatt new-mission`"},
+        Sign{FileKind::mechanical_model, "takeoff", "a mechanical model", "fit one with `flightwatt batch` or `fit`"},
+        Sign{FileKind::battery, "resistance_ohm", "a battery", "identify one with `flightwatt battery`"}};
+    const auto keys = root.keys();
+    const auto has = [&](const Sign& sign) { return std::ranges::find(keys, sign.key) != keys.end(); };
+    const auto& wanted = *std::ranges::find(signs, expected, &Sign::kind);
+    const auto found = std::ranges::find_if(signs, has);
+    if (found == signs.end() || has(wanted)) return;
+    throw InputError(root.where(found->key), fmt::format("is {}, not {}", found->name, wanted.name),
+                     std::string(wanted.made_by));
 }
 
 std::string format_line() { return fmt::format("format = {}\n", format_version); }

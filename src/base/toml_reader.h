@@ -121,6 +121,12 @@ inline constexpr int format_version = 1;
 /// The line of TOML that says so: "format = 1\n".
 std::string format_line();
 
+/// The files of ours that are easily taken for one another.
+enum class FileKind { mechanical_model, battery, mission };
+
+/// Throws InputError where the keys of the file are those of another kind, with what it is and what was expected.
+void refuse_other_kinds(const TomlTable& root, FileKind expected);
+
 /// Checks `format` of a file of ours, which may be absent (files of version 0.1 have none). Throws InputError
 /// for a format that is newer than this program, or is none.
 void require_known_format(const TomlTable& root);

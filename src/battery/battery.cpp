@@ -187,6 +187,7 @@ Battery battery_from(const TomlTable& table) {
 
 Battery read_battery(const std::filesystem::path& path) {
     const auto root = read_toml(path);
+    refuse_other_kinds(root, FileKind::battery);
     require_known_format(root);
     return battery_from(root);
 }

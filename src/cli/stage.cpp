@@ -266,6 +266,14 @@ std::string one_line(std::string_view text) {
     return line;
 }
 
+std::string typed_in_shell(std::string_view file) {
+    if (!file.empty() && file.find_first_of(" \t\n'\"\\$`&;|<>()*?[]#~!{}") == std::string_view::npos)
+        return std::string(file);
+    std::string quoted = "'";
+    for (const char c : file) c == '\'' ? quoted += R"('\'')" : quoted += c;
+    return quoted + "'";
+}
+
 void warn(const StageCall& call, std::string_view message) {
     tell(fmt::format("{}: {} {}\n", call.program, alert("warning", color_of_warnings), one_line(message)));
 }

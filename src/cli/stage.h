@@ -98,6 +98,9 @@ bool print_at_once(std::string_view text);
 /// into them.
 std::string one_line(std::string_view text);
 
+/// A file's name as a user types it in a shell: quoted where it has to be.
+std::string typed_in_shell(std::string_view file);
+
 /// A line on the standard error: "flightwatt-fit: warning: ...".
 void warn(const StageCall& call, std::string_view message);
 void note(const StageCall& call, std::string_view message);

@@ -110,7 +110,11 @@ const telemetry::SenderLog& sender_of(const telemetry::TelemetryLog& log, const 
     return *chosen;
 }
 
-std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
+/// A number with all its digits; one that was converted without those that only the conversion has put there.
+std::string cell(double value, bool is_converted) {
+    if (!std::isfinite(value)) return {};
+    return is_converted ? fmt::format("{:.15g}", value) : fmt::format("{}", value);
+}
 
 bool has_numbers(const telemetry::Column& column) {
     return std::ranges::any_of(column.values, [](double value) { return std::isfinite(value); });
@@ -132,8 +136,8 @@ MessageTable as_csv(const telemetry::MessageTable& table) {
     }
     result.csv = fmt::format("{}\n", fmt::join(header, ","));
     for (std::size_t row = 0; row < table.time_s.size(); ++row) {
-        result.csv += cell(table.time_s[row]);
-        for (const auto* column : columns) result.csv += "," + cell(column->values[row]);
+        result.csv += cell(table.time_s[row], false);
+        for (const auto* column : columns) result.csv += "," + cell(column->values[row], column->quantity.has_value());
         result.csv += '\n';
     }
     result.rows = table.time_s.size();

@@ -327,6 +327,7 @@ std::string flight_toml(const FlightContribution& flight) {
 
 MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
     const auto root = read_toml(path);
+    refuse_other_kinds(root, FileKind::mechanical_model);
     require_known_format(root);
     MechanicalModel model;
     model.name = root.string("name");

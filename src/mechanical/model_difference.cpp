@@ -202,6 +202,11 @@ std::optional<Interval> interval_of_difference(const Estimate& a, const Estimate
         return std::sqrt(std::max(0.0, x * x + y * y - 2.0 * correlation * x * y));
     };
     const auto difference = b.value - a.value;
+    // The same estimate of the same flights: sides that differ would leave a width at correlation 1.
+    constexpr double rounding = 1e-12;
+    const auto is_same =
+        a.value == b.value && a.interval->low == b.interval->low && a.interval->high == b.interval->high;
+    if (is_same && correlation >= 1.0 - rounding) return Interval{0.0, 0.0};
     return Interval{difference - reach(a.interval->high - a.value, b.value - b.interval->low),
                     difference + reach(a.value - a.interval->low, b.interval->high - b.value)};
 }

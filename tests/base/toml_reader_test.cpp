@@ -170,6 +170,27 @@ std::string refusal(const std::string& text) {
     return test::rejected([&] { require_known_format(parse_toml(text, "m.toml")); });
 }
 
+TEST(FileKinds, OneTakenForAnotherIsNamed) {
+    const auto refused = [](const std::string& text, FileKind expected) {
+        return test::rejected([&] { refuse_other_kinds(parse_toml(text, "f.toml"), expected); });
+    };
+    const std::string model = "name = \"m\"\n[takeoff]\n";
+    const std::string pack = "capacity_ah = 5\nresistance_ohm = 0.1\n";
+    const std::string mission = "mechanical = \"m.toml\"\nbattery = \"p.toml\"\n";
+    EXPECT_EQ(refused(model, FileKind::battery),
+              "f.toml:2:2: is a mechanical model, not a battery; identify one with `flightwatt battery`");
+    EXPECT_EQ(refused(pack, FileKind::mechanical_model),
+              "f.toml:2:1: is a battery, not a mechanical model; fit one with `flightwatt batch` or `fit`");
+    EXPECT_EQ(refused(mission, FileKind::battery),
+              "f.toml:2:1: is a mission, not a battery; identify one with `flightwatt battery`");
+    EXPECT_EQ(refused(pack, FileKind::mission),
+              "f.toml:2:1: is a battery, not a mission; write one with `flightwatt new-mission`");
+    EXPECT_EQ(refused(model, FileKind::mechanical_model), "");
+    EXPECT_EQ(refused(pack, FileKind::battery), "");
+    EXPECT_EQ(refused(mission, FileKind::mission), "");
+    EXPECT_EQ(refused("unknown = 1", FileKind::battery), "");  // its reader says what is missing
+}
+
 TEST(FormatVersion, IsOptionalAndKnown) {
     EXPECT_EQ(refusal(""), "");
     EXPECT_EQ(refusal(format_line()), "");

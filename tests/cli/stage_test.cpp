@@ -176,6 +176,13 @@ TEST(RunStage, KeepsDiagnosticsOnOneLine) {
     EXPECT_EQ(one_line("\xC3\xBC \xFF"), "\xC3\xBC \xFF");  // what is no control character stays
 }
 
+TEST(TypedInShell, QuotesWhatAShellWouldTakeApart) {
+    EXPECT_EQ(typed_in_shell("fits/model-1.toml"), "fits/model-1.toml");
+    EXPECT_EQ(typed_in_shell("a b$c"), "'a b$c'");
+    EXPECT_EQ(typed_in_shell("it's"), R"('it'\''s')");
+    EXPECT_EQ(typed_in_shell(""), "''");
+}
+
 TEST(RunStage, FailsWhereTheStandardOutputCannotBeWritten) {
     const auto small = run(
         {"a"},

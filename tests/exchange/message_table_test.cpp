@@ -46,6 +46,13 @@ TEST(MessageTable, HasThePowerThatTheSeriesHas) {
     }
 }
 
+TEST(MessageTable, HasNoDigitsThatOnlyTheConversionPutThere) {
+    const auto log = test::scratch_dir() / "gps.data";
+    write_file_atomically(log, "1.0 7 GPS 3 36000007 462000011 2712 4123 3 0 2112 469045600 31 0\n");
+    const auto csv = parse_csv(message_table(flight::FlightFile(log), "GPS", std::nullopt).csv, "gps.csv");
+    EXPECT_EQ(csv.rows[0].cells[column_index(csv, "itow_s")].text, "469045.6");
+}
+
 TEST(MessageTable, SaysWhatTheLogHoldsInstead) {
     EXPECT_THAT(rejection_of(test::sample(1), "NO_SUCH"), testing::HasSubstr("holds no readable NO_SUCH; it holds "));
     EXPECT_THAT(rejection_of(test::sample(1), "ENERGY", "99"), testing::HasSubstr("aircraft 99 sent no ENERGY"));

@@ -28,6 +28,15 @@ TEST(ModelDifference, IsNarrowerWhereEstimatesAreCorrelated) {
     EXPECT_DOUBLE_EQ(interval_of_difference(a, b, 1.0)->low, 2.0);
 }
 
+TEST(ModelDifference, IsNothingBetweenAnEstimateAndItself) {
+    const auto skewed = estimate(10.0, 1.0, 3.0);
+    const auto interval = interval_of_difference(skewed, skewed, 1.0);
+    ASSERT_TRUE(interval);
+    EXPECT_EQ(interval->low, 0.0);
+    EXPECT_EQ(interval->high, 0.0);
+    EXPECT_LT(interval_of_difference(skewed, skewed, 0.0)->low, 0.0);  // of other flights, the same by chance
+}
+
 TEST(ModelDifference, NeedsBothIntervals) {
     EXPECT_FALSE(interval_of_difference({1.0, {}}, estimate(2.0, 1.0, 1.0), 0.0));
 }

@@ -180,6 +180,7 @@ AnyMission with_read_schedule(const TomlTable& root, const MissionReading& readi
 
 AnyMission parse_mission(std::string_view text, const std::filesystem::path& path, const MissionReading& reading) {
     const auto root = parse_toml(text, path.string());
+    refuse_other_kinds(root, FileKind::mission);
     root.refuse_keys_except({"format",
                              "name",
                              "mechanical",
