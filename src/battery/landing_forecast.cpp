@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "battery/discharge.h"
+#include "battery/quick_discharge.h"
 
 #include <algorithm>
 
@@ -14,13 +14,7 @@ namespace {
 /// A day: whoever flies longer charges meanwhile.
 constexpr double longest_s = 86400.0;
 constexpr double step_s = 5.0;  // of Runge-Kutta under constant power: a charge and a voltage that hardly bend
-
-Discharge through(const Battery& battery, const BatteryState& state, const PowerStretch& stretch,
-                  const LandingLimits& limits) {
-    const double power_w = stretch.power_w;
-    const Load load{[power_w](double) { return power_w; }, 0.0, stretch.duration_s};
-    return discharge(battery, load, state, {step_s, limits.cutoff_voltage_v});
-}
+constexpr double quick_step_s = 20.0;
 
 /// When a battery stopped; the end of the stretch if it did not.
 std::optional<double> failed_at_s(const Discharge& discharge) {
@@ -33,7 +27,9 @@ std::optional<double> failed_at_s(const Discharge& discharge) {
 double time_left_s(const Battery& battery, BatteryState state, double power_w, const LandingLimits& limits) {
     constexpr double stretch_s = 60.0;
     constexpr int bisections = 30;
-    const auto after = [&](double time_s) { return through(battery, state, {power_w, time_s}, limits); };
+    const auto after = [&](double time_s) {
+        return discharge_through(battery, state, {power_w, time_s}, limits.cutoff_voltage_v);
+    };
     if (!(power_w > 0.0) || state.soc_percent <= limits.reserve_soc_percent) return 0.0;
     double low_s = 0.0;
     double begun_s = 0.0;
@@ -86,6 +82,15 @@ BatteryState state_after(const Battery& battery, const DischargeRecord& flown, d
     return state;
 }
 
+Discharge discharge_through(const Battery& battery, const BatteryState& from, const PowerStretch& stretch,
+                            double cutoff_voltage_v) {
+    const double power_w = stretch.power_w;
+    const Load load{[power_w](double) { return power_w; }, 0.0, stretch.duration_s};
+    if (battery.thevenin && power_w >= 0.0)
+        return quick_discharge(battery, load, from, {quick_step_s, cutoff_voltage_v});
+    return discharge(battery, load, from, {step_s, cutoff_voltage_v});
+}
+
 LandingForecast forecast_landing(const Battery& battery, const BatteryState& now, std::span<const PowerStretch> ahead,
                                  double cruise_w, const LandingLimits& limits) {
     LandingForecast forecast;
@@ -95,7 +100,7 @@ LandingForecast forecast_landing(const Battery& battery, const BatteryState& now
     double power_w = 0.0;
     for (const auto& stretch : ahead) {
         if (stretch.duration_s == 0.0) continue;
-        const auto end = through(battery, state, stretch, limits);
+        const auto end = discharge_through(battery, state, stretch, limits.cutoff_voltage_v);
         state = end;
         power_w = stretch.power_w;
         if (const auto failed_s = failed_at_s(end)) {

@@ -100,8 +100,15 @@ struct GroundEvent {
     std::string what;  ///< "run-up: throttle to 65 %, height 0.4 m"
 };
 
+/// From `start_s` to before `end_s`.
+struct Rest {
+    double start_s = 0.0;
+    double end_s = 0.0;
+};
+
 struct FlightPhases {
     std::vector<Sortie> sorties;
+    std::vector<Rest> rests;  ///< on the ground, in their order
     std::vector<GroundEvent> ground_events;
     std::string motor_evidence;  ///< what told whether the motor runs: "ENERGY.throttle"
     std::vector<std::string> warnings;

@@ -19,6 +19,8 @@
 namespace flightwatt::flight {
 namespace {
 
+constexpr std::size_t least_altitudes = 2;  // by which a flight can be segmented
+
 /// The messages of a log, the most frequent first: "GPS 310, ALIVE 12, ...".
 std::string census(const FlightFile& file) {
     if (file.is_series()) return "";
@@ -94,11 +96,20 @@ void refuse_endless_work(const FlightSeries& series, const FlightPhases& phases)
                      "is it the log of one flight? Split it, or choose one with --sortie N");
 }
 
-std::string exclusion_of(const LoadedFlight& flight, const LoadOptions& options) {
-    if (options.excluded.contains(flight.series.flight)) return "--exclude names it";
-    if (!flight.lacks_power.empty()) return flight.lacks_power;
-    if (flight.power.power_faults.empty() || options.keep.contains(flight.series.flight)) return "";
-    return describe_power_faults(flight.power.power_faults);
+std::vector<std::string> all_warnings(const FlightSeries& series, const FlightPhases& phases,
+                                      const Judgement& judgement) {
+    auto warnings = warnings_of(series);
+    if (!judgement.lacks_power.empty())
+        warnings.push_back(judgement.lacks_power + ": the energy of its phases is not known");
+    for (const auto* more : {&phases.warnings, &judgement.power.warnings})
+        warnings.insert(warnings.end(), more->begin(), more->end());
+    return warnings;
+}
+
+std::string exclusion_of(const std::string& flight, const Judgement& judgement, const LoadOptions& options) {
+    if (options.excluded.contains(flight)) return "--exclude names it";
+    if (judgement.lacks_power.empty() && options.keep.contains(flight)) return "";
+    return exclusion_by(judgement);
 }
 
 /// What was flown before the log began or after it ended is in no sum.
@@ -244,26 +255,45 @@ FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
     return std::move(candidates[last]);
 }
 
+Judgement judge(const ChosenTracks& tracks, const FlightPhases& phases, const SegmentationOptions& options) {
+    const auto& series = tracks.series();
+    const bool has_altitude = tracks["altitude_m"].time_s.size() >= least_altitudes;
+    const bool has_power = !tracks["power_w"].empty();
+    Judgement judgement;
+    if (!has_power) judgement.lacks_power = "no measured power" + parenthesised(why_no_power(series));
+    judgement.power.origin = series.current_origin;
+    if (has_altitude && has_power) judgement.power = check_power_record(tracks, phases, options);
+    judgement.warnings = all_warnings(series, phases, judgement);
+    return judgement;
+}
+
+std::string exclusion_by(const Judgement& judgement) {
+    if (!judgement.lacks_power.empty()) return judgement.lacks_power;
+    return judgement.power.power_faults.empty() ? "" : describe_power_faults(judgement.power.power_faults);
+}
+
 LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
-    const bool has_altitude = chosen_track(series, "altitude_m").time_s.size() >= 2;
-    const bool has_power = !power_track(series).empty();
-    if (options.power_required || !has_altitude || series.clock_restart) require_power(series);
     LoadedFlight loaded;
-    if (!has_power) loaded.lacks_power = "no measured power" + parenthesised(why_no_power(series));
-    const bool can_segment = options.flight_required || has_altitude;
-    if (can_segment) loaded.phases = segment(series, options.segmentation);
-    if (options.flight_required) require_sortie(series, loaded.phases, series.file);
-    if (options.sortie) restrict_to_sortie(loaded.phases, *options.sortie, series.file);
-    if (options.flight_required) refuse_endless_work(series, loaded.phases);
-    loaded.power.origin = series.current_origin;
-    if (can_segment && has_power) loaded.power = check_power_record(series, loaded.phases, options.segmentation);
-    if (options.correct_idle_offset && has_power) correct_idle_offset(series, loaded.power.idle);
-    loaded.warnings = warnings_of(series);
-    if (!has_power) loaded.warnings.push_back(loaded.lacks_power + ": the energy of its phases is not known");
-    for (const auto* more : {&loaded.phases.warnings, &loaded.power.warnings})
-        loaded.warnings.insert(loaded.warnings.end(), more->begin(), more->end());
+    Judgement judgement;
+    {
+        const ChosenTracks tracks(series);
+        const bool has_altitude = tracks["altitude_m"].time_s.size() >= least_altitudes;
+        if (options.power_required || !has_altitude || series.clock_restart) require_power(series);
+        if (options.flight_required || has_altitude) loaded.phases = segment(tracks, options.segmentation);
+        if (options.flight_required) require_sortie(series, loaded.phases, series.file);
+        if (options.sortie) restrict_to_sortie(loaded.phases, *options.sortie, series.file);
+        if (options.flight_required) refuse_endless_work(series, loaded.phases);
+        judgement = judge(tracks, loaded.phases, options.segmentation);
+    }
+    if (options.correct_idle_offset && judgement.lacks_power.empty()) {
+        correct_idle_offset(series, judgement.power.idle);
+        judgement.warnings = all_warnings(series, loaded.phases, judgement);
+    }
+    loaded.exclusion = exclusion_of(series.flight, judgement, options);
+    loaded.power = std::move(judgement.power);
+    loaded.lacks_power = std::move(judgement.lacks_power);
+    loaded.warnings = std::move(judgement.warnings);
     loaded.series = std::move(series);
-    loaded.exclusion = exclusion_of(loaded, options);
     return loaded;
 }
 

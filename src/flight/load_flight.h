@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "flight/chosen_track.h"
 #include "flight/flight_series.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
@@ -96,6 +97,17 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
 /// The one that flew: the segmentation finds a sortie. Where none did, the only one. Throws InputError if that leaves
 /// several (it says which, and where none flew what they did instead).
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
+
+/// What a series that is segmented is worth: its power record, why none can be used, and what a user should know.
+struct Judgement {
+    PowerReport power;                  ///< as measured
+    std::string lacks_power = {};       ///< why no power was measured; empty if it was
+    std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
+};
+Judgement judge(const ChosenTracks& tracks, const FlightPhases& phases, const SegmentationOptions& options = {});
+
+/// Why power of that judgement is not to be used; empty if it is.
+std::string exclusion_by(const Judgement& judgement);
 
 /// Segments and judges a series. Throws InputError where no power was measured (if it is required, or no altitude
 /// either), for a sortie that the log has not, and, if a flight is required, where there is no altitude or nothing flew.

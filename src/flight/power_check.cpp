@@ -3,7 +3,6 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/chosen_track.h"
 #include "flight/phase_statistics.h"
 #include "flight/power_record/power_record.h"
 #include "flight/power_record/power_warnings.h"
@@ -162,11 +161,11 @@ std::optional<double> closure_percent(const std::vector<double>& time_s, const s
 }
 
 /// A log that goes on without power: what is flown then is not seen.
-void warn_of_short_record(const FlightSeries& series, const std::vector<double>& time_s,
+void warn_of_short_record(const ChosenTracks& tracks, const std::vector<double>& time_s,
                           std::vector<std::string>& warnings) {
     constexpr double least_s = 30.0;
     constexpr double least_part = 0.05;
-    const auto altitude = chosen_track(series, "altitude_m");
+    const auto& altitude = tracks["altitude_m"];
     if (altitude.empty() || time_s.empty()) return;
     const double limit_s = std::max(least_s, least_part * (altitude.time_s.back() - altitude.time_s.front()));
     const auto warn = [&](const char* way, const char* when, double power_s, double altitude_s) {
@@ -183,11 +182,16 @@ void warn_of_short_record(const FlightSeries& series, const std::vector<double>&
 
 PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
                                const SegmentationOptions& options) {
+    return check_power_record(ChosenTracks(series), phases, options);
+}
+
+PowerReport check_power_record(const ChosenTracks& tracks, const FlightPhases& phases,
+                               const SegmentationOptions& options) {
     PowerReport report;
-    report.origin = series.current_origin;
-    const auto record = record_of(series, phases);
+    report.origin = tracks.series().current_origin;
+    const auto record = record_of(tracks, phases);
     const auto& time_s = record.time_s;
-    const auto resting = resting_samples(series, record, options);
+    const auto resting = resting_samples(record, phases.rests, options);
     const auto at_rest = idle_current(record.current_a, resting);
     const bool motor_known = !record.throttle_percent.empty();
     if (motor_known) report.idle = at_rest;
@@ -202,7 +206,7 @@ PowerReport check_power_record(const FlightSeries& series, const FlightPhases& p
     }
     report.power_faults = power_faults_of(record, motor_known ? resting : std::vector<std::size_t>{}, report);
     report.warnings = power_warnings_of({record, phases, report, at_rest, idle_currents(record, resting)});
-    warn_of_short_record(series, time_s, report.warnings);
+    warn_of_short_record(tracks, time_s, report.warnings);
     return report;
 }
 

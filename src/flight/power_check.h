@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
 
@@ -44,6 +45,9 @@ struct PowerReport {
 /// the counter; power that is negative on average, or does not change at all, in flight. The warnings and their
 /// thresholds stand in docs/methods.md.
 PowerReport check_power_record(const FlightSeries& series, const FlightPhases& phases,
+                               const SegmentationOptions& options = {});
+/// The same of tracks that are asked for more.
+PowerReport check_power_record(const ChosenTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 
 /// The faults as the reason why a flight is not fitted, and how to overrule that.

@@ -104,6 +104,8 @@ FlightPhases segment(const ChosenTracks& tracks, const SegmentationOptions& opti
     const auto grid = make_grid(tracks);
     FlightPhases phases;
     phases.motor_evidence = grid.motor_evidence;
+    const auto rests = find_rests(grid, options);
+    for (const auto& rest : rests) phases.rests.push_back({grid.time_s(rest.begin), grid.time_s(rest.end)});
     auto why_not = why_ground_vehicle(tracks);
     if (why_not.empty()) why_not = grid.unusable;
     if (!why_not.empty()) {
@@ -113,7 +115,7 @@ FlightPhases segment(const ChosenTracks& tracks, const SegmentationOptions& opti
     phases.warnings = grid.warnings;
     if (auto doubt = unit_doubt(tracks, grid); !doubt.empty()) phases.warnings.push_back(std::move(doubt));
     const auto ground_m = ground_altitude_m(tracks);
-    for (const auto& activity : find_activities(grid, find_rests(grid, options), options)) {
+    for (const auto& activity : find_activities(grid, rests, options)) {
         const auto grounds = grounds_of(grid, activity, ground_m);
         const auto heights = heights_of(grid, activity, grounds);
         auto why = why_no_flight(tracks, grid, activity, heights, options);

@@ -108,7 +108,7 @@ class LiveFlight::Watch {
                  LiveState& state);
     void look_ahead(LiveState& state) const;
     void decide(LiveState& state);
-    void judge(const flight::FlightSeries& series, const LiveState& state);
+    void judge_record(const flight::ChosenTracks& tracks, const LiveState& state);
     void trim(const std::optional<battery::DischargeRecord>& record, const LiveState& state);
 
     LiveOptions options_;
@@ -130,6 +130,7 @@ class LiveFlight::Watch {
     bool ended_ = false;
     std::vector<std::string> warnings_;
     flight::FlightPhases phases_;
+    std::string not_segmented_;  ///< why; empty if it is
     std::optional<LiveState> last_predicted_;
 };
 
@@ -159,7 +160,7 @@ LiveState LiveFlight::Watch::look(double silent_s) {
         state.warnings.emplace_back(error.what());
     }
     decide(state);
-    judge(series, state);
+    judge_record(tracks, state);
     state.warnings.insert(state.warnings.begin(), warnings_.begin(), warnings_.end());
     state.unusable.insert(store_.skipped().begin(), store_.skipped().end());
     if (clocks_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clocks_.unconfirmed();
@@ -180,10 +181,12 @@ LiveState LiveFlight::Watch::look(double silent_s) {
 
 void LiveFlight::Watch::look_at_flight(const flight::ChosenTracks& tracks, LiveState& state) {
     phases_ = {};
+    not_segmented_.clear();
     try {
         if (!tracks["altitude_m"].empty()) phases_ = segment(tracks);
     } catch (const std::exception& error) {
-        state.waits_for = without_flight_name(error.what(), tracks.series().flight);
+        not_segmented_ = error.what();
+        state.waits_for = without_flight_name(not_segmented_, tracks.series().flight);
     }
     sorties_kept_ = phases_.sorties.size();
     state.sortie = sorties_before_ + sorties_kept_;
@@ -300,20 +303,22 @@ void LiveFlight::Watch::decide(LiveState& state) {
     }
 }
 
-void LiveFlight::Watch::judge(const flight::FlightSeries& series, const LiveState& state) {
+void LiveFlight::Watch::judge_record(const flight::ChosenTracks& tracks, const LiveState& state) {
     constexpr double gap_s = 10.0;  // what was written across it is in doubt at once
     if (looked_s_ && std::abs(state.time_s - *looked_s_) > gap_s) judged_s_.reset();
     looked_s_ = state.time_s;
     if (judged_s_ && state.time_s < *judged_s_ + judged_every_s && !state.landed && !ended_) return;
     judged_s_ = state.time_s;
-    if (series.tracks.empty()) return;
-    flight::LoadOptions options;
-    options.flight_required = false;
-    options.power_required = false;
+    if (tracks.series().tracks.empty()) return;
+    if (!not_segmented_.empty()) {
+        warnings_ = {not_segmented_};
+        return;
+    }
     try {
-        auto loaded = examine_flight(series, options);
-        warnings_ = std::move(loaded.warnings);
-        if (!loaded.exclusion.empty()) warnings_.push_back("no prediction can be trusted: " + loaded.exclusion);
+        auto judgement = judge(tracks, phases_);
+        const auto exclusion = exclusion_by(judgement);
+        warnings_ = std::move(judgement.warnings);
+        if (!exclusion.empty()) warnings_.push_back("no prediction can be trusted: " + exclusion);
     } catch (const std::exception& error) {
         warnings_ = {error.what()};
     }

@@ -1,7 +1,6 @@
 #include "live/turn_home.h"
 
 #include "base/units.h"
-#include "battery/discharge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,14 +46,6 @@ std::optional<battery::PowerStretch> way_home(const mission::PathForecast& path,
     return battery::PowerStretch{power_w * power_factor, distance_m / *speed};
 }
 
-battery::Discharge through(const TurnBudget& budget, const battery::BatteryState& state,
-                           const battery::PowerStretch& stretch) {
-    constexpr double step_s = 5.0;
-    const double power_w = stretch.power_w;
-    return discharge(budget.battery, {[power_w](double) { return power_w; }, 0.0, stretch.duration_s}, state,
-                     {step_s, budget.limits.cutoff_voltage_v});
-}
-
 bool has_failed(const battery::Discharge& end) { return end.ended_at_s() || end.undeliverable; }
 
 bool lands_with_reserve(const TurnBudget& budget, battery::BatteryState state,
@@ -62,7 +53,7 @@ bool lands_with_reserve(const TurnBudget& budget, battery::BatteryState state,
     if (!home) return false;
     for (const auto& stretch : {home, budget.landing}) {
         if (!stretch || !(stretch->duration_s > 0.0)) continue;
-        const auto end = through(budget, state, *stretch);
+        const auto end = discharge_through(budget.battery, state, *stretch, budget.limits.cutoff_voltage_v);
         if (has_failed(end)) return false;
         state = end;
     }
@@ -76,7 +67,8 @@ bool fly_on(const TurnBudget& budget, std::vector<battery::PowerStretch>& ahead,
         auto& stretch = ahead.front();
         const double part_s = std::min(time_s, stretch.duration_s);
         if (part_s > 0.0) {
-            const auto end = through(budget, state, {stretch.power_w, part_s});
+            const auto end =
+                discharge_through(budget.battery, state, {stretch.power_w, part_s}, budget.limits.cutoff_voltage_v);
             if (has_failed(end)) return false;
             state = end;
         }

@@ -36,6 +36,23 @@ TEST(LandingForecast, AddsUpEnergies) {
     EXPECT_FALSE(forecast.fails_after_s.has_value());
 }
 
+TEST(LandingForecast, IsThatOfRungeKutta) {
+    constexpr double near_percent = 1e-3;
+    for (const double power_w : {-5.0, 0.0, 8.0, 20.0, 35.0}) {
+        for (const double cutoff_v : {0.0, 9.8}) {
+            const auto found = discharge_through(thevenin(), {70.0, 0.1}, {power_w, 900.0}, cutoff_v);
+            const Load load{[power_w](double) { return power_w; }, 0.0, 900.0};
+            const auto reference = discharge(thevenin(), load, {70.0, 0.1}, {1.0, cutoff_v});
+            EXPECT_NEAR(found.soc_percent, reference.soc_percent, near_percent) << power_w;
+            EXPECT_NEAR(found.rc_voltage_v, reference.rc_voltage_v, 1e-3) << power_w;
+            ASSERT_EQ(found.ended_at_s().has_value(), reference.ended_at_s().has_value()) << power_w;
+            if (found.ended_at_s()) {
+                EXPECT_NEAR(*found.ended_at_s(), *reference.ended_at_s(), 0.05) << power_w;
+            }
+        }
+    }
+}
+
 TEST(LandingForecast, SaysWhenTheBatteryFails) {
     const std::vector<PowerStretch> ahead{{36.0, 500.0}, {18.0, 600.0}};
     const auto forecast = forecast_landing(plain(), {60.0, 0.0}, ahead, 36.0);

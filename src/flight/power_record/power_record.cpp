@@ -1,29 +1,28 @@
 #include "flight/power_record/power_record.h"
 
-#include "flight/chosen_track.h"
-#include "flight/segmentation/flight_grid.h"
 #include "flight/sources/device_sum.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace flightwatt::flight {
 
-PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
-    auto power = power_track(series);
-    const auto on_clock = [&](const char* name) { return chosen_at(series, name, power.time_s); };
+PowerRecord record_of(const ChosenTracks& tracks, const FlightPhases& phases) {
+    const auto& power = tracks["power_w"];
+    const auto on_clock = [&](const char* name) {
+        const auto& track = tracks[name];
+        return track.empty() ? std::vector<double>{} : resample(track, power.time_s);
+    };
     PowerRecord record;
     record.voltage_v = on_clock("voltage_v");
     record.current_a = on_clock("current_a");
     record.charge_ah = on_clock("charge_ah");
     record.energy_wh = on_clock("energy_wh");
     record.throttle_percent = on_clock("throttle_percent");
-    const auto altitude = chosen_track(series, "altitude_m");
-    if (!altitude.empty()) record.altitude_m = resample(altitude, power.time_s);
-    record.altitude_time_s = altitude.time_s;
+    record.altitude_m = on_clock("altitude_m");
+    record.altitude_time_s = tracks["altitude_m"].time_s;
     record.is_sum = is_sum_over_devices(power);
-    record.time_s = std::move(power.time_s);
-    record.power_w = std::move(power.value);
+    record.time_s = power.time_s;
+    record.power_w = power.value;
     const auto& time_s = record.time_s;
     for (const auto& sortie : phases.sorties) {
         const auto first = std::lower_bound(time_s.begin(), time_s.end(), sortie.start_s());
@@ -34,7 +33,7 @@ PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases) {
     return record;
 }
 
-std::vector<std::size_t> resting_samples(const FlightSeries& series, const PowerRecord& record,
+std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::vector<Rest>& rests,
                                          const SegmentationOptions& options) {
     std::vector<std::size_t> indices;
     const bool motor_known = !record.throttle_percent.empty();
@@ -43,13 +42,10 @@ std::vector<std::size_t> resting_samples(const FlightSeries& series, const Power
         return std::ranges::none_of(record.flown,
                                     [&](const SampleRange& flown) { return i >= flown.first && i < flown.last; });
     };
-    const auto grid = make_grid(ChosenTracks(series));
-    const auto rests = find_rests(grid, options);
+    auto rest = rests.begin();
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        const auto at = static_cast<std::size_t>((record.time_s[i] - grid.start_s) / grid.step_s);
-        const bool resting = std::any_of(rests.begin(), rests.end(),
-                                         [&](const GridSpan& rest) { return at >= rest.begin && at < rest.end; });
-        if (resting && is_off(i)) indices.push_back(i);
+        while (rest != rests.end() && record.time_s[i] >= rest->end_s) ++rest;
+        if (rest != rests.end() && record.time_s[i] >= rest->start_s && is_off(i)) indices.push_back(i);
     }
     return indices;
 }

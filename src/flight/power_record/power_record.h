@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
-#include "flight/flight_series.h"
 #include "flight/segmentation.h"
 
 #include <cstddef>
@@ -30,11 +30,11 @@ struct PowerRecord {
     std::vector<SampleRange> flown;       ///< the samples of each sortie
 };
 
-PowerRecord record_of(const FlightSeries& series, const FlightPhases& phases);
+PowerRecord record_of(const ChosenTracks& tracks, const FlightPhases& phases);
 
 /// Indices of the power samples at rest on the ground with the motor off; where no throttle tells that of the motor, at
 /// rest outside of the sorties.
-std::vector<std::size_t> resting_samples(const FlightSeries& series, const PowerRecord& record,
+std::vector<std::size_t> resting_samples(const PowerRecord& record, const std::vector<Rest>& rests,
                                          const SegmentationOptions& options);
 
 }  // namespace flightwatt::flight

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <limits>
 
 #include <fmt/format.h>
@@ -59,6 +60,49 @@ void add_altitude(FlightGrid& grid, const AltitudeRecord& record, const std::vec
         sample = next_sample;
     }
 }
+
+/// Points in a row whose heights differ by no more than `height_m`: it grows at its end and shrinks at its beginning.
+class StillStretch {
+  public:
+    StillStretch(const std::vector<double>& altitude_m, double height_m)
+        : altitude_m_(altitude_m), height_m_(height_m) {}
+
+    /// Takes the next point; false, and without it, where the heights would differ by more.
+    bool take(std::size_t i) {
+        const double height_m = altitude_m_[i];
+        if (!low_.empty() &&
+            std::max(height_m, altitude_m_[high_.front()]) - std::min(height_m, altitude_m_[low_.front()]) > height_m_)
+            return false;
+        if (low_.empty()) first_ = i;
+        while (!low_.empty() && altitude_m_[low_.back()] >= height_m) low_.pop_back();
+        while (!high_.empty() && altitude_m_[high_.back()] <= height_m) high_.pop_back();
+        low_.push_back(i);
+        high_.push_back(i);
+        end_ = i + 1;
+        return true;
+    }
+    /// The first point leaves.
+    void leave() {
+        ++first_;
+        if (low_.front() < first_) low_.pop_front();
+        if (high_.front() < first_) high_.pop_front();
+    }
+    void clear() {
+        low_.clear();
+        high_.clear();
+        first_ = end_ = 0;
+    }
+    std::size_t first() const { return first_; }
+    std::size_t size() const { return end_ - first_; }
+
+  private:
+    const std::vector<double>& altitude_m_;
+    double height_m_;
+    std::size_t first_ = 0;
+    std::size_t end_ = 0;
+    std::deque<std::size_t> low_;   ///< points that are the lowest from there to the end; their heights rise
+    std::deque<std::size_t> high_;  ///< the highest; they fall
+};
 
 /// Where no speed tells rest from flight: the points from which it comes down by the height of a flight, or more, before
 /// the motor runs again. There it glides, though it may keep its height for a while.
@@ -147,17 +191,14 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
     const auto within = [&](const std::vector<double>& channel, std::size_t i, double limit) {
         return channel.empty() || channel[i] <= limit;
     };
+    const auto is_idle = [&](std::size_t i) {
+        return within(grid.motor_percent, i, idle_percent) &&
+               within(grid.ground_speed_m_per_s, i, options.rest_speed_m_per_s);
+    };
     const auto is_still = [&](std::size_t begin, std::size_t end, double height_m) {
-        double low = grid.altitude_m[begin];
-        double high = low;
-        for (std::size_t i = begin; i < end; ++i) {
-            low = std::min(low, grid.altitude_m[i]);
-            high = std::max(high, grid.altitude_m[i]);
-            if (high - low > height_m || !within(grid.motor_percent, i, idle_percent) ||
-                !within(grid.ground_speed_m_per_s, i, options.rest_speed_m_per_s)) {
-                return false;
-            }
-        }
+        StillStretch stretch(grid.altitude_m, height_m);
+        for (auto i = begin; i < end; ++i)
+            if (!is_idle(i) || !stretch.take(i)) return false;
         return true;
     };
     // Where neither motor nor speed is known, a height that is kept is that of a rest only near the ground.
@@ -176,9 +217,18 @@ std::vector<GridSpan> find_rests(const FlightGrid& grid, const SegmentationOptio
     const auto edge = grid.steps(0.3 * options.rest_s) + 1;
     for (const auto& piece : grid.pieces) {
         const double highest_m = highest_rest_m(piece);
-        for (std::size_t begin = piece.begin; begin + window <= piece.end; ++begin) {
-            if (grid.altitude_m[begin] <= highest_m && is_still(begin, begin + window, options.rest_height_m))
-                mark(begin, begin + window);
+        StillStretch stretch(grid.altitude_m, options.rest_height_m);
+        auto marked = piece.begin;
+        for (auto end = piece.begin; end < piece.end; ++end) {
+            if (!is_idle(end)) {
+                stretch.clear();
+                continue;
+            }
+            while (!stretch.take(end)) stretch.leave();
+            if (stretch.size() > window) stretch.leave();
+            if (stretch.size() < window || grid.altitude_m[stretch.first()] > highest_m) continue;
+            mark(std::max(marked, stretch.first()), end + 1);
+            marked = end + 1;
         }
         if (piece.begin + edge > piece.end) continue;
         // The log may begin just before lift-off or end just after touchdown: there less time does, within less height.
