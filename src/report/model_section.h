@@ -29,6 +29,7 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
 
 /// How well flights that it has not seen are predicted, beside the baselines. `flights` is not empty;
 /// of `synthetic` ones it says so.
-Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic = false);
+Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic = false,
+                           const SectionOf& of = {});
 
 }  // namespace flightwatt::report
