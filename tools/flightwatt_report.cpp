@@ -18,8 +18,8 @@
 #include "report/missions_section.h"
 #include "report/model_section.h"
 #include "report/page.h"
-#include "report/physical_section.h"
 #include "report/replay_section.h"
+#include "report/trends_section.h"
 
 #include <algorithm>
 #include <chrono>
@@ -184,6 +184,18 @@ void add_batches(Page& page, const cli::StageCall& call, std::vector<report::Bat
     page.flights = std::move(flights);
 }
 
+/// How the aircraft go over the dates of their flights; nothing where these tell no trend.
+void add_trends(Page& page, const cli::StageCall& call) {
+    std::vector<report::FlownFlight> flights;
+    for (const auto& flight : page.flights)
+        if (flight.rejected.empty() && flight.unusable_power.empty()) flights.push_back(flown_flight(flight));
+    if (!trends_section(trends_of(flights))) return;  // and so none of packs, whose work is long
+    const auto notes = add_pack_wear(flights, cli::count_option(call, "max-battery-flights"));
+    auto section = trends_section(trends_of(flights));
+    section->html += report::list_html(notes);
+    page.sections.push_back(std::move(*section));
+}
+
 /// "3 logs, from out; 5 logs, from other".
 std::string origin_of_flights(std::span<const std::filesystem::path> outs,
                               std::span<const report::BatchContent> batches) {
@@ -303,6 +315,7 @@ int write_page(const cli::StageCall& call) {
         page.answers.notes = contents.notes;
         facts.emplace_back("flights", origin_of_flights(inputs.outs, contents.batches));
         add_batches(page, call, contents.batches, published);
+        add_trends(page, call);
     }
     if (!inputs.missions.empty()) add_missions(page, inputs, published);
     if (call.has("replay")) add_replay(page, call, inputs);

@@ -1,4 +1,4 @@
-#include "report/physical_section.h"
+#include "report/model_section.h"
 
 #include "base/error.h"
 #include "cli/output/physical_output.h"
