@@ -103,7 +103,7 @@ std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::s
         for (auto& flight : flights)
             if (flight.aircraft == aircraft && !flight.records.empty()) flown.push_back(&flight);
         const auto note = add_wear_of(flown, most);
-        if (!note.empty()) notes.push_back(aircraft + ": " + note);
+        if (!note.empty()) notes.push_back(fmt::format("{}: {}", aircraft, note));
     }
     return notes;
 }

@@ -32,20 +32,20 @@ VegaJson trend_panel(const AircraftTrend& trend) {
     }
     const auto& told = *trend.answer.trend;
     const double middle_day = median(days);
-    const auto [first, last] = std::ranges::minmax(days);
+    const auto range = std::ranges::minmax(days);
     std::vector<double> from_middle;
     for (const auto& [day, value] : trend.values) from_middle.push_back(value - told.per_day * (day - middle_day));
     const double middle = median(std::move(from_middle));
     FigureData slopes({"date", "value"}, {"slope"});
     slopes.round_to({0, 6});
     const auto add_line = [&](double per_day, std::string_view name) {
-        for (const double day : {first, last})
+        for (const double day : {range.min, range.max})
             slopes.add({day * ms_per_day, middle + per_day * (day - middle_day)}, {name});
     };
     add_line(told.per_day, "median slope");
     add_line(told.low_per_day, "low, 95 %");
     add_line(told.high_per_day, "high, 95 %");
-    const VegaJson y = quantity("value", title, {{"scale", {{"zero", false}}}});
+    const VegaJson y = quantity("value", "", {{"scale", {{"zero", false}}}});
     const VegaJson points = layer(
         flights.json(), R"({"type": "point", "size": 40, "filled": true, "opacity": 1})",
         {{"x", date_axis()},
@@ -61,7 +61,9 @@ VegaJson trend_panel(const AircraftTrend& trend) {
         {"legend", nullptr}};
     const VegaJson lines = layer(slopes.json(), R"({"type": "line", "style": "measured"})",
                                  {{"x", date_axis()}, {"y", y}, {"strokeDash", dash}});
-    return {{"width", 280}, {"height", 150}, {"layer", {lines, points, panel_name(title)}}};
+    auto name = panel_name(title);
+    name["mark"]["limit"] = 400;  // without a canvas node takes letters for wider than they are
+    return {{"width", 280}, {"height", 150}, {"layer", {lines, points, name}}};
 }
 
 /// Of one aircraft, the quantities whose trend is told.
