@@ -20,14 +20,14 @@ constexpr double metres_per_km = 1000.0;
 constexpr std::array<TrendQuantity, 6> quantities{{
     {"energy_wh_per_min", "energy [Wh/min]",
      [](const FlownFlight& f) { return per(f.facts.energy_wh, units::minute_from_second(f.facts.in_air_s)); }},
-    {"energy_wh_per_km", "energy over ground [Wh/km]",
+    {"energy_wh_per_km", "ground [Wh/km]",
      [](const FlownFlight& f) { return per(f.facts.energy_wh, f.facts.distance_m.value_or(0.0) / metres_per_km); }},
-    {"energy_wh_per_air_km", "energy through the air [Wh/km]",
+    {"energy_wh_per_air_km", "air [Wh/km]",
      [](const FlownFlight& f) { return per(f.facts.energy_wh, f.facts.air_distance_m.value_or(0.0) / metres_per_km); }},
-    {"cruise_power_w", "cruise power [W]", [](const FlownFlight& f) { return f.facts.cruise_power_w; }},
-    {"resistance_ohm", "resistance [ohm]",
+    {"cruise_power_w", "cruise [W]", [](const FlownFlight& f) { return f.facts.cruise_power_w; }},
+    {"resistance_ohm", "pack [ohm]",
      [](const FlownFlight& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; }},
-    {"capacity_ah", "capacity [Ah]", [](const FlownFlight& f) { return f.capacity_ah; }},
+    {"capacity_ah", "pack [Ah]", [](const FlownFlight& f) { return f.capacity_ah; }},
 }};
 
 std::vector<std::string> aircraft_names(std::span<const FlownFlight> flights) {

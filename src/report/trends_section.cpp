@@ -61,9 +61,7 @@ VegaJson trend_panel(const AircraftTrend& trend) {
         {"legend", nullptr}};
     const VegaJson lines = layer(slopes.json(), R"({"type": "line", "style": "measured"})",
                                  {{"x", date_axis()}, {"y", y}, {"strokeDash", dash}});
-    auto name = panel_name(title);
-    name["mark"]["limit"] = 400;  // without a canvas node takes letters for wider than they are
-    return {{"width", 280}, {"height", 150}, {"layer", {lines, points, name}}};
+    return {{"width", 280}, {"height", 150}, {"layer", {lines, points, panel_name(title)}}};
 }
 
 /// Of one aircraft, the quantities whose trend is told.
@@ -78,11 +76,12 @@ Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& ai
                                    trend_days * told.high_per_day, trend_verdict(trend));
         panels.push_back(trend_panel(trend));
     }
-    auto figure =
-        new_figure(id,
-                   "Each point is a flight; the line has the median of the slopes between all pairs of flights, "
-                   "the dashed ones the ends of its 95 % interval.",
-                   description);
+    auto figure = new_figure(
+        id,
+        "Energy by time, and by distance over ground and through the air; the mean power of cruises; "
+        "resistance and capacity of the pack. Each point is a flight; the line has the median of the slopes between all pairs of flights, "
+        "the dashed ones the ends of its 95 % interval.",
+        description);
     set_panels(figure, 2, 66, panels);
     return figure;
 }

@@ -39,7 +39,7 @@ std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::s
 
 struct TrendQuantity {
     const char* name;   ///< with its unit, as in files
-    const char* title;  ///< as in figures
+    const char* title;  ///< as in figures, short
     std::optional<double> (*of)(const FlownFlight&);
 };
 
