@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "base/parallel.h"
 #include "cli/numeric_options.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/json_text.h"
@@ -186,9 +187,11 @@ void add_batches(Page& page, const cli::StageCall& call, std::vector<report::Bat
 
 /// How the aircraft go over the dates of their flights; nothing where these tell no trend.
 void add_trends(Page& page, const cli::StageCall& call) {
-    std::vector<report::FlownFlight> flights;
+    std::vector<const report::ReportFlight*> usable;
     for (const auto& flight : page.flights)
-        if (flight.rejected.empty() && flight.unusable_power.empty()) flights.push_back(flown_flight(flight));
+        if (flight.rejected.empty() && flight.unusable_power.empty()) usable.push_back(&flight);
+    std::vector<report::FlownFlight> flights(usable.size());
+    for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = flown_flight(*usable[i]); });
     if (!trends_section(trends_of(flights))) return;  // and so none of packs, whose work is long
     const auto notes = add_pack_wear(flights, cli::count_option(call, "max-battery-flights"));
     auto section = trends_section(trends_of(flights));
