@@ -22,7 +22,7 @@
 #include "report/flights_section.h"
 #include "report/in_flight.h"
 #include "report/missions_section.h"
-#include "report/physical_section.h"
+#include "report/model_section.h"
 #include "report/replay_section.h"
 #include "report/simulated_mission.h"
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "base/parallel.h"
 #include "cli/numeric_options.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/json_text.h"
@@ -18,23 +19,26 @@
 #include "report/missions_section.h"
 #include "report/model_section.h"
 #include "report/page.h"
-#include "report/physical_section.h"
 #include "report/replay_section.h"
+#include "report/trends_section.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <future>
 #include <iterator>
+#include <map>
+#include <span>
 
 #include <fmt/chrono.h>
+#include <fmt/ranges.h>
 
 namespace {
 
 using namespace flightwatt;
 
 struct ReportInputs {
-    std::optional<std::filesystem::path> out;
+    std::vector<std::filesystem::path> outs;
     std::vector<mission::AnyMission> missions;
 };
 
@@ -47,11 +51,7 @@ ReportInputs read_inputs(const cli::StageCall& call) {
             cli::warn_of_setup(call, setup_of(inputs.missions.back()));
             continue;
         }
-        if (inputs.out) {
-            throw UsageError(fmt::format("two folders are given, {} and {}: expected one of flightwatt batch",
-                                         inputs.out->string(), input));
-        }
-        inputs.out = input;
+        inputs.outs.emplace_back(input);
     }
     return inputs;
 }
@@ -72,64 +72,141 @@ struct Page {
     std::vector<report::Section> sections;
     report::PageAnswers answers;
     std::vector<report::ReportFlight> flights;
-    std::optional<mechanical::MechanicalModel> model;  ///< of the flights
+    std::vector<mechanical::MechanicalModel> models;  ///< of the folders that have one
 };
+
+/// "There is no model of these flights", with the folder where there are several.
+std::string of_folder(const report::SectionOf& of, const std::string& text) {
+    return of.folder.empty() ? text : of.folder + ": " + text;
+}
 
 /// The flights' model with its validation.
 void add_model(Page& page, const cli::StageCall& call, const report::BatchContent& content,
-               const report::PublishedFigures& figures) {
+               const report::PublishedFigures& figures, const report::SectionOf& of) {
+    auto& notes = page.answers.notes;
     if (!content.fit) {
-        page.answers.notes.push_back("There is no model of these flights: the batch could not fit them.");
+        notes.push_back(of_folder(of, "There is no model of these flights: the batch could not fit them."));
         return;
     }
-    page.model = content.fit->model;
-    page.answers.warnings = model_warnings(*page.model);
+    page.models.push_back(content.fit->model);
+    for (const auto& warning : model_warnings(content.fit->model))
+        page.answers.warnings.push_back(of_folder(of, warning));
     auto model = report::model_of(*content.fit, cli::read_published(call));
+    const auto flights = of.folder.empty() ? "flights above" : fmt::format("flights of {} above", of.folder);
+    model.origin = fmt::format("Fitted by flightwatt batch to the {}.", flights);
     const bool synthetic = report::any_synthetic(content.flights);
     if (synthetic) {
         model.origin =
             report::all_synthetic(content.flights)
-                ? "Fitted by flightwatt batch to the SYNTHETIC flights above: no aircraft flew them."
-                : "Fitted by flightwatt batch to the flights above. Some are SYNTHETIC: no aircraft flew these.";
+                ? fmt::format("Fitted by flightwatt batch to the SYNTHETIC {}: no aircraft flew them.", flights)
+                : fmt::format("Fitted by flightwatt batch to the {}. Some are SYNTHETIC: no aircraft flew these.",
+                              flights);
     }
-    page.sections.push_back(model_section(model, figures, "model"));
+    page.sections.push_back(model_section(model, figures, of.id("model")));
+    page.sections.back().title = of.title(page.sections.back().title);
     const auto most = cli::count_option(call, "max-validation-flights");
     if (content.measured.size() < 2 || content.measured.size() > most) {
-        page.answers.notes.push_back(
+        notes.push_back(of_folder(
+            of,
             fmt::format("The model is validated with 2 to {} flights, and there are {}; flightwatt validate does it.",
-                        most, content.measured.size()));
+                        most, content.measured.size())));
         return;
     }
-    if (auto section = report::physical_section(content.measured)) page.sections.push_back(std::move(*section));
+    if (auto section = report::physical_section(content.measured, of)) page.sections.push_back(std::move(*section));
     cli::TerminalProgress validating("fits");
-    page.answers.validated = leave_one_out(content.measured, content.fit->options, {}, validating.shown());
-    page.sections.push_back(report::validation_section(page.answers.validated, synthetic));
+    page.answers.validated.push_back(
+        {of.folder, leave_one_out(content.measured, content.fit->options, {}, validating.shown()), synthetic});
+    page.sections.push_back(report::validation_section(page.answers.validated.back().flights, synthetic, of));
 }
 
-/// What the batch's folder has to say: flights, model, validation and battery.
-void add_batch(Page& page, const cli::StageCall& call, const std::filesystem::path& out,
-               const report::PublishedFigures& figures) {
+/// What was predicted in flight, of the flights that stand under the folder.
+std::map<std::string, report::PredictedFlight> predicted_of(const report::BatchContent& content, std::size_t most) {
+    auto predicted = predict_each_minute(content, most);
+    for (const auto& flight : content.flights)
+        if (flight.is_shown_elsewhere) predicted.erase(flight.name);
+    return predicted;
+}
+
+/// What the flights of all folders are drawn with.
+struct DrawnBeside {
+    std::vector<std::optional<mechanical::MechanicalModel>> models;  ///< one a folder
+    std::map<std::string, report::PredictedFlight> predicted;
+};
+
+DrawnBeside drawn_beside(std::span<const report::BatchContent> batches, std::size_t most_predicted) {
+    DrawnBeside beside;
+    for (const auto& content : batches) {
+        beside.models.push_back(content.fit ? std::optional(content.fit->model) : std::nullopt);
+        beside.predicted.merge(predicted_of(content, most_predicted));
+    }
+    return beside;
+}
+
+report::Section section_of_flights(std::span<const report::ReportFlight> flights, const DrawnBeside& beside) {
+    cli::TerminalProgress drawing("flights");
+    return report::flights_section(flights, beside.models, beside.predicted, drawing.shown());
+}
+
+/// What the folders have to say: flights, and of each folder model, validation and battery.
+void add_batches(Page& page, const cli::StageCall& call, std::vector<report::BatchContent>& batches,
+                 const report::PublishedFigures& figures) {
     battery::IdentificationOptions identification;
     identification.capacity_ah = cli::positive_option(call, "capacity", "Ah");
-    auto content = report::read_batch_content(out);
-    for (const auto& damaged : content.damaged) cli::warn(call, damaged);
-    page.head.facts.emplace_back("flights", fmt::format("{} logs, from {}", content.flights.size(), out.string()));
-    const auto mix = report::aircraft_mix(content);
-    // Of many flights, it takes as long as their figures do.
-    auto battery = std::async(std::launch::async, [&, most = cli::count_option(call, "max-battery-flights")] {
-        return mix.empty() ? std::optional(identify_for_report(content.flights, identification, most)) : std::nullopt;
-    });
-    cli::TerminalProgress drawing("flights");
-    page.sections.push_back(report::flights_section(
-        content.flights, content.fit ? std::optional(content.fit->model) : std::nullopt,
-        predict_each_minute(content, cli::count_option(call, "max-validation-flights")), drawing.shown()));
-    add_model(page, call, content, figures);
-    if (const auto identified = battery.get()) {
-        page.sections.push_back(report::battery_section(*identified));
-    } else {
-        page.answers.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
+    std::vector<std::future<std::optional<report::ReportBattery>>> batteries;
+    std::vector<std::string> mixes;
+    for (const auto& content : batches) {
+        for (const auto& damaged : content.damaged) cli::warn(call, damaged);
+        mixes.push_back(report::aircraft_mix(content));
+        // Of many flights, it takes as long as their figures do.
+        batteries.push_back(std::async(std::launch::async, [&, is_mix = !mixes.back().empty(),
+                                                            most = cli::count_option(call, "max-battery-flights")] {
+            return is_mix ? std::nullopt : std::optional(identify_for_report(content.flights, identification, most));
+        }));
     }
-    page.flights = std::move(content.flights);
+    const auto at = page.sections.size();
+    const auto beside = drawn_beside(batches, cli::count_option(call, "max-validation-flights"));
+    if (batches.size() == 1) page.sections.push_back(section_of_flights(batches.front().flights, beside));
+    for (std::size_t i = 0; i < batches.size(); ++i) {
+        const report::SectionOf of{batches[i].folder, i == 0 ? "" : fmt::format("-{}", i + 1)};
+        add_model(page, call, batches[i], figures, of);
+        if (const auto identified = batteries[i].get()) {
+            page.sections.push_back(report::battery_section(*identified, of));
+        } else {
+            page.answers.notes.push_back(
+                of_folder(of, "There is no battery of flights of several aircraft: " + mixes[i] + "."));
+        }
+    }
+    if (batches.size() == 1) {
+        page.flights = std::move(batches.front().flights);
+        return;
+    }
+    auto flights = report::take_shown_flights(batches);
+    page.sections.insert(page.sections.begin() + static_cast<std::ptrdiff_t>(at), section_of_flights(flights, beside));
+    page.flights = std::move(flights);
+}
+
+/// How the aircraft go over the dates of their flights; nothing where these tell no trend.
+void add_trends(Page& page, const cli::StageCall& call) {
+    std::vector<const report::ReportFlight*> usable;
+    for (const auto& flight : page.flights)
+        if (flight.rejected.empty() && flight.unusable_power.empty()) usable.push_back(&flight);
+    std::vector<report::FlownFlight> flights(usable.size());
+    for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = flown_flight(*usable[i]); });
+    if (!trends_section(trends_of(flights))) return;  // and so none of packs, whose work is long
+    const auto notes = add_pack_wear(flights, cli::count_option(call, "max-battery-flights"));
+    auto section = trends_section(trends_of(flights));
+    section->html += report::list_html(notes);
+    page.sections.push_back(std::move(*section));
+}
+
+/// "3 logs, from out; 5 logs, from other".
+std::string origin_of_flights(std::span<const std::filesystem::path> outs,
+                              std::span<const report::BatchContent> batches) {
+    std::string text;
+    for (std::size_t i = 0; i < outs.size(); ++i) {
+        text += fmt::format("{}{} logs, from {}", i == 0 ? "" : "; ", batches[i].flights.size(), outs[i].string());
+    }
+    return text;
 }
 
 /// What the missions come to: answers and evidence.
@@ -147,22 +224,29 @@ void add_missions(Page& page, const ReportInputs& inputs, const report::Publishe
             page.answers.missions[i],
             [&](const mission::MissionReading& reading) { return mission::read_mission(file, reading); }));
     }
-    auto sections = mission_sections(page.answers.missions, figures, page.model);
+    auto sections = mission_sections(page.answers.missions, figures, page.models);
     std::move(sections.begin(), sections.end(), std::back_inserter(page.sections));
 }
 
 /// The missions on the batch's flights.
 void add_replay(Page& page, const cli::StageCall& call, const ReportInputs& inputs) {
-    const auto content = report::read_batch_content(*inputs.out);
-    mission::ReplayOptions options;
-    if (content.fit) options.fit = content.fit->options;
-    const auto replays = replay_flights(inputs.missions, report::flights_with_power(content), options);
-    for (const auto& left : replays.not_replayed)
-        cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
-    if (replays.replays.empty())
+    std::vector<mission::Replay> replays;
+    for (const auto& content : report::read_batch_contents(inputs.outs).batches) {
+        mission::ReplayOptions options;
+        if (content.fit) options.fit = content.fit->options;
+        auto flights = report::flights_with_power(content);
+        for (const auto& shown : content.flights)
+            if (shown.is_shown_elsewhere)
+                std::erase_if(flights, [&](const auto& flight) { return flight.samples.flight == shown.name; });
+        auto of_folder = replay_flights(inputs.missions, flights, options);
+        for (const auto& left : of_folder.not_replayed)
+            cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
+        std::ranges::move(of_folder.replays, std::back_inserter(replays));
+    }
+    if (replays.empty())
         page.answers.notes.emplace_back("There is no replay: no mission could be flown on any flight.");
     else
-        page.sections.push_back(report::replay_section(replays.replays));
+        page.sections.push_back(report::replay_section(replays));
 }
 
 nlohmann::ordered_json summary_json(const Page& page) {
@@ -178,7 +262,7 @@ nlohmann::ordered_json summary_json(const Page& page) {
     return {{"title", page.head.title},
             {"missions", missions},
             {"aircraft", report::aircraft_lines(page.flights)},
-            {"prediction", report::prediction_line(page.answers.validated)},
+            {"prediction", fmt::format("{}", fmt::join(report::prediction_lines(page.answers.validated), "; "))},
             {"warnings", page.answers.warnings},
             {"notes", page.answers.notes},
             {"figures", figures}};
@@ -213,7 +297,7 @@ void refuse_bad_numbers(const cli::StageCall& call) {
 int write_page(const cli::StageCall& call) {
     refuse_bad_numbers(call);
     const auto inputs = read_inputs(call);
-    if (call.has("replay") && (!inputs.out || inputs.missions.empty()))
+    if (call.has("replay") && (inputs.outs.empty() || inputs.missions.empty()))
         throw UsageError(
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
     const bool wants_page = call.output || (!call.json && !call.has("figures"));
@@ -229,7 +313,13 @@ int write_page(const cli::StageCall& call) {
         published = report::read_published_figures(*folder);
         facts.emplace_back("beside", "the paper's Figs. 2 (c-e), 3 (a, b) and 4, digitised");
     }
-    if (inputs.out) add_batch(page, call, *inputs.out, published);
+    if (!inputs.outs.empty()) {
+        auto contents = report::read_batch_contents(inputs.outs);
+        page.answers.notes = contents.notes;
+        facts.emplace_back("flights", origin_of_flights(inputs.outs, contents.batches));
+        add_batches(page, call, contents.batches, published);
+        add_trends(page, call);
+    }
     if (!inputs.missions.empty()) add_missions(page, inputs, published);
     if (call.has("replay")) add_replay(page, call, inputs);
     page.sections.insert(page.sections.begin(), report::answers_section(page.answers, page.flights));
@@ -243,11 +333,12 @@ int write_page(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "report", "[OUT] [MISSION.toml...] -o report.html",
+        "report", "[OUT...] [MISSION.toml...] -o report.html",
         R"(Writes one HTML page, to be opened offline, of what flightwatt batch left in the folder OUT (flights,
-model, validation, battery) and of missions (software, schedules, quality of service, plan). Its figures are
-Vega-Lite specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node)
-and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
+model, validation, battery; of several folders each its own) and of missions (software, schedules, quality
+of service, plan). Its figures are Vega-Lite specifications with their data; --figures writes them as files
+for papers: .vl.json, .svg (by node) and .pdf (where rsvg-convert is). The model is the batch's own, with
+the bands that the batch stored.)"};
     auto add = stage.options.add_options();
     add("figures", cli::output_file("DIR"), "write every figure to DIR");
     add("figure-width", cli::value("WIDTH"), "of those files: 3.5in, 89mm ...; their type is then set at 8 points");

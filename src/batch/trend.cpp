@@ -52,7 +52,9 @@ std::size_t outside(std::span<const DatedValue> values, std::size_t pairs) {
 
 TrendAnswer trend_over(std::span<const DatedValue> values) {
     if (values.size() < least_trend_flights)
-        return {{}, fmt::format("{} flights, expected {} or more", values.size(), least_trend_flights)};
+        return {{},
+                fmt::format("{} flight{}, expected {} or more", values.size(), values.size() == 1 ? "" : "s",
+                            least_trend_flights)};
     std::set<double> days;
     for (const auto& value : values) days.insert(std::floor(value.day));
     if (days.size() < least_trend_days) {

@@ -33,6 +33,7 @@ struct Chained {
     std::vector<std::optional<PackLink>> links;  ///< one a record
     CircuitErrors errors;
     std::vector<std::optional<FlightResistance>> resistances;
+    std::vector<std::optional<FlightCapacity>> capacities;
 };
 
 /// By the counters, along all links from where the record's pack was first flown.
@@ -45,8 +46,13 @@ double counted_error_ah(const std::vector<std::optional<PackLink>>& links, std::
     return std::sqrt(squares_ah2);
 }
 
-void add_errors(Chained& chained) {
-    chained.resistances = flight_resistances(chained.aligned);
+void add_errors(Chained& chained, bool with_capacities) {
+    chained.resistances.clear();
+    chained.capacities.clear();
+    for (const auto& wear : flight_wear(chained.aligned, with_capacities)) {
+        chained.resistances.push_back(wear.resistance);
+        chained.capacities.push_back(wear.capacity);
+    }
     chained.errors = circuit_errors(chained.aligned);
     // A flight of another resistance than the common one lies elsewhere on the curve, and so does the reference.
     const double scatter_ohm = resistance_scatter_ohm(chained.resistances, chained.aligned.fit.resistance_ohm);
@@ -74,13 +80,13 @@ bool agrees(const Chained& free, std::size_t later, const PackLink& link) {
 }
 
 /// The circuit with every flight's pack its own; then chained, where that agrees.
-Chained chained_fit(std::span<const DischargeRecord> records, int cells, bool chain) {
+Chained chained_fit(std::span<const DischargeRecord> records, int cells, const IdentificationOptions& options) {
     Chained chained;
     chained.aligned = aligned_fit(records, cells);
     chained.links.resize(records.size());
-    add_errors(chained);
+    add_errors(chained, options.with_capacities);
     std::vector<ChargeLink> links;
-    for (std::size_t f = 0; chain && f < records.size(); ++f) {
+    for (std::size_t f = 0; options.chain && f < records.size(); ++f) {
         const auto link = pack_link(records[f], chained.aligned.records, chained.aligned.fit);
         if (!link || !agrees(chained, f, *link)) continue;
         links.push_back({f, link->earlier, link->charge_ah, tied_ah});
@@ -88,7 +94,7 @@ Chained chained_fit(std::span<const DischargeRecord> records, int cells, bool ch
     }
     if (links.empty()) return chained;
     chained.aligned = aligned_fit(records, cells, links);
-    add_errors(chained);
+    add_errors(chained, options.with_capacities);
     return chained;
 }
 
@@ -140,6 +146,7 @@ std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::sp
         flight.link = chained.links[f];
         if (flight.link) flight.pack_of = chained.aligned.records[flight.link->earlier].record->flight;
         flight.resistance = chained.resistances[f];
+        flight.capacity = chained.capacities[f];
         flight.air_temperature_c = record->air_temperature_c;
         flight.samples = record->time_s.size();
         flight.unused = flight.samples - static_cast<std::size_t>(used_samples(*record));
@@ -175,7 +182,7 @@ Battery battery_of(const BatteryIdentification& result, const ExtendedCurve& ext
 Told told_by(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
     if (records.empty()) throw NoAnswerError("no flight is left to identify a battery from");
     const int cells = cells_of(records, options);
-    auto chained = chained_fit(records, cells, options.chain);
+    auto chained = chained_fit(records, cells, options);
     const auto posterior = match_chart(shown_curve(chained), options.capacity_ah);
     Told told;
     auto& result = told.identification;

@@ -5,6 +5,7 @@
 #include "battery/identification/circuit_fit.h"
 #include "battery/identification/discharge_record.h"
 #include "battery/identification/flight_resistance.h"
+#include "battery/identification/flight_wear.h"
 #include "battery/identification/open_circuit.h"
 #include "battery/identification/pack_link.h"
 
@@ -20,6 +21,7 @@ struct IdentificationOptions {
     std::optional<double> capacity_ah;
     std::optional<int> cells;  ///< default: from the highest resting voltage
     std::string name = "identified";
+    bool with_capacities = false;  ///< of each flight too, in the same least squares as its resistance
     bool chain = true;  ///< take a flight for one on the pack of the flight before it, where all agrees (pack_link.h)
 };
 
@@ -33,6 +35,7 @@ struct IdentifiedFlight {
     std::string pack_of;           ///< assumed to be flown on the pack that this flight left; empty: none is known
     std::optional<PackLink> link;  ///< why; `earlier` is its place among the flights
     std::optional<FlightResistance> resistance;
+    std::optional<FlightCapacity> capacity;  ///< with_capacities, where the flight tells it
     std::optional<double> air_temperature_c;
     std::size_t samples = 0;
     std::size_t unused = 0;  ///< with a current that the motor did not draw

@@ -145,6 +145,15 @@ std::string prediction_line(std::span<const mechanical::ValidatedFlight> flights
     return line + fmt::format(", on average over {} left out in turn", plural(number, "flight"));
 }
 
+std::vector<std::string> prediction_lines(std::span<const ValidatedBatch> batches) {
+    std::vector<std::string> lines;
+    for (const auto& batch : batches) {
+        const auto line = prediction_line(batch.flights);
+        if (!line.empty()) lines.push_back(batch.folder.empty() ? line : batch.folder + ": " + line);
+    }
+    return lines;
+}
+
 Section answers_section(const PageAnswers& answers, std::span<const ReportFlight> flights) {
     Section section{"answers", "Answers"};
     if (!answers.missions.empty()) {
@@ -158,9 +167,10 @@ Section answers_section(const PageAnswers& answers, std::span<const ReportFlight
         if (!text.empty()) facts += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escaped(text));
     };
     for (const auto& line : aircraft_lines(flights)) add("Aircraft", line);
-    auto prediction = prediction_line(answers.validated);
-    if (!prediction.empty() && any_synthetic(flights)) prediction += " (SYNTHETIC flights)";
-    add("Prediction", prediction);
+    for (const auto& batch : answers.validated) {
+        for (const auto& line : prediction_lines(std::span(&batch, 1)))
+            add("Prediction", line + (batch.has_synthetic ? " (SYNTHETIC flights)" : ""));
+    }
     add("Warnings", warned_line(flights));
     if (!facts.empty()) section.html += "<dl>\n" + facts + "</dl>\n";
     auto warnings = answers.warnings;

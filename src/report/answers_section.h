@@ -10,13 +10,20 @@
 
 namespace flightwatt::report {
 
+/// How one folder's model predicts flights that are not in it.
+struct ValidatedBatch {
+    std::string folder;  ///< empty where the page shows one
+    std::vector<mechanical::ValidatedFlight> flights;
+    bool has_synthetic = false;
+};
+
 /// What a page answers first.
 struct PageAnswers {
     std::vector<SimulatedMission> missions;
-    std::vector<MissionAnswer> answers;                  ///< one a mission
-    std::vector<mechanical::ValidatedFlight> validated;  ///< empty: the model was not validated
-    std::vector<std::string> warnings;                   ///< of the fit
-    std::vector<std::string> notes;                      ///< what is not on the page, and why
+    std::vector<MissionAnswer> answers;     ///< one a mission
+    std::vector<ValidatedBatch> validated;  ///< of the folders whose models were
+    std::vector<std::string> warnings;      ///< of the fits
+    std::vector<std::string> notes;         ///< what is not on the page, and why
 };
 
 /// A card for each mission; the aircraft and its flights in a line each; whether the model predicts flights that it has
@@ -32,5 +39,8 @@ bool all_synthetic(std::span<const ReportFlight> flights);
 
 /// How far off the models are of flights that they have not seen, best first; empty where nothing was validated.
 std::string prediction_line(std::span<const mechanical::ValidatedFlight> flights);
+
+/// That line of each folder, which it names where there are several.
+std::vector<std::string> prediction_lines(std::span<const ValidatedBatch> batches);
 
 }  // namespace flightwatt::report

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,7 +24,10 @@ struct ReportFlight {
     std::vector<std::string> warnings;
     std::vector<std::string> exclusions;  ///< what the model was not fitted to, and why
     std::vector<batch::RecordedVerdict> verdicts = {};
-    std::string unusable_power = {};  ///< why its power record is used for nothing; empty if it is
+    std::string unusable_power = {};        ///< why its power record is used for nothing; empty if it is
+    std::size_t batch = 0;                  ///< the place of its folder among those of the page
+    std::vector<std::string> folders = {};  ///< that hold it, where the page shows several
+    bool is_shown_elsewhere = false;        ///< it stands under another of the page's folders
 };
 
 /// How much of it the model was fitted to: "all", "in part" or "no".
@@ -31,6 +35,7 @@ std::string_view fitted_part(const ReportFlight& flight);
 
 /// What flightwatt report takes from a batch's folder.
 struct BatchContent {
+    std::string folder;  ///< what the page calls it, where it shows several
     std::vector<ReportFlight> flights;
     std::vector<mechanical::MeasuredFlight> measured;  ///< what the batch's fit took of them
     std::optional<batch::BatchFit> fit;                ///< absent where the batch could not fit them
@@ -40,6 +45,21 @@ struct BatchContent {
 /// The folder's flights, those with a usable power record first. Throws InputError as read_stored_flights and
 /// read_batch_fit.
 BatchContent read_batch_content(const std::filesystem::path& out);
+
+/// Several folders for one page.
+struct BatchContents {
+    std::vector<BatchContent> batches;
+    std::vector<std::string> notes;  ///< what a reader must know of folders that stand side by side
+};
+
+/// The folders, in their order, under their names or, where these do not differ, their paths. A flight that several hold is shown under
+/// the first one; flights of one name that are not one flight are renamed "NAME (FOLDER)". Notes tell both, and where the
+/// folders' aircraft or the options of their fits differ. Throws UsageError for a folder that is given twice, and as
+/// read_batch_content.
+BatchContents read_batch_contents(std::span<const std::filesystem::path> outs);
+
+/// Takes out the flights that are to be shown, those with a usable power record first.
+std::vector<ReportFlight> take_shown_flights(std::vector<BatchContent>& batches);
 
 /// Which flights are of which aircraft, where they are of several and the batch was not asked to mix them; else empty.
 std::string aircraft_mix(const BatchContent& content);

@@ -102,7 +102,7 @@ TextTable excluded_table(const ReportBattery& battery) {
 constexpr auto parameters_caption = "Parameters of the battery";
 constexpr auto flights_caption = "Flights in the fit of the battery";
 
-void add_identified(Section& section, const ReportBattery& battery) {
+void add_identified(Section& section, const ReportBattery& battery, const SectionOf& of) {
     const auto& identified = *battery.identified;
     section.html += paragraph(rests_on(battery));
     if (identified.capacity.origin == battery::CapacityOrigin::chart) {
@@ -117,7 +117,7 @@ void add_identified(Section& section, const ReportBattery& battery) {
         section.html += paragraph("The RC pair may be none: its resistance's interval reaches down to 0.");
     }
     section.html += table_html(parameters_table(identified), {parameters_caption, false, {}});
-    add_figure(section, voltage_figure(identified, battery.records, "battery-voltage"));
+    add_figure(section, voltage_figure(identified, battery.records, of.id("battery-voltage")));
     section.html +=
         table_html(cli::flights_table(*battery.identified, battery.leave_one_out), {flights_caption, true, {}});
     section.html += paragraph(
@@ -132,7 +132,7 @@ void add_identified(Section& section, const ReportBattery& battery) {
         "Leave-one-out: RMS error of this flight's voltage by the battery of the other flights; beyond the others: "
         "part of its samples with more charge drawn than in any other flight.",
         "soft");
-    add_figure(section, open_circuit_figure(identified, "battery-open-circuit"));
+    add_figure(section, open_circuit_figure(identified, of.id("battery-open-circuit")));
 }
 
 }  // namespace
@@ -168,10 +168,10 @@ std::vector<CaptionedTable> battery_tables(const ReportBattery& battery) {
     return tables;
 }
 
-Section battery_section(const ReportBattery& battery) {
-    Section section{"battery", "Battery"};
+Section battery_section(const ReportBattery& battery, const SectionOf& of) {
+    Section section{of.id("battery"), of.title("Battery")};
     if (battery.identified) {
-        add_identified(section, battery);
+        add_identified(section, battery, of);
         if (battery.leave_one_out.empty()) {
             section.html += paragraph(battery.no_answer.empty()
                                           ? "A single flight: there is no other one to check the battery with."

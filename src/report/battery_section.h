@@ -39,6 +39,6 @@ std::vector<CaptionedTable> battery_tables(const ReportBattery& battery);
 
 /// Measured against modelled voltage, the open-circuit curve, parameters with intervals and how well each
 /// flight is predicted by the others; or why there is no such battery.
-Section battery_section(const ReportBattery& battery);
+Section battery_section(const ReportBattery& battery, const SectionOf& of = {});
 
 }  // namespace flightwatt::report

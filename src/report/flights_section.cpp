@@ -17,6 +17,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::report {
 namespace {
@@ -57,6 +58,12 @@ SortieSums sums_of(const flight::PowerStatistics& power, const flight::Sortie& s
 std::string closure_percent(const SortieSums& sums) {
     if (!sums.energy_wh || !sums.counter_wh || *sums.counter_wh <= 0.0) return "-";
     return fmt::format("{:+.2f}", units::percent_of(*sums.energy_wh - *sums.counter_wh, *sums.counter_wh));
+}
+
+std::string folders_of(const ReportFlight& flight) { return fmt::format("{}", fmt::join(flight.folders, ", ")); }
+
+bool are_of_folders(std::span<const ReportFlight> flights) {
+    return std::ranges::any_of(flights, [](const auto& flight) { return !flight.folders.empty(); });
 }
 
 std::vector<std::string> cells_of(const ReportFlight& flight, std::size_t sortie) {
@@ -155,6 +162,7 @@ std::string summary_of(const ReportFlight& flight) {
     text += ", " + duration_text(facts.in_air_s) + " in the air";
     if (facts.distance_m) text += fmt::format(", {:.2f} km", *facts.distance_m / 1000.0);
     if (facts.height_m) text += fmt::format(", up to {:.0f} m", *facts.height_m);
+    if (!flight.folders.empty()) text += ", in " + folders_of(flight);
     return text;
 }
 
@@ -205,7 +213,7 @@ Section flight_part(const ReportFlight& flight, const std::optional<mechanical::
 
 /// The parts of the flights that were not rejected; the first one is open.
 std::vector<Section> flight_parts(std::span<const ReportFlight> flights,
-                                  const std::optional<mechanical::MechanicalModel>& model,
+                                  std::span<const std::optional<mechanical::MechanicalModel>> models,
                                   const std::map<std::string, PredictedFlight>& predicted,
                                   const std::vector<std::string>& ids, const Progress& progress) {
     std::vector<Section> parts(flights.size());
@@ -213,10 +221,13 @@ std::vector<Section> flight_parts(std::span<const ReportFlight> flights,
     const auto first = static_cast<std::size_t>(std::ranges::find_if(flights, is_shown) - flights.begin());
     const bool are_many = flights.size() > most_plain_flights;
     std::atomic<std::size_t> done = 0;
+    const std::optional<mechanical::MechanicalModel> no_model;
     for_each_in_parallel(flights.size(), [&](std::size_t f) {
         if (progress) progress(done++, flights.size());
         if (!is_shown(flights[f])) return;
         const auto found = predicted.find(flights[f].name);
+        const auto batch = flights[f].batch;
+        const auto& model = batch < models.size() ? models[batch] : no_model;
         parts[f] = flight_part(flights[f], model, found == predicted.end() ? nullptr : &found->second,
                                {ids[f], f == first, are_many && f != first});
     });
@@ -230,9 +241,14 @@ TextTable flights_table(std::span<const ReportFlight> flights) {
                      "landing [s]", "take\u2011off [W]", "cruise [W]", "landing [W]", "energy [Wh]", "counter [Wh]",
                      "closure [%]", "gaps", "warnings", "fitted"},
                     {}};
+    const bool has_folders = are_of_folders(flights);
+    if (has_folders) table.header.insert(table.header.begin() + 1, "folder");
     for (const auto& flight : flights) {
         if (!flight.rejected.empty()) continue;
-        for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) table.rows.push_back(cells_of(flight, s));
+        for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) {
+            table.rows.push_back(cells_of(flight, s));
+            if (has_folders) table.rows.back().insert(table.rows.back().begin() + 1, folders_of(flight));
+        }
     }
     return table;
 }
@@ -242,7 +258,8 @@ std::vector<CaptionedTable> flights_tables(std::span<const ReportFlight> flights
             {excluded_table(flights), excluded_caption, "tab:excluded"}};
 }
 
-Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model,
+Section flights_section(std::span<const ReportFlight> flights,
+                        std::span<const std::optional<mechanical::MechanicalModel>> models,
                         const std::map<std::string, PredictedFlight>& predicted, const Progress& progress) {
     Section section{"flights", "Flights"};
     const auto rejected =
@@ -262,7 +279,7 @@ Section flights_section(std::span<const ReportFlight> flights, const std::option
         section.html +=
             "<noscript><p class=\"warning\">The flights below are compressed: they open with JavaScript "
             "only.</p></noscript>\n";
-    for (auto& part : flight_parts(flights, model, predicted, ids, progress)) {
+    for (auto& part : flight_parts(flights, models, predicted, ids, progress)) {
         section.html += part.html;
         std::ranges::move(part.figures, std::back_inserter(section.figures));
     }

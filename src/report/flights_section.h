@@ -22,8 +22,9 @@ std::vector<CaptionedTable> flights_tables(std::span<const ReportFlight> flights
 
 /// All flights as a table (durations, power, energy, closure of integral and counter, gaps, warnings), those
 /// that are excluded with their reasons, and a part a flight that is drawn when it is opened, with what would have
-/// been predicted in flight where that is known.
-Section flights_section(std::span<const ReportFlight> flights, const std::optional<mechanical::MechanicalModel>& model,
+/// been predicted in flight where that is known. `models` are those of the flights' batches, by their places.
+Section flights_section(std::span<const ReportFlight> flights,
+                        std::span<const std::optional<mechanical::MechanicalModel>> models,
                         const std::map<std::string, PredictedFlight>& predicted = {}, const Progress& progress = {});
 
 }  // namespace flightwatt::report

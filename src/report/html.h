@@ -29,6 +29,17 @@ std::string table_html(const TextTable& table, const HtmlTableOptions& options);
 std::string figure_html(const Figure& figure);
 std::string figure_html(const Figure& figure, const VegaJson& spec);
 
+/// What tells a section and its figures from those of the page's other folders; empty where it shows one folder.
+struct SectionOf {
+    std::string folder = {};
+    std::string id_ending = {};  ///< "-2"
+
+    std::string id(std::string_view of_one) const { return std::string(of_one) + id_ending; }
+    std::string title(std::string_view of_one) const {
+        return std::string(of_one) + (folder.empty() ? "" : " (" + folder + ")");
+    }
+};
+
 /// Called as long work goes on, from any thread: how much of it is done, of how much.
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
 

@@ -40,11 +40,12 @@ std::string drawn_text(mechanical::MechanicalModel model) {
 }
 
 std::vector<Section> model_sections(Missions missions, const PublishedFigures& published,
-                                    const std::optional<mechanical::MechanicalModel>& shown) {
+                                    std::span<const mechanical::MechanicalModel> shown) {
     std::vector<Section> sections;
     for (const auto* simulated : first_of_each(missions, have_same_model)) {
         const auto& mechanical = simulated->mission.mechanical;
-        if (!mechanical || (shown && drawn_text(*mechanical) == drawn_text(*shown))) continue;
+        const auto is_this = [&](const auto& other) { return drawn_text(*mechanical) == drawn_text(other); };
+        if (!mechanical || std::ranges::any_of(shown, is_this)) continue;
         ReportModel model{*mechanical, "The missions' model, as their files name it."};
         model.table_one = table_one(*mechanical);
         sections.push_back(model_section(model, published, fmt::format("mission-model-{}", sections.size() + 1)));
@@ -253,7 +254,7 @@ Section plan_section(Missions missions) {
 }
 
 std::vector<Section> mission_sections(Missions missions, const PublishedFigures& published,
-                                      const std::optional<mechanical::MechanicalModel>& shown) {
+                                      std::span<const mechanical::MechanicalModel> shown) {
     auto sections = model_sections(missions, published, shown);
     for (auto& section : {profile_section(missions), schedule_section(missions, published),
                           map_section(missions, published), plan_section(missions)}) {

@@ -36,9 +36,10 @@ Section model_section(const ReportModel& model, const PublishedFigures& publishe
     return section;
 }
 
-Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic) {
-    Section section{"validation",
-                    "Validation against the baselines" + std::string(synthetic ? " (SYNTHETIC flights)" : "")};
+Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic,
+                           const SectionOf& of) {
+    Section section{of.id("validation"), of.title("Validation against the baselines") +
+                                             std::string(synthetic ? " (SYNTHETIC flights)" : "")};
     if (synthetic) {
         section.html += paragraph(
             "SYNTHETIC flights differ as their maker's model says: how well they are predicted says nothing of real ones.",
@@ -48,7 +49,7 @@ Section validation_section(const std::vector<mechanical::ValidatedFlight>& fligh
         "Leave-one-out: the model is fitted to all flights but one and predicts the energy of that one from "
         "its durations alone; beside the constant mean power of each phase, the nearest flight's power, and, "
         "where it was measured, cruise power after the airspeed cubed and after airspeed and climb (physical).");
-    add_figure(section, validation_figure(flights, "validation-errors"));
+    add_figure(section, validation_figure(flights, of.id("validation-errors")));
     section.html += table_html(cli::scores_table(flights), {"Scores of the models on flights not fitted", true, {}});
     constexpr std::size_t few = 20;
     if (flights.size() < few) {

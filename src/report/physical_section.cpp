@@ -1,4 +1,4 @@
-#include "report/physical_section.h"
+#include "report/model_section.h"
 
 #include "base/error.h"
 #include "cli/output/physical_output.h"
@@ -37,15 +37,15 @@ std::vector<CaptionedTable> physical_tables(std::span<const mechanical::Measured
             {cli::trials_table(*fit), trials_caption, "tab:physical-terms"}};
 }
 
-std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights) {
+std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights, const SectionOf& of) {
     const auto motions = motions_of(flights);
     const auto fit = fitted_motion(motions);
     if (!fit) return std::nullopt;
-    Section section{"physical", "Power from airspeed and climb"};
+    Section section{of.id("physical"), of.title("Power from airspeed and climb")};
     section.html += paragraph(
         "Power as a sum of physical terms of the motion through the air, fitted to the flights that measured airspeed and "
         "altitude, averaged over about 30 s.");
-    add_figure(section, physical_figure(fit->model, motions, "physical-power"));
+    add_figure(section, physical_figure(fit->model, motions, of.id("physical-power")));
     section.html += table_html(cli::constants_table(fit->model), {constants_caption, false, {}});
     if (fit->model.level_sd) section.html += paragraph("+- is half the 95 % interval.", "soft");
     section.html += table_html(cli::trials_table(*fit), {trials_caption, false, {}});

@@ -136,6 +136,11 @@ std::vector<Command> commands() {
          mission_files + Words{"batch/flights/a.series.csv", "batch/flights/a.record.json", "batch/model.toml",
                                "batch/flights.csv", "batch/table1.md", "batch/batch.json"},
          "--output"},
+        {"trends",
+         "dated/26_0*.data",
+         {"dated/26_01_05__10_00_00.data"},
+         "--figures",
+         {"trends-1.vl.json", "trends-1.svg"}},
         {"report", mission + " --json", mission_files, "--figures", {"schedules-soc.vl.json", "schedules-soc.svg"}},
     };
     for (const auto* option : {"--output", "--table", "--curves", "--constants"}) {
@@ -165,6 +170,14 @@ void make_inputs(const std::filesystem::path& folder) {
             folder / "folder" / (std::string("b") + ending));
         put(source / "logs" / (std::string("opterra_synthetic_04") + ending),
             folder / "folder" / "odd" / (std::string("c") + ending));
+    }
+    for (const char flight :
+         {'1', '2', '3', '4', '5'}) {  // on dates of their own, which the clock of their .log is not
+        const auto from = source / "logs" / (std::string("opterra_synthetic_0") + flight);
+        const auto to = folder / "dated" / (std::string("26_0") + flight + "_05__10_00_00");
+        put(from.string() + ".data", to.string() + ".data");
+        write_file_atomically(to.string() + ".log", std::regex_replace(read_file(from.string() + ".log"),
+                                                                       std::regex("time_of_day=\"[^\"]*\""), ""));
     }
     const auto card = test::card_log(read_file(folder / "a.data"), telemetry::read_message_dictionary(folder / "a.log"),
                                      test::LinkVersion::v2);

@@ -23,6 +23,11 @@ quiet "$bin/flightwatt-batch" "$source/logs" -o "$pages/six"
 quiet "$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml -o "$pages/six.html"
 "$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml --json >"$pages/six.json" 2>/dev/null
 
+# Two folders on one page: one flight is in both.
+quiet "$bin/flightwatt-batch" "$source"/logs/opterra_synthetic_0[1-2].data -o "$pages/first"
+quiet "$bin/flightwatt-batch" "$source"/logs/opterra_synthetic_0[2-3].data --order 2 -o "$pages/second"
+quiet "$bin/flightwatt-report" "$pages/first" "$pages/second" "$source"/missions/paper/phased.toml -o "$pages/folders.html"
+
 # Names that a page must not believe.
 log=$source/logs/opterra_synthetic_01
 names=('<script>window.hacked=1<:script>' '"quoted" & '"'single'" 'αβγ ✈ 無人機' "$(printf 'f%.0s' {1..230})" '</script' '-->')

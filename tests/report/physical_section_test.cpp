@@ -1,4 +1,4 @@
-#include "report/physical_section.h"
+#include "report/model_section.h"
 
 #include "helpers/generated_motion.h"
 

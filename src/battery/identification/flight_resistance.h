@@ -1,11 +1,10 @@
 #pragma once
 
 #include "battery/battery.h"
-#include "battery/identification/aligned_fit.h"
 
+#include <cstddef>
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace flightwatt::battery {
 
@@ -17,11 +16,6 @@ struct FlightResistance {
     Interval interval_ohm;           ///< 95 %, not below 0
     double charge_ah_per_ohm = 0.0;  ///< how far an error of it moves the initial charge that its voltage tells
 };
-
-/// Of each record, where the curve and the RC pair are those of all and its own initial charge is free; by least squares
-/// over its samples under load, with the jackknife over a dozen blocks of its time. None where its current or charge
-/// varies too little.
-std::vector<std::optional<FlightResistance>> flight_resistances(const AlignedFit& aligned);
 
 /// The standard deviation of resistances between flights: of what they differ by more than their errors say, and of 15 %,
 /// as packs differ within some 8 K, which counts as one further flight.

@@ -207,7 +207,7 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     if (call.has("mix-aircraft")) return used.counting();
     if (const auto mix = describe_mix(used.flown()); !mix.empty()) {
         throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),
-                         "use one aircraft's alone, or all as if they were of one with --mix-aircraft");
+                         "use one aircraft's alone, or let all in with --mix-aircraft");
     }
     return used.counting();
 }

@@ -1,0 +1,155 @@
+#include "base/error.h"
+#include "base/units.h"
+#include "flight/flight_identity.h"
+#include "report/trends_section.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace flightwatt::report {
+namespace {
+
+std::optional<double> per(const std::optional<double>& energy_wh, const std::optional<double>& much) {
+    if (!energy_wh || !much || *much <= 0.0) return std::nullopt;
+    return *energy_wh / *much;
+}
+
+constexpr double metres_per_km = 1000.0;
+
+constexpr std::array<TrendQuantity, 6> quantities{{
+    {"energy_wh_per_min", "energy [Wh/min]",
+     [](const FlownFlight& f) { return per(f.facts.energy_wh, units::minute_from_second(f.facts.in_air_s)); }},
+    {"energy_wh_per_km", "ground [Wh/km]",
+     [](const FlownFlight& f) { return per(f.facts.energy_wh, f.facts.distance_m.value_or(0.0) / metres_per_km); }},
+    {"energy_wh_per_air_km", "air [Wh/km]",
+     [](const FlownFlight& f) { return per(f.facts.energy_wh, f.facts.air_distance_m.value_or(0.0) / metres_per_km); }},
+    {"cruise_power_w", "cruise [W]", [](const FlownFlight& f) { return f.facts.cruise_power_w; }},
+    {"resistance_ohm", "pack [ohm]",
+     [](const FlownFlight& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; }},
+    {"capacity_ah", "pack [Ah]", [](const FlownFlight& f) { return f.capacity_ah; }},
+}};
+
+std::vector<std::string> aircraft_names(std::span<const FlownFlight> flights) {
+    std::vector<std::string> names;
+    names.reserve(flights.size());
+    for (const auto& flight : flights) names.push_back(flight.aircraft);
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+}
+
+/// Of one aircraft's flights; what is not known of them and why, or empty.
+std::string add_wear_of(std::span<FlownFlight* const> flown, std::size_t most) {
+    if (flown.empty()) return "";
+    constexpr auto single = "no capacity of a single flight: it is told by how flights differ";
+    if (flown.size() > most)
+        return fmt::format("no resistance and no capacity of {} flights, expected {} at most", flown.size(), most);
+    std::vector<battery::DischargeRecord> records;
+    records.reserve(flown.size());
+    for (const auto* flight : flown) records.push_back(flight->records.front());
+    battery::BatteryIdentification identified;
+    try {
+        identified = identify_battery(records, {.capacity_ah = {}, .cells = {}, .name = "", .with_capacities = true});
+    } catch (const NoAnswerError& error) {
+        return fmt::format("no resistances and no capacities: {}", error.what());
+    }
+    std::size_t without = 0;
+    for (std::size_t i = 0; i < flown.size(); ++i) {
+        flown[i]->resistance = identified.flights.at(i).resistance;
+        const auto& capacity = identified.flights.at(i).capacity;
+        if (!capacity) {
+            ++without;
+            continue;
+        }
+        const double mean_ah = identified.capacity.value_ah;
+        flown[i]->capacity_ah = mean_ah * capacity->ratio;
+        flown[i]->capacity_interval_ah = {mean_ah * capacity->ratio_interval.low,
+                                          mean_ah * capacity->ratio_interval.high};
+    }
+    if (without == 0) {
+        const bool is_guess = identified.capacity.origin == battery::CapacityOrigin::chart;
+        return is_guess
+                   ? "the level of the capacities is a guess after the usual chart of LiPo cells; how they differ is told"
+                   : "";
+    }
+    if (flown.size() == 1) return single;
+    return fmt::format("no capacity of {} of {} flights: what they draw does not tell it within 15 %", without,
+                       flown.size());
+}
+
+}  // namespace
+
+std::span<const TrendQuantity> trend_quantities() { return quantities; }
+
+FlownFlight flown_flight(const ReportFlight& flight) {
+    FlownFlight flown;
+    flown.name = flight.name;
+    flown.aircraft = flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name);
+    flown.facts = facts_of(flight);
+    try {
+        flown.records = battery::discharge_records(flight.series).records;
+    } catch (const InputError& error) {
+        flown.no_record = error.what();
+    }
+    for (const auto& record : flown.records) flown.charge_ah = flown.charge_ah.value_or(0.0) + record.charge_ah.back();
+    return flown;
+}
+
+std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::size_t most) {
+    std::vector<std::string> notes;
+    for (const auto& aircraft : aircraft_names(flights)) {
+        std::vector<FlownFlight*> flown;
+        for (auto& flight : flights)
+            if (flight.aircraft == aircraft && !flight.records.empty()) flown.push_back(&flight);
+        const auto note = add_wear_of(flown, most);
+        if (!note.empty()) notes.push_back(fmt::format("{}: {}", aircraft, note));
+    }
+    return notes;
+}
+
+std::vector<AircraftTrend> trends_of(std::span<const FlownFlight> flights) {
+    constexpr double seconds_per_day = 86400.0;
+    std::vector<AircraftTrend> trends;
+    for (const auto& aircraft : aircraft_names(flights)) {
+        for (const auto& [name, title, of] : quantities) {
+            AircraftTrend trend{aircraft, name, {}, {}};
+            for (const auto& flight : flights) {
+                const auto value = of(flight);
+                if (flight.aircraft == aircraft && flight.facts.start_clock_s && value)
+                    trend.values.push_back({*flight.facts.start_clock_s / seconds_per_day, *value});
+            }
+            trend.answer = trend_over(trend.values);
+            if (trend.values.empty()) trend.answer.why_not = "of no flight with a date is it known";
+            trends.push_back(std::move(trend));
+        }
+    }
+    return trends;
+}
+
+std::string trend_verdict(const AircraftTrend& trend) {
+    const auto& told = trend.answer.trend;
+    if (!told) return "none: " + trend.answer.why_not;
+    if (!is_significant(*told)) return "none to be seen";
+    return told->per_day > 0.0 ? "rises" : "falls";
+}
+
+TextTable trend_table(std::span<const AircraftTrend> trends) {
+    TextTable table{{"aircraft", "quantity", "flights", "median", "in 30 days", "low", "high", "verdict"}, {}};
+    for (const auto& row : trends) {
+        std::vector<std::string> cells{row.aircraft, row.quantity};
+        if (const auto& trend = row.answer.trend) {
+            cells.push_back(fmt::format("{}", trend->flights));
+            for (const double value : {trend->median, trend_days * trend->per_day, trend_days * trend->low_per_day,
+                                       trend_days * trend->high_per_day})
+                cells.push_back(fmt::format("{:.3g}", value));
+        } else {
+            cells.insert(cells.end(), 5, "-");
+        }
+        cells.push_back(trend_verdict(row));
+        table.rows.push_back(std::move(cells));
+    }
+    return table;
+}
+
+}  // namespace flightwatt::report

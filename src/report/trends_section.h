@@ -1,0 +1,72 @@
+#pragma once
+
+#include "base/text_table.h"
+#include "batch/trend.h"
+#include "battery/identification.h"
+#include "report/batch_content.h"
+#include "report/flight_facts.h"
+#include "report/html.h"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flightwatt::report {
+
+/// One flight, with all that may change with age.
+struct FlownFlight {
+    std::string name;
+    std::string aircraft;
+    FlightFacts facts;
+    std::vector<battery::DischargeRecord> records;
+    std::string no_record;  ///< why there are none of these
+    std::optional<battery::FlightResistance> resistance;
+    std::optional<double> capacity_ah;  ///< of the pack, where the flight tells it
+    battery::Interval capacity_interval_ah;
+    std::optional<double> charge_ah;  ///< drawn from the pack, on the ground too
+};
+
+/// `flight` was not rejected.
+FlownFlight flown_flight(const ReportFlight& flight);
+
+/// Resistance and capacity of each flight, by the pack that all flights of an aircraft tell together: the charge that
+/// each draws for its way down their common curve of voltage (battery/identification/flight_wear.h). What is not known
+/// and why, an aircraft a line. The work grows with the square of an aircraft's flights, so that `most` are taken.
+std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::size_t most);
+
+struct TrendQuantity {
+    const char* name;   ///< with its unit, as in files
+    const char* title;  ///< as in figures, short
+    std::optional<double> (*of)(const FlownFlight&);
+};
+
+/// What has a trend. The charge that was drawn has none: it says how long the flight was.
+std::span<const TrendQuantity> trend_quantities();
+
+/// A quantity of one aircraft over its flights' dates.
+struct AircraftTrend {
+    std::string aircraft;
+    std::string quantity;
+    std::vector<batch::DatedValue> values;  ///< days since 1970
+    batch::TrendAnswer answer;
+};
+
+/// Of each aircraft, all quantities.
+std::vector<AircraftTrend> trends_of(std::span<const FlownFlight> flights);
+
+/// Slopes are told of this many days.
+inline constexpr double trend_days = 30.0;
+
+/// "rises", "falls" or "none to be seen"; of one that has no trend "none" and why.
+std::string trend_verdict(const AircraftTrend& trend);
+
+/// A row an aircraft and quantity.
+TextTable trend_table(std::span<const AircraftTrend> trends);
+
+/// Those that are told over the flights' dates, with the table of all. std::nullopt where none is told.
+std::optional<Section> trends_section(std::span<const AircraftTrend> trends);
+
+}  // namespace flightwatt::report

@@ -1,0 +1,123 @@
+// Trends of flights whose ageing is known.
+
+#include "report/trends_section.h"
+
+#include "helpers/aged_flights.h"
+
+#include <map>
+#include <random>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::report {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double seconds_per_day = 86400.0;
+constexpr double fresh_w = 40.0;
+
+/// Flights of a pack that ages, of an aircraft whose cruise takes `part_a_day` more power.
+std::vector<FlownFlight> flown(const test::AgedFlights& aged, double part_a_day, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<FlownFlight> flights;
+    for (std::size_t f = 0; f < aged.day.size(); ++f) {
+        FlownFlight flight;
+        flight.name = "f" + std::to_string(f);
+        flight.aircraft = "7 Wing";
+        flight.facts.start_clock_s = seconds_per_day * aged.day[f];
+        flight.facts.cruise_power_w = fresh_w * (1.0 + part_a_day * aged.day[f] + 0.02 * normal(random));
+        flight.records = {aged.records[f]};
+        flights.push_back(std::move(flight));
+    }
+    return flights;
+}
+
+std::map<std::string, batch::Trend> told(const std::vector<AircraftTrend>& trends) {
+    std::map<std::string, batch::Trend> by_quantity;
+    for (const auto& trend : trends)
+        if (trend.answer.trend) by_quantity[trend.quantity] = *trend.answer.trend;
+    return by_quantity;
+}
+
+constexpr std::size_t seeds = 20;
+
+TEST(Trends, HoldTheAgeingThatIsThere) {
+    const test::Ageing ageing{0.0001, 0.001, 9};
+    constexpr double power_part_a_day = 0.002;
+    std::map<std::string, std::size_t> held;
+    std::map<std::string, std::size_t> found;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        auto flights = flown(test::aged_flights(ageing, seed), power_part_a_day, seed);
+        add_pack_wear(flights, 60);
+        for (const auto& flight : flights) EXPECT_TRUE(flight.capacity_ah) << flight.name << " of seed " << seed;
+        double level_ah = 0.0;
+        for (const auto& flight : flights) level_ah += flight.capacity_ah.value_or(0.0) / 9.0;
+        // The capacity's level is the chart's guess; its part of that a day is what the flights tell.
+        const double fresh_ah = level_ah / (1.0 - ageing.part_a_day * ageing.days / 2.0);
+        const std::map<std::string, double> truth{{"cruise_power_w", power_part_a_day * fresh_w},
+                                                  {"resistance_ohm", ageing.ohm_a_day},
+                                                  {"capacity_ah", -ageing.part_a_day * fresh_ah}};
+        const auto trends = told(trends_of(flights));
+        for (const auto& [quantity, per_day] : truth) {
+            ASSERT_TRUE(trends.contains(quantity)) << quantity << " of seed " << seed;
+            const auto& trend = trends.at(quantity);
+            held[quantity] += trend.low_per_day <= per_day && per_day <= trend.high_per_day ? 1 : 0;
+            found[quantity] += is_significant(trend) && trend.per_day * per_day > 0.0 ? 1 : 0;
+        }
+    }
+    for (const auto* quantity : {"cruise_power_w", "resistance_ohm", "capacity_ah"}) {
+        EXPECT_GE(held[quantity], seeds - 3) << quantity;
+        EXPECT_GE(found[quantity], seeds - 1) << quantity;
+    }
+}
+
+TEST(Trends, AreNotFoundWhereNothingAges) {
+    std::size_t judged = 0;
+    std::size_t found = 0;
+    for (std::uint64_t seed = 11; seed < 11 + seeds; ++seed) {
+        auto flights = flown(test::aged_flights({0.0, 0.0, 9}, seed), 0.0, seed);
+        add_pack_wear(flights, 60);
+        for (const auto& [quantity, trend] : told(trends_of(flights))) {
+            ++judged;
+            found += is_significant(trend) ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(judged, 3 * seeds);
+    EXPECT_LE(found, 7U) << "one in 20 by chance";
+}
+
+TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
+    std::vector<FlownFlight> flights(4);
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+        flights[f].aircraft = "7 Wing";
+        flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
+        flights[f].facts.cruise_power_w = fresh_w + static_cast<double>(f);
+    }
+    EXPECT_FALSE(trends_section(trends_of(flights)));
+    flights.push_back(flights.back());
+    flights.back().facts.start_clock_s = seconds_per_day * 9.0;
+    flights.back().facts.cruise_power_w = fresh_w + 9.0;
+    const auto section = trends_section(trends_of(flights));
+    ASSERT_TRUE(section);
+    ASSERT_EQ(section->figures.size(), 1U);
+    EXPECT_EQ(section->figures.front().id, "trends-1");
+    EXPECT_THAT(section->figures.front().description, HasSubstr("cruise [W]: 42, +30 in 30 days"));
+    EXPECT_THAT(section->html, HasSubstr("rises"));
+}
+
+TEST(PackWear, SaysWhatIsNotKnown) {
+    std::vector<FlownFlight> flights(2);
+    for (auto& flight : flights) {
+        flight.aircraft = "7 Wing";
+        flight.records.resize(1);
+    }
+    EXPECT_EQ(add_pack_wear(flights, 1),
+              std::vector<std::string>{"7 Wing: no resistance and no capacity of 2 flights, expected 1 at most"});
+}
+
+}  // namespace
+}  // namespace flightwatt::report
