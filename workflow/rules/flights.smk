@@ -33,9 +33,9 @@ rule batch:
     params:
         program=FLIGHTWATT,
         folder=f"{OUT}/chunks/{{chunk}}",
+        # No log of the rule: Snakemake would empty it when the job is done again.
+        log=f"{OUT}/chunks/{{chunk}}.log",
     threads: config["chunk_threads"]
-    log:
-        f"{OUT}/chunks/{{chunk}}.log",
     script:
         "../scripts/batch_chunk.py"
 

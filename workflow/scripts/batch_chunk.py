@@ -21,12 +21,13 @@ def run(program, list_file, folder, threads, log):
     command = [program, "batch", "--jobs", str(threads), "-o", folder, "--", *present]
     status = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=log).returncode
     # The catalogue is written when all logs were looked at, and whatever comes of a fit follows it.
-    if status == DONE or (status in (INPUT_REJECTED, NO_ANSWER) and os.path.exists(os.path.join(folder, "flights.csv"))):
+    has_catalogue = os.path.exists(os.path.join(folder, "flights.csv"))
+    if status == DONE or (status in (INPUT_REJECTED, NO_ANSWER) and has_catalogue):
         return
     sys.exit(f"batch_chunk: error: flightwatt batch ended with {status}; see {log.name}")
 
 
-with open(snakemake.log[0], "a") as log_file:
+with open(snakemake.params.log, "a") as log_file:
     run(snakemake.params.program, snakemake.input[0], snakemake.params.folder, snakemake.threads, log_file)
 with open(snakemake.output[0], "w"):
     pass

@@ -22,7 +22,10 @@ def used_flights(folders):
 flights = used_flights(snakemake.params.folders)
 count = min(snakemake.params.flights, len(flights))
 if count < 2:
-    sys.exit(f"validate_some: error: {len(flights)} flights can be used; leaving one out needs 2: validation_flights: 0")
+    sys.exit(
+        f"validate_some: error: {count} flights of {len(flights)} that can be used, and leaving one out needs 2; "
+        "set validation_flights: 0"
+    )
 chosen = [flights[i * len(flights) // count] for i in range(count)]
 with open(snakemake.log[0], "w") as log, open(snakemake.output[0], "w") as out:
     command = [snakemake.params.program, "validate", "--json", "--", *chosen]
