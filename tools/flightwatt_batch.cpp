@@ -25,6 +25,8 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <iostream>
+#include <iterator>
 #include <mutex>
 #include <optional>
 
@@ -164,6 +166,7 @@ batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechani
     options.out = *call.output;
     options.load = cli::read_flight_options(call);
     options.jobs = static_cast<unsigned>(cli::count_option(call, "jobs", 0, 256));
+    options.keeps_samples = !call.has("no-fit");
     options.needed_samples = mechanical::samples_needed(fit_options.phases.order);
     return options;
 }
@@ -217,6 +220,13 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
             cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
             return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
         }
+        if (call.has("no-fit")) {
+            remove_model(call, options.out);
+            cli::note(call, fmt::format("nothing was fitted; next: flightwatt fit {} -o MODEL.toml",
+                                        cli::typed_in_shell(options.out.string())));
+            cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
+            return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
+        }
         refuse_mix(call, flights, options.out);
         auto [fit, physical] = fit_batch(call, flights, options.out);
         fit.copies = copies;
@@ -251,9 +261,23 @@ std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, std::vector<
     return kept;
 }
 
+/// The paths of --files-from. Throws UsageError where neither it nor the command names a log.
+std::vector<std::string> listed_logs(const cli::StageCall& call) {
+    const auto list = call.maybe<std::string>("files-from");
+    if (!list && call.inputs.empty()) throw UsageError("no log given: expected LOG, FOLDER or --files-from LIST");
+    if (!list) return {};
+    const auto text = *list == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : read_file(*list);
+    auto paths = batch::listed_paths(text);
+    if (paths.empty() && call.inputs.empty()) {
+        throw InputError({*list == "-" ? "the standard input" : *list}, "names no log",
+                         "expected the path of a log in each line");
+    }
+    return paths;
+}
+
 /// What the run will do to the folder, before it does it. Patterns of --exclude become names in `options`.
 batch::BatchPlan make_plan(const cli::StageCall& call, batch::BatchOptions& options) {
-    auto logs = chosen_logs(call, batch::find_logs(call.inputs));
+    auto logs = chosen_logs(call, batch::find_logs(call.inputs, listed_logs(call)));
     for (const auto& log : logs) {
         note_input(log.path);
         if (const auto file = telemetry::find_log_file(log.path)) note_input(*file);
@@ -338,6 +362,7 @@ listed and excluded from the fit; its first line says why.
 
 SIGINT (Ctrl-C), SIGTERM and SIGHUP end it within a second, with exit code 130, 143 and 129. However it
 ended, the same command goes on where it stopped and comes to the same results.)"};
+    stage.min_inputs = 0;  // or --files-from
     stage.shows_table = true;
     stage.output_help = "the folder of the results";
     cli::add_fit_options(stage.options);
@@ -345,6 +370,9 @@ ended, the same command goes on where it stopped and comes to the same results.)
     auto add = stage.options.add_options();
     add("name", cli::value("NAME")->default_value("batch"), "the model's name");
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");
+    add("files-from", cli::input_file("LIST"),
+        "also the logs that LIST names, one path a line; - is the standard input. One that is not there is rejected");
+    add("no-fit", "write OUT/flights and OUT/flights.csv alone: flightwatt fit fits the folders of several batches");
     add("prune", "drop the flights of earlier runs that are not among the logs given");
     add("jobs", cli::value("N")->default_value("0", "one a core"), "logs at a time");
     cli::add_choice_options(stage.options);

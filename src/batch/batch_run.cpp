@@ -193,6 +193,17 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     return done;
 }
 
+/// Leaves what tells which phases would be fitted.
+void drop_samples(mechanical::MeasuredFlights& selection) {
+    for (auto& flight : selection.flights) {
+        for (const auto phase : flight::all_phases)
+            if (auto& samples = flight.samples.phases[phase]) samples.emplace();
+        flight.power = {};
+        flight.motion = {};
+        flight.cruise_ahead = {};
+    }
+}
+
 }  // namespace
 
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
@@ -204,6 +215,7 @@ std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const Batch
     std::size_t done = 0;
     const auto work = [&](std::size_t i) {
         flights[i] = do_log(logs[i], options);
+        if (!options.keeps_samples) drop_samples(flights[i].selection);
         const std::lock_guard lock(mutex);
         progress(++done, logs.size(), flights[i]);
     };

@@ -20,6 +20,7 @@ struct BatchOptions {
     flight::LoadOptions load;
     unsigned jobs = 0;  ///< logs at a time; 0: one a core
     std::size_t needed_samples = 8;
+    bool keeps_samples = true;  ///< for a fit; false: of thousands of flights they would fill the memory
     WriteGate* gate = nullptr;  ///< passed to write a file, if there is one
 };
 

@@ -101,7 +101,17 @@ std::string free_flight_name(const std::filesystem::path& log, const std::set<st
     return free;
 }
 
-std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
+std::vector<std::string> listed_paths(std::string_view text) {
+    std::vector<std::string> paths;
+    while (!text.empty()) {
+        const auto line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(text.size(), line.size() + 1));
+        if (!line.empty()) paths.emplace_back(line);
+    }
+    return paths;
+}
+
+std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std::vector<std::string>& listed) {
     std::vector<LogFile> logs;
     for (const auto& input : inputs) {
         std::error_code error;
@@ -118,6 +128,14 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs) {
                              "expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
         }
         logs.push_back({input, {}, {}});
+    }
+    for (const auto& path : listed) {
+        std::error_code error;
+        if (std::filesystem::is_directory(path, error)) {
+            add_folder(path, path, logs);
+        } else {
+            logs.push_back({path, {}, {}});
+        }
     }
     logs = each_once(std::move(logs));
     if (logs.empty()) {

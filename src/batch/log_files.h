@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::batch {
@@ -23,7 +24,11 @@ struct LogFile {
 /// not-fitted.txt, whose first line says why. A folder that cannot be listed stands among them with its problem.
 /// Throws InputError for an input that does not exist, where there is no log at all, or for a not-fitted.txt that
 /// does not say why.
-std::vector<LogFile> find_logs(const std::vector<std::string>& inputs);
+/// What is `listed` stands among them as it is: a log that is not there is one that cannot be used.
+std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std::vector<std::string>& listed = {});
+
+/// The paths of a text that names one a line: what stands in a line is the path. Empty lines are passed over.
+std::vector<std::string> listed_paths(std::string_view text);
 
 /// The log's own name, shortened where no file could be called so, or, where that is taken, the next free one of
 /// NAME_2, NAME_3, ...

@@ -130,5 +130,19 @@ TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {
     EXPECT_THAT(rejected([&] { find_logs({folder.string()}); }), testing::HasSubstr("not-fitted.txt:1"));
 }
 
+TEST(ListedPaths, AreLinesAsTheyStand) {
+    EXPECT_THAT(listed_paths(""), ElementsAre());
+    EXPECT_THAT(listed_paths("a.data\n\n b c.data\n#d.data"), ElementsAre("a.data", " b c.data", "#d.data"));
+}
+
+TEST(FindLogs, TakesWhatIsListedAsItIs) {
+    const auto folder = test::scratch_dir();
+    const auto there = touch(folder / "there.data").string();
+    const auto gone = (folder / "gone.data").string();
+    EXPECT_THAT(names(find_logs({}, {there, gone})), ElementsAre("gone", "there"));
+    EXPECT_THAT(names(find_logs({there}, {there})), ElementsAre("there"));
+    EXPECT_THAT(names(find_logs({}, {folder.string()})), ElementsAre("there"));
+}
+
 }  // namespace
 }  // namespace flightwatt::batch

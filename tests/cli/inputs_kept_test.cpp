@@ -86,6 +86,7 @@ std::vector<Command> commands() {
          {"a.log", "missions/paper/phased.toml", "fits/mechanical/opterra-table1.toml"},
          "--record"},
         {"batch", "a.data s.series.csv --published " + model, flight_files + Words{model}, "--output", flight_names},
+        {"batch", "--no-fit --files-from list.txt", {"a.data", "a.log", "list.txt"}, "--output", {"flights.csv"}},
         {"batch",
          "folder --published " + model,
          {"folder/b.data", "folder/b.log", "folder/odd/not-fitted.txt", model},
@@ -193,7 +194,7 @@ void make_inputs(const std::filesystem::path& folder) {
         "[sampler]\nkind = \"recorded\"\nfile = \"rec/part-{fps}.csv\"\nidle_file = \"rec/idle.csv\"\n"
         "[components.part]\nqos = { fps = [5, 10] }\n");
     const auto made = test::run_shell(
-        "flightwatt parse s.data -o s.series.csv && flightwatt fit a.data s.data -o spread.toml && "
+        "flightwatt parse s.data -o s.series.csv && echo a.data > list.txt && flightwatt fit a.data s.data -o spread.toml && "
         "flightwatt batch a.data -o batch",
         folder);
     ASSERT_EQ(made.code, 0) << made.err;
