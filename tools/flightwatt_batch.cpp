@@ -129,6 +129,26 @@ FittedBatch fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight
     }
 }
 
+/// Of all that the model and its tables are made from.
+std::string fingerprint_of(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights,
+                           const std::map<std::string, std::string>& copies, const batch::BatchOptions& options,
+                           const std::optional<mechanical::MechanicalModel>& published) {
+    auto fit_options = read_fit_options(call);
+    fit_options.name = call.get<std::string>("name");
+    auto more =
+        (cli::is_physical(call) ? "physical\n" : "fourier\n") + (published ? to_toml(*published) : std::string());
+    for (const auto& [flight, other] : copies) more += fmt::format("{}\n{}\n", flight, other);
+    for (const auto* names : {&options.load.excluded, &options.load.keep})
+        more += fmt::format("{}: {}\n", names->size(), fmt::join(*names, "\n"));
+    return batch::fingerprint_of_fit(flights, fit_options, more);
+}
+
+/// What an earlier run fitted.
+FittedBatch known_fit(const std::filesystem::path& out) {
+    const OwnFiles own;
+    return {batch::read_batch_fit(out).value(), std::nullopt};
+}
+
 /// One model of several aircraft is a model of none.
 void refuse_mix(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights,
                 const std::filesystem::path& out) {
@@ -228,12 +248,16 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
             return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
         }
         refuse_mix(call, flights, options.out);
-        auto [fit, physical] = fit_batch(call, flights, options.out);
+        const auto made_from = fingerprint_of(call, flights, copies, options, published);
+        const bool is_known = !cli::is_physical(call) && batch::is_fit_of(options.out, made_from);
+        auto [fit, physical] = is_known ? known_fit(options.out) : fit_batch(call, flights, options.out);
         fit.copies = copies;
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
+        fit.made_from = made_from;
         const auto table = cli::table_of(fit.model, published);
-        write_model(fit, table, options);
+        if (is_known) cli::note(call, "nothing has changed: the model is as it was");
+        if (!is_known) write_model(fit, table, options);
         warn_of_model(call, fit.model);
         auto json = cli::to_json(fit.model);
         if (physical) json["physical"] = cli::physical_json(*physical);

@@ -2,6 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_use.h"
+#include "base/fingerprint.h"
 #include "base/toml_reader.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
@@ -97,12 +99,70 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
     }
 }
 
+/// Of the files of a fit but fit.json, and of its content.
+std::string seal_of(const std::filesystem::path& out, const Json& json) {
+    const OwnFiles own;
+    Fingerprint seal;
+    seal.add(json.dump());
+    for (const auto* name : model_names) {
+        if (std::string_view(name) == fit_name) continue;
+        seal.add(name);
+        if (std::filesystem::exists(out / name)) seal.add(read_file(out / name));
+    }
+    return seal.hex();
+}
+
+/// All of the options, as text.
+std::string text_of(const mechanical::ModelFitOptions& options) {
+    auto json = options_json(options);
+    json["name"] = options.name;
+    json["loss"] = to_string(options.phases.loss);
+    json["curve"] = to_string(options.phases.curve);
+    json["level"] = options.level_covariate ? to_string(*options.level_covariate) : "";
+    for (const auto phase : flight::all_phases) json[std::string(to_string(phase))] = options.order(phase);
+    return json.dump();
+}
+
 }  // namespace
+
+std::string fingerprint_of_fit(const std::vector<BatchFlight>& flights, const mechanical::ModelFitOptions& options,
+                               const std::string& more) {
+    Fingerprint fingerprint;
+    const auto add = [&](std::string_view text) {
+        fingerprint.add(fmt::format("{}:", text.size()));  // or two texts could be taken for others
+        fingerprint.add(text);
+    };
+    add(FLIGHTWATT_VERSION);
+    add(text_of(options));
+    add(more);
+    for (const auto& [record, was_up_to_date, is_of_this_run, is_kept, selection] : flights) {
+        add(record.flight);
+        add(record.results);
+        add(record.fingerprint);
+        for (const auto& measured : selection.flights) {
+            add(measured.samples.flight);
+            for (const auto phase : flight::all_phases) add(measured.samples.phases[phase] ? "+" : "-");
+        }
+    }
+    return fingerprint.hex();
+}
+
+bool is_fit_of(const std::filesystem::path& out, const std::string& made_from) {
+    const OwnFiles own;
+    try {
+        auto json = Json::parse(read_file(out / fit_name, most_fit_bytes), require_shallow);
+        const auto seal = json.at("seal").get<std::string>();
+        json.erase("seal");
+        return json.at("made_from").get<std::string>() == made_from && seal == seal_of(out, json);
+    } catch (const std::exception&) {
+        return false;  // none, or of another version: it is made anew
+    }
+}
 
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options) {
     auto fitted = fit_model(flights, options);
     const auto analyses = mechanical::analyse_model(fitted);
-    BatchFit fit{options, {}, {}, {}, {}, curve_bands(fitted, analyses)};
+    BatchFit fit{options, {}, {}, {}, {}, curve_bands(fitted, analyses), {}};
     fit.model = std::move(fitted.model);
     return fit;
 }
@@ -112,11 +172,6 @@ void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
     for (const auto phase : flight::all_phases) bands[std::string(to_string(phase))] = band_json(fit.bands[phase]);
     Json copies = Json::array();
     for (const auto& [flight, other] : fit.copies) copies.push_back({{"flight", flight}, {"of", other}});
-    const Json json{{"format", format_version}, {"options", options_json(fit.options)},
-                    {"exclude", fit.excluded},  {"keep", fit.keep},
-                    {"copies", copies},         {"bands", bands}};
-    write_file_atomically(out / fit_name, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n",
-                          out / unfinished_folder);
     write_file_atomically(out / model_errors_name, to_toml(fit.model), out / unfinished_folder);
     auto plain = fit.model;
     for (auto& phase : plain.phases.values) {
@@ -124,6 +179,17 @@ void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
         phase.spread.reset();
     }
     write_file_atomically(out / model_name, to_toml(plain), out / unfinished_folder);
+    const auto text = [](const Json& of) { return of.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; };
+    const Json json{{"format", format_version},
+                    {"options", options_json(fit.options)},
+                    {"exclude", fit.excluded},
+                    {"keep", fit.keep},
+                    {"copies", copies},
+                    {"made_from", fit.made_from},
+                    {"bands", bands}};
+    auto sealed = Json::parse(text(json));  // as it will be read: numbers and names that are no UTF-8
+    sealed["seal"] = seal_of(out, sealed);
+    write_file_atomically(out / fit_name, text(sealed), out / unfinished_folder);
 }
 
 std::optional<BatchFit> read_batch_fit(const std::filesystem::path& out) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "batch/batch_run.h"
 #include "mechanical/model_errors.h"
 #include "mechanical/model_fit.h"
 
@@ -8,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace flightwatt::batch {
 
@@ -19,7 +21,16 @@ struct BatchFit {
     std::map<std::string, std::string> copies;  ///< flights that are another one under a second name, and which
     mechanical::MechanicalModel model;          ///< with its errors
     flight::PerPhase<mechanical::CurveBand> bands;
+    std::string made_from;  ///< see fingerprint_of_fit; empty: not to be recognised
 };
+
+/// Of all that a fit is made from: the flights as they are recorded and selected, and how they are fitted. Equal where
+/// the same program would come to the same model.
+std::string fingerprint_of_fit(const std::vector<BatchFlight>& flights, const mechanical::ModelFitOptions& options,
+                               const std::string& more);
+
+/// Whether what write_batch_fit wrote into OUT was made from the same, and its files and tables are as they were written.
+bool is_fit_of(const std::filesystem::path& out, const std::string& made_from);
 
 /// Fits, analyses the errors and draws the bands. Throws what fit_model throws.
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options);

@@ -1,9 +1,8 @@
-#include "report/model_section.h"
-
 #include "base/error.h"
 #include "cli/output/physical_output.h"
 #include "mechanical/physical_fit.h"
 #include "report/figures/flight_figures.h"
+#include "report/model_section.h"
 
 #include <vector>
 

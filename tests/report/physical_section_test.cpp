@@ -1,6 +1,5 @@
-#include "report/model_section.h"
-
 #include "helpers/generated_motion.h"
+#include "report/model_section.h"
 
 #include <vector>
 
