@@ -11,7 +11,9 @@ function fitWidth(spec, width) {
     if (part === null || typeof part !== "object") return part;
     const fitted = Object.fromEntries(Object.entries(part).map(([key, value]) => [key, fitNames(value)]));
     if (fitted.legend?.columns) fitted.legend.columns = Math.max(1, Math.min(fitted.legend.columns, Math.floor(width / legendColumn)));
-    if (fitted.type === "text" && fitted.limit) fitted.limit = Math.min(fitted.limit, 0.22 * width);
+    // A name above a panel has the panel's width, one beside something less.
+    const room = fitted.baseline === "alphabetic" ? Math.max(leastPanel, 0.22 * width) : 0.22 * width;
+    if (fitted.type === "text" && fitted.limit) fitted.limit = Math.min(fitted.limit, room);
     if (fitted.axis?.labelLimit) fitted.axis.labelLimit = Math.min(fitted.axis.labelLimit, beside - 20);
     return fitted;
   };
