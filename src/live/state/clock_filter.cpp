@@ -11,6 +11,7 @@ bool ClockFilter::push(double time_s, std::string text, std::vector<Line>& belie
     if (started_ && (ahead_s > most_ahead_s || ahead_s < -most_step_s)) return hold(std::move(line), believed);
     unconfirmed_ += held_.size();
     held_.clear();
+    look_at_return(line);
     if (!started_ || is_guess_ || line.time_s > latest_s_ + late_s) near_latest_ = 0;
     latest_s_ = started_ && !is_guess_ ? std::max(latest_s_, line.time_s) : line.time_s;
     started_ = true;
@@ -36,9 +37,22 @@ void ClockFilter::look_at_late(Line& line) {
         latest_s_ = line.time_s;
         return;
     }
-    offset_s_ += latest_s_ - line.time_s;
+    stepped_back_s_ = latest_s_ - line.time_s;
+    stepped_at_s_ = latest_s_;
+    offset_s_ += stepped_back_s_;
     line.time_s = latest_s_;
     ++steps_back_;
+}
+
+/// Takes a step back that was none: lines out of order, of which this is one from ahead.
+void ClockFilter::look_at_return(Line& line) {
+    const double ahead_s = line.time_s - latest_s_;
+    if (latest_s_ > stepped_at_s_ + most_step_s) stepped_back_s_ = 0.0;
+    if (stepped_back_s_ == 0.0 || ahead_s < late_s || std::abs(ahead_s - stepped_back_s_) > late_s) return;
+    offset_s_ -= stepped_back_s_;
+    line.time_s -= stepped_back_s_;
+    stepped_back_s_ = 0.0;
+    --steps_back_;
 }
 
 bool ClockFilter::hold(Line line, std::vector<Line>& believed) {
@@ -52,6 +66,7 @@ bool ClockFilter::hold(Line line, std::vector<Line>& believed) {
     if (anew) {
         for (auto& held : held_) held.time_s -= offset_s_;
         offset_s_ = 0.0;
+        stepped_back_s_ = 0.0;
         pace_ = {};
     } else if (!is_guess_) {
         take_back_step();

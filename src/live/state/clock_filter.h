@@ -11,11 +11,12 @@
 namespace flightwatt::live {
 
 /// What to believe of the times that come in. A time more than 10 s ahead of the latest one, or a minute behind it,
-/// counts when four more behind it agree (a single one is a damaged line): forwards it is a gap, backwards the log or the
-/// aircraft began anew. Ten lines in a row more than 2 s behind the latest say that the clock went back: it goes on from
-/// where it was; or, where fewer than five lines had come near the latest, that the latest was damaged. Where lines
-/// arrive as fast as their clock goes, a clock that runs more than 10 s further ahead than the arrivals was set: it goes
-/// on after as long as nothing arrived.
+/// counts when four more behind it agree (a single one is a damaged line): forwards it is a gap, backwards the log or
+/// the aircraft began anew. Ten lines in a row more than 2 s behind the latest say that the clock went back: it goes on
+/// from where it was, unless within a minute a line is ahead by as much: then the lines only came out of order; or,
+/// where fewer than five lines had come near the latest, that the latest was damaged. Where lines arrive as fast as
+/// their clock goes, a clock that runs more than 10 s further ahead than the arrivals was set: it goes on after as long
+/// as nothing arrived.
 class ClockFilter {
   public:
     static constexpr double most_step_s = 60.0;
@@ -52,6 +53,7 @@ class ClockFilter {
   private:
     bool hold(Line line, std::vector<Line>& believed);
     void look_at_late(Line& line);
+    void look_at_return(Line& line);
     void take_back_step();
     void believe(Line line, std::vector<Line>& believed);
 
@@ -64,6 +66,8 @@ class ClockFilter {
     std::vector<Line> held_;
     std::size_t unconfirmed_ = 0;
     std::size_t steps_back_ = 0;
+    double stepped_back_s_ = 0.0;  ///< by the last step, as long as it may have been none
+    double stepped_at_s_ = 0.0;
     ReceiptPace pace_;
     double set_ahead_s_ = 0.0;
 };

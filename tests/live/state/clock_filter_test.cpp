@@ -1,5 +1,6 @@
 #include "live/state/clock_filter.h"
 
+#include <random>
 #include <string>
 #include <vector>
 
@@ -119,6 +120,36 @@ TEST(ClockFilter, AGuessGivesWayToWhatTheFirstLinesSay) {
     EXPECT_EQ(times_of(believed), (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0}));
     EXPECT_EQ(far.latest_s(), 5.0);
     EXPECT_EQ(far.unconfirmed(), 0U);
+}
+
+TEST(ClockFilter, LinesOutOfOrderDoNotMakeTheClockRunAway) {
+    constexpr double apart_s = 5.0;
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        std::mt19937 random(seed);
+        ClockFilter filter;
+        double time_s = 0.0;
+        std::vector<double> times;
+        for (int i = 0; i < 6000; ++i) {
+            time_s = 100.0 + 0.1 * i;
+            const double moved_s = i % 3 == 0 ? (random() % 2 == 0 ? apart_s : -apart_s) : 0.0;
+            times.push_back(time_s + moved_s);
+        }
+        pushed(filter, times);
+        EXPECT_LT(filter.latest_s(), time_s + 2.0 * apart_s) << seed;
+    }
+}
+
+TEST(ClockFilter, ABlockOfEarlierLinesIsNoStep) {
+    ClockFilter filter;
+    std::vector<double> times;
+    for (int i = 0; i < 3000; ++i) {
+        times.push_back(0.1 * i);
+        if (i % 300 != 299) continue;
+        for (int k = 0; k < 20; ++k) times.push_back(0.1 * (i - 50 + k));  // a second time, 5 to 3 s late
+    }
+    pushed(filter, times);
+    EXPECT_NEAR(filter.latest_s(), 299.9, 3.0);
+    EXPECT_LE(filter.steps_back(), 1U);
 }
 
 TEST(ClockFilter, AClockThatSteppedBackGoesOnFromWhereItWas) {
