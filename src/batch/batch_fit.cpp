@@ -64,6 +64,9 @@ mechanical::ModelFitOptions options_from(const Json& json) {
     return options;
 }
 
+/// To be raised with every change of the fit that changes a model: others are then made anew.
+constexpr auto fit_number = "fit 1";
+
 constexpr std::size_t most_fit_bytes = 16'000'000;  // fit.json has some 100 kB
 
 /// A file that nests without end would take a hundred times its size in memory.
@@ -133,6 +136,7 @@ std::string fingerprint_of_fit(const std::vector<BatchFlight>& flights, const me
         fingerprint.add(text);
     };
     add(FLIGHTWATT_VERSION);
+    add(fit_number);
     add(text_of(options));
     add(more);
     for (const auto& [record, was_up_to_date, is_of_this_run, is_kept, selection] : flights) {
