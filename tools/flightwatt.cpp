@@ -41,6 +41,7 @@ constexpr StageLine stages[] = {
     {"trends", "how aircraft and pack age: energy, power and resistance over the dates of flights"},
     {"battery", "flights to the battery that they were flown on"},
     {"batch", "parse, segment and fit every log of a folder, incrementally"},
+    {"merge", "join the folders of several batches into one"},
     {"profile", "software to its power by quality of service, measured while it runs"},
     {"new-mission", "a mission file to begin with, every key explained"},
     {"simulate", "a mission file to its state of charge over time"},

@@ -65,12 +65,16 @@ Destination destination_of(const std::filesystem::path& path) {
     return destination;
 }
 
+std::filesystem::path unfinished_name(const std::filesystem::path& folder) {
+    std::random_device random;
+    return folder / fmt::format("{}{:08x}{:08x}", unfinished_prefix, random(), random());
+}
+
 /// A new file in the folder, whose name does not depend on the result's: that may be as long as names can be.
 int open_unfinished(const std::filesystem::path& folder, std::filesystem::path& file) {
     constexpr int tries = 100;
     for (int i = 0; i < tries; ++i) {
-        std::random_device random;
-        file = folder / fmt::format("{}{:08x}{:08x}", unfinished_prefix, random(), random());
+        file = unfinished_name(folder);
         const int opened = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (opened >= 0 || errno != EEXIST) return opened;
     }
@@ -146,6 +150,18 @@ void write_file_atomically(const std::filesystem::path& path, const TextWriter& 
     if (unfinished.empty() || !replace(path, destination, write, unfinished)) {
         if (!replace(path, destination, write, beside)) fail(path, ENOENT);
     }
+    note_written(path);
+}
+
+void link_or_copy_file(const std::filesystem::path& source, const std::filesystem::path& path,
+                       const std::filesystem::path& unfinished) {
+    const auto link = unfinished_name(unfinished);
+    if (::link(source.c_str(), link.c_str()) != 0) return write_file_atomically(path, read_file(source), unfinished);
+    refuse_to_lose(path);
+    const bool is_done = ::rename(link.c_str(), path.c_str()) == 0;
+    const int error = errno;
+    ::unlink(link.c_str());  // rename does nothing where both are names of one file
+    if (!is_done) fail(path, error);
     note_written(path);
 }
 

@@ -25,6 +25,11 @@ using TextWriter = std::function<void(const TextSink&)>;
 void write_file_atomically(const std::filesystem::path& path, const TextWriter& write,
                            const std::filesystem::path& unfinished = {});
 
+/// Gives the file `path` the content of `source`: as a second name of it (a hard link), or, where the file systems
+/// cannot, as a copy. As atomically; what was at `path` is replaced. For files that are only ever replaced as a whole.
+void link_or_copy_file(const std::filesystem::path& source, const std::filesystem::path& path,
+                       const std::filesystem::path& unfinished);
+
 /// The name of a file that write_file_atomically has not renamed yet: ".flightwatt-" and sixteen hexadecimal digits.
 bool is_unfinished_name(std::string_view name);
 

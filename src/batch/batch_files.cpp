@@ -38,9 +38,9 @@ std::vector<ManifestFlight> stored_flights(const std::filesystem::path& out) {
     return flights;
 }
 
-StoredFlight read_flight(const std::filesystem::path& out, const ManifestFlight& listed) {
+/// Its record; damaged where its log is gone too.
+StoredFlight read_recorded(const std::filesystem::path& out, const ManifestFlight& listed) {
     const auto& name = listed.flight;
-    const auto folder = out / "flights";
     // No result is to replace the log either, of which all this was made.
     note_input(listed.place);
     if (const auto configuration = telemetry::find_log_file(listed.place)) note_input(*configuration);
@@ -53,13 +53,17 @@ StoredFlight read_flight(const std::filesystem::path& out, const ManifestFlight&
         flight.record.flight = name;
         flight.record.log = listed.log.string();
         flight.damage = fmt::format("{}: {}, and its log is gone", to_string(error.where()), error.what());
-        return flight;
     }
-    if (!flight.record.accepted) return flight;
+    return flight;
+}
+
+void read_series(const std::filesystem::path& out, StoredFlight& flight) {
+    if (!flight.record.accepted || !flight.damage.empty()) return;
+    const auto& name = flight.record.flight;
+    const auto folder = out / "flights";
     flight.series = flight::read_series_csv(folder / (name + series_ending));
     flight.series.flight = name;
     flight.phases = flight::read_phases_csv(folder / (name + phases_ending));
-    return flight;
 }
 
 }  // namespace
@@ -98,7 +102,11 @@ FlightRecord read_intact_record(const std::filesystem::path& out, const std::str
         throw InputError({file.string()},
                          "this is no record of a flight as this version wrote it: it was changed, or damaged", hint);
     }
-    record->flight = flight;  // JSON holds no name that is not UTF-8
+    if (record->flight != in_record(flight)) {
+        throw InputError({file.string()}, fmt::format("this is the record of {}: it was renamed", record->flight),
+                         hint);
+    }
+    record->flight = flight;
     if (record->accepted && (record->results.empty() || record->results != results_fingerprint(out, flight))) {
         throw InputError({(out / "flights" / (flight + series_ending)).string()},
                          "it or the phases beside it are not as the batch wrote them", hint);
@@ -107,6 +115,12 @@ FlightRecord read_intact_record(const std::filesystem::path& out, const std::str
 }
 
 std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out) {
+    auto flights = read_stored_records(out);
+    for_each_in_parallel(flights.size(), [&](std::size_t i) { read_series(out, flights[i]); });
+    return flights;
+}
+
+std::vector<StoredFlight> read_stored_records(const std::filesystem::path& out) {
     const auto folder = out / "flights";
     std::error_code none;
     if (!std::filesystem::is_directory(folder, none)) {
@@ -118,7 +132,7 @@ std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out) 
     for (const auto* name : model_names) note_input(out / name);
     const auto listed = stored_flights(out);
     std::vector<StoredFlight> flights(listed.size());
-    for_each_in_parallel(listed.size(), [&](std::size_t i) { flights[i] = read_flight(out, listed[i]); });
+    for_each_in_parallel(listed.size(), [&](std::size_t i) { flights[i] = read_recorded(out, listed[i]); });
     if (flights.empty()) {
         throw InputError({folder.string()}, "there is no record of a flight in it",
                          fmt::format("make them with: flightwatt batch LOGS -o {}", out.string()));

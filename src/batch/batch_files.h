@@ -50,4 +50,7 @@ struct StoredFlight {
 /// flight is given as damaged instead.
 std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out);
 
+/// The same without series and phases, which are compared with their fingerprints all the same.
+std::vector<StoredFlight> read_stored_records(const std::filesystem::path& out);
+
 }  // namespace flightwatt::batch

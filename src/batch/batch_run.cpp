@@ -40,8 +40,7 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     const auto& load = options.load;
     const auto& segmentation = load.segmentation;
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 8");
-    fingerprint.add(log.flight);
+    fingerprint.add(FLIGHTWATT_VERSION " record 9");
     fingerprint.add(log.path.string());
     fingerprint.add(load.aircraft_id.value_or(""));
     fingerprint.add(log.why_not_fitted);
@@ -193,7 +192,8 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     return done;
 }
 
-/// Leaves what tells which phases would be fitted.
+}  // namespace
+
 void drop_samples(mechanical::MeasuredFlights& selection) {
     for (auto& flight : selection.flights) {
         for (const auto phase : flight::all_phases)
@@ -203,8 +203,6 @@ void drop_samples(mechanical::MeasuredFlights& selection) {
         flight.cruise_ahead = {};
     }
 }
-
-}  // namespace
 
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
                                    const BatchProgress& progress) {

@@ -45,6 +45,9 @@ using BatchProgress = std::function<void(std::size_t done, std::size_t all, cons
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
                                    const BatchProgress& progress);
 
+/// Leaves what tells which phases would be fitted.
+void drop_samples(mechanical::MeasuredFlights& selection);
+
 /// Takes flights out of what is fitted that are there under another name too, and says so: each is used once: one
 /// with power, of these one whose log is still there, of these the better copy (is_better_copy), then the first. Those
 /// that share less than half are warned of. Returns which is a copy of which, by name.

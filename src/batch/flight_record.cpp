@@ -345,6 +345,10 @@ std::optional<FlightRecord> record_from_json(const std::string& text) {
     }
 }
 
+std::string in_record(const std::string& name) {
+    return Json::parse(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+}
+
 std::string exclusion_of(const FlightRecord& record, const flight::LoadOptions& options) {
     if (options.excluded.contains(record.flight)) return "--exclude names it";
     if (!record.lacks_power.empty()) return record.lacks_power;

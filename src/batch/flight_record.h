@@ -62,6 +62,9 @@ FlightRecord record_of(const flight::LoadedFlight& loaded);
 std::string to_json_text(const FlightRecord& record);
 std::optional<FlightRecord> record_from_json(const std::string& text);
 
+/// The name as a record holds it: JSON has none that is not UTF-8.
+std::string in_record(const std::string& name);
+
 /// Why a batch uses nothing of the flight: its power record, its folder or --exclude; empty if it does.
 std::string exclusion_of(const FlightRecord& record, const flight::LoadOptions& options);
 

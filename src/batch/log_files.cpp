@@ -93,12 +93,17 @@ std::string file_name_of(std::string name) {
 
 }  // namespace
 
-std::string free_flight_name(const std::filesystem::path& log, const std::set<std::string>& taken) {
+void FreeNames::take(const std::string& name) { taken_.insert(name); }
+
+std::string FreeNames::give(const std::filesystem::path& log) {
     auto name = file_name_of(telemetry::flight_name(log));
     if (name.empty()) name = "unnamed";
-    auto free = name;
-    for (int use = 2; taken.contains(free); ++use) free = fmt::format("{}_{}", name, use);
-    return free;
+    if (taken_.insert(name).second) return name;
+    // With thousands of one name the search does not begin anew for each.
+    for (auto& use = next_.try_emplace(name, 2).first->second;; ++use) {
+        auto free = fmt::format("{}_{}", name, use);
+        if (taken_.insert(free).second) return free;
+    }
 }
 
 std::vector<std::string> listed_paths(std::string_view text) {
@@ -142,11 +147,8 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
         throw InputError({}, fmt::format("no log in {}", fmt::join(inputs, ", ")),
                          "expected *.data, *.LOG or *.tlm, also .gz, .bz2, .xz or .zst");
     }
-    std::set<std::string> taken;
-    for (auto& log : logs) {
-        log.flight = free_flight_name(log.path, taken);
-        taken.insert(log.flight);
-    }
+    FreeNames names;
+    for (auto& log : logs) log.flight = names.give(log.path);
     return logs;
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace flightwatt::batch {
@@ -30,8 +31,18 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
 /// The paths of a text that names one a line: what stands in a line is the path. Empty lines are passed over.
 std::vector<std::string> listed_paths(std::string_view text);
 
-/// The log's own name, shortened where no file could be called so, or, where that is taken, the next free one of
-/// NAME_2, NAME_3, ...
-std::string free_flight_name(const std::filesystem::path& log, const std::set<std::string>& taken);
+/// Names for the results of logs, each given once.
+class FreeNames {
+  public:
+    void take(const std::string& name);
+
+    /// The log's own name, shortened where no file could be called so, or, where that is taken, the next free one of
+    /// NAME_2, NAME_3, ...
+    std::string give(const std::filesystem::path& log);
+
+  private:
+    std::unordered_set<std::string> taken_;
+    std::unordered_map<std::string, int> next_;  ///< the lowest number that may be free, by the log's own name
+};
 
 }  // namespace flightwatt::batch

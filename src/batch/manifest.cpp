@@ -98,23 +98,20 @@ class EarlierFlights {
 void name_logs(std::vector<LogFile>& logs, const std::vector<ManifestFlight>& earlier, bool prune,
                std::set<std::string>& known) {
     const EarlierFlights flights(earlier);
-    std::set<std::string> taken;
+    FreeNames names;
     std::vector<LogFile*> without_name;
     for (auto& log : logs) {
         const auto* before = log.problem.empty() ? flights.find(log.path) : nullptr;
         if (before != nullptr && known.insert(before->flight).second) {
             log.flight = before->flight;
-            taken.insert(log.flight);
+            names.take(log.flight);
         } else {
             without_name.push_back(&log);
         }
     }
     if (!prune)
-        for (const auto& flight : earlier) taken.insert(flight.flight);
-    for (auto* log : without_name) {
-        log->flight = free_flight_name(log->path, taken);
-        taken.insert(log->flight);
-    }
+        for (const auto& flight : earlier) names.take(flight.flight);
+    for (auto* log : without_name) log->flight = names.give(log->path);
 }
 
 /// Whether a flight without its log has a result worth keeping; a damaged record may be of one.

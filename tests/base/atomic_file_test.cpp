@@ -121,5 +121,23 @@ TEST(AtomicFile, LeavesUnfinishedFilesWhereItIsTold) {
     }
 }
 
+TEST(AtomicFile, IsLinkedOrCopied) {
+    const auto folder = test::scratch_dir();
+    const auto unfinished = folder / "unfinished";
+    std::filesystem::create_directories(unfinished);
+    write_file_atomically(folder / "source", "x");
+    write_file_atomically(folder / "result", "before");
+    for (int again = 0; again < 2; ++again) {
+        link_or_copy_file(folder / "source", folder / "result", unfinished);
+        EXPECT_TRUE(std::filesystem::equivalent(folder / "source", folder / "result"));
+        EXPECT_TRUE(std::filesystem::is_empty(unfinished));
+    }
+    write_file_atomically(folder / "result", "y");  // replaces the name alone
+    EXPECT_EQ(read_file(folder / "source"), "x");
+    link_or_copy_file(folder / "source", folder / "other", folder / "no folder to make links in");
+    EXPECT_FALSE(std::filesystem::equivalent(folder / "source", folder / "other"));
+    EXPECT_EQ(read_file(folder / "other"), "x");
+}
+
 }  // namespace
 }  // namespace flightwatt

@@ -68,8 +68,9 @@ TEST(FindLogs, GivesEachLogANameOfItsOwn) {
 TEST(FindLogs, ShortensNamesThatFilesCannotHave) {
     const auto names_of_long = [](const std::string& name) {
         std::set<std::string> taken;
-        taken.insert(free_flight_name(name + ".data", taken));
-        taken.insert(free_flight_name(name + ".data", taken));
+        FreeNames names;
+        taken.insert(names.give(name + ".data"));
+        taken.insert(names.give(name + ".data"));
         return std::vector<std::string>(taken.begin(), taken.end());
     };
     const auto shortened = names_of_long(std::string(245, 'x'));
@@ -142,6 +143,16 @@ TEST(FindLogs, TakesWhatIsListedAsItIs) {
     EXPECT_THAT(names(find_logs({}, {there, gone})), ElementsAre("gone", "there"));
     EXPECT_THAT(names(find_logs({there}, {there})), ElementsAre("there"));
     EXPECT_THAT(names(find_logs({}, {folder.string()})), ElementsAre("there"));
+}
+
+TEST(FreeNames, AreTheNextOnesAlsoOfMany) {
+    FreeNames names;
+    names.take("x_3");
+    EXPECT_EQ(names.give("x.data"), "x");
+    EXPECT_EQ(names.give("1/x.data"), "x_2");
+    EXPECT_EQ(names.give("2/x.data"), "x_4");
+    for (int i = 5; i < 20'000; ++i) names.give("3/x.data");
+    EXPECT_EQ(names.give("4/x.data"), "x_20000");
 }
 
 }  // namespace

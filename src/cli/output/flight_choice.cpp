@@ -100,14 +100,20 @@ std::string why_batch_left_out(const std::optional<batch::BatchFit>& fit, const 
     return copy == fit->copies.end() ? "" : "its batch found that it is " + copy->second + " under another name";
 }
 
+/// A flight of a batch.
+struct SeriesFile {
+    std::filesystem::path log;  ///< that it was made from
+    std::string file;
+};
+
 /// The series of the flights that a batch accepted and may fit; --keep overrides what the batch was told.
-std::vector<std::string> series_of_batch(const StageCall& call, const std::filesystem::path& out,
-                                         const flight::LoadOptions& options) {
-    std::vector<std::string> files;
+std::vector<SeriesFile> series_of_batch(const StageCall& call, const std::filesystem::path& out,
+                                        const flight::LoadOptions& options) {
+    std::vector<SeriesFile> files;
     const auto fit = batch::read_batch_fit(out);
     auto own = options;
     if (fit) own.keep.insert(fit->keep.begin(), fit->keep.end());
-    for (const auto& stored : batch::read_stored_flights(out)) {
+    for (const auto& stored : batch::read_stored_records(out)) {
         const auto& record = stored.record;
         const auto left_out = options.keep.contains(record.flight) ? "" : why_batch_left_out(fit, record.flight);
         if (!stored.damage.empty()) {
@@ -118,21 +124,21 @@ std::vector<std::string> series_of_batch(const StageCall& call, const std::files
                    !why.empty() && !options.excluded.contains(record.flight)) {
             note(call, fmt::format("{} is left out: {}", record.flight, why));
         } else {
-            files.push_back((out / "flights" / (record.flight + batch::series_ending)).string());
+            files.push_back({record.log, (out / "flights" / (record.flight + batch::series_ending)).string()});
         }
     }
     return files;
 }
 
 /// Adds those of a batch; a flight that another batch holds too, with the same series, is taken once.
-void add_flights_of_batch(const StageCall& call, const std::vector<std::string>& of_batch,
-                          std::map<std::string, std::string>& by_name, std::vector<std::string>& files) {
-    for (const auto& file : of_batch) {
-        const auto [other, is_new] = by_name.emplace(flight_of_file(file), file);
-        if (is_new || read_file(other->second) != read_file(file))
-            files.push_back(file);
+void add_flights_of_batch(const StageCall& call, std::vector<SeriesFile> of_batch,
+                          std::map<std::string, std::string>& by_name, std::vector<SeriesFile>& flights) {
+    for (auto& flight : of_batch) {
+        const auto [other, is_new] = by_name.emplace(flight_of_file(flight.file), flight.file);
+        if (is_new || read_file(other->second) != read_file(flight.file))
+            flights.push_back(std::move(flight));
         else
-            note(call, fmt::format("{} is the same as {}: it is taken once", file, other->second));
+            note(call, fmt::format("{} is the same as {}: it is taken once", flight.file, other->second));
     }
 }
 
@@ -176,15 +182,19 @@ std::vector<bool> chosen_flights(const StageCall& call, const std::vector<std::s
 
 StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options) {
     std::vector<std::string> files;
-    std::map<std::string, std::string> of_batches;
+    std::vector<SeriesFile> of_batches;
+    std::map<std::string, std::string> by_name;
     for (const auto& input : call.inputs) {
         std::error_code none;
         if (!std::filesystem::is_directory(input, none)) {
             files.push_back(input);
             continue;
         }
-        add_flights_of_batch(call, series_of_batch(call, input, options), of_batches, files);
+        add_flights_of_batch(call, series_of_batch(call, input, options), by_name, of_batches);
     }
+    // As one batch of all has them, so that the same comes out however they were cut.
+    std::ranges::stable_sort(of_batches, {}, &SeriesFile::log);
+    for (auto& [log, file] : of_batches) files.push_back(std::move(file));
     std::vector<std::string> names;
     names.reserve(files.size());
     for (const auto& file : files) names.push_back(flight_of_file(file));

@@ -1,0 +1,241 @@
+#include "batch/merge.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_use.h"
+#include "base/parallel.h"
+#include "batch/batch_files.h"
+#include "flight/phases_file.h"
+#include "flight/series_file.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::batch {
+namespace {
+
+std::filesystem::path result_of(const std::filesystem::path& out, const std::string& flight, const char* ending) {
+    return out / "flights" / (flight + ending);
+}
+
+/// A flight of one of the batches, as its list has it.
+struct ListedFlight {
+    std::filesystem::path from;
+    ManifestFlight listed;
+};
+
+/// The flights of one batch. Throws InputError for what is no batch's folder, or of one that was not finished.
+std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
+    std::error_code none;
+    if (!std::filesystem::is_directory(batch / "flights", none)) {
+        throw InputError({batch.string()}, "this is no folder of flightwatt batch: there is no flights/ in it",
+                         "make it with: flightwatt batch LOGS --no-fit -o FOLDER");
+    }
+    std::vector<ListedFlight> flights;
+    for (auto& listed : read_manifest(batch).flights) {
+        if (!std::filesystem::exists(result_of(batch, listed.flight, record_ending), none)) {
+            throw InputError({batch.string()},
+                             fmt::format("this batch was not finished: {} has no record", listed.flight),
+                             "run the same flightwatt batch again; it goes on where it stopped");
+        }
+        flights.push_back({batch, std::move(listed)});
+    }
+    return flights;
+}
+
+/// Of what a flight was made from: the log's content and the options.
+std::string fingerprint_in(const ListedFlight& flight) {
+    const OwnFiles own;
+    return read_intact_record(flight.from, flight.listed.flight).fingerprint;
+}
+
+/// Throws InputError where the log was another one, or was read with other options, in the second batch.
+void require_same(const ListedFlight& one, const ListedFlight& other) {
+    if (fingerprint_in(one) == fingerprint_in(other)) return;
+    throw InputError(
+        {one.listed.place.string()},
+        fmt::format("this log was read differently by the batches {} and {}: it changed meanwhile, or their "
+                    "options differ",
+                    one.from.string(), other.from.string()),
+        "run one of them again, with the options of the other");
+}
+
+/// By the paths of their logs, each log once. Returns how many were left out.
+std::size_t keep_each_once(std::vector<ListedFlight>& flights) {
+    std::ranges::stable_sort(flights, [](const ListedFlight& one, const ListedFlight& other) {
+        return std::tie(one.listed.log, one.listed.place) < std::tie(other.listed.log, other.listed.place);
+    });
+    std::map<std::filesystem::path, std::size_t> seen;
+    std::vector<ListedFlight> kept;
+    for (auto& flight : flights) {
+        const auto [place, is_new] = seen.emplace(flight.listed.place, kept.size());
+        if (is_new)
+            kept.push_back(std::move(flight));
+        else
+            require_same(kept[place->second], flight);
+    }
+    const auto repeated = flights.size() - kept.size();
+    flights = std::move(kept);
+    return repeated;
+}
+
+/// Throws UsageError for a flight of `out` that is in none of the batches and is not to be dropped.
+void drop_others(const std::set<std::filesystem::path>& places, const std::filesystem::path& out, bool prune,
+                 BatchPlan& plan) {
+    for (const auto& flight : plan.earlier.flights) {
+        if (places.contains(flight.place)) continue;
+        plan.dropped.push_back(
+            {flight.flight, fmt::format("its log {} is in none of the batches", flight.log.string())});
+    }
+    if (plan.dropped.empty() || prune) return;
+    throw UsageError(
+        fmt::format("{} holds {} flight{} that {} in none of the batches ({}); choose another folder with "
+                    "-o, or drop them with --prune",
+                    out.string(), plan.dropped.size(), plan.dropped.size() == 1 ? "" : "s",
+                    plan.dropped.size() == 1 ? "is" : "are", plan.dropped.front().flight));
+}
+
+/// The same flight under another name.
+FlightRecord renamed(FlightRecord record, const std::string& name) {
+    const auto old = std::exchange(record.flight, name);
+    auto& measured = record.measured;
+    for (auto& exclusion : measured.exclusions) exclusion.flight.replace(0, old.size(), name);  // NAME or NAME#2
+    for (std::size_t i = 0; i < measured.flights.size(); ++i) {
+        auto& flight = measured.flights[i];
+        flight.samples.flight = mechanical::flight_name_of_sortie(name, measured.sorties[i] + 1);
+        flight.motion.flight = flight.samples.flight;
+    }
+    return record;
+}
+
+class FlightMerger {
+  public:
+    FlightMerger(const MergePlan& plan, const MergeOptions& options) : plan_(plan), options_(options) {}
+
+    BatchFlight merge(std::size_t number) const {
+        const OwnFiles own;  // its batches' results, which are no inputs that a result could replace
+        const auto& [from, flight] = plan_.sources[number];
+        const auto& name = plan_.folder.logs[number].flight;
+        BatchFlight merged;
+        const auto text = read_file(result_of(from, flight, record_ending));
+        merged.record = read_intact_record(from, flight);
+        merged.was_up_to_date = name == flight ? is_there(name, text) : false;
+        if (name == flight) {
+            if (!merged.was_up_to_date) take_over(from, name, merged.record.accepted);
+        } else {
+            take_over_as(name, from, flight, merged.record);
+        }
+        merged.selection = select_for_fit(merged.record, options_.needed_samples, {});
+        drop_samples(merged.selection);
+        return merged;
+    }
+
+  private:
+    bool is_there(const std::string& name, const std::string& record) const {
+        try {
+            std::error_code none;
+            const auto file = result_of(options_.out, name, record_ending);
+            if (!std::filesystem::is_regular_file(file, none) || read_file(file) != record) return false;
+            read_intact_record(options_.out, name);
+            return true;
+        } catch (const InputError&) {
+            return false;
+        }
+    }
+
+    /// The record last, as a batch does.
+    void take_over(const std::filesystem::path& from, const std::string& name, bool is_accepted) const {
+        const WriteGate::Pass inside(options_.gate);
+        remove_results(options_.out, name);
+        for (const auto* ending : {series_ending, phases_ending, record_ending}) {
+            if (!is_accepted && ending != std::string_view(record_ending)) continue;
+            link_or_copy_file(result_of(from, name, ending), result_of(options_.out, name, ending),
+                              options_.out / unfinished_folder);
+        }
+    }
+
+    void take_over_as(const std::string& name, const std::filesystem::path& from, const std::string& flight,
+                      FlightRecord& record) const {
+        std::string series_text;
+        std::string phases_text;
+        if (record.accepted) {
+            auto series = flight::read_series_csv(result_of(from, flight, series_ending));
+            const auto phases = flight::read_phases_csv(result_of(from, flight, phases_ending));
+            series.flight = name;
+            series_text = to_csv(series);
+            phases_text = flight::phases_csv(series, phases);
+        }
+        record = renamed(std::move(record), name);
+        const WriteGate::Pass inside(options_.gate);
+        remove_results(options_.out, name);
+        if (record.accepted) {
+            write(name, series_ending, series_text);
+            write(name, phases_ending, phases_text);
+            record.results = results_fingerprint(options_.out, name);
+        }
+        write(name, record_ending, to_json_text(record));
+    }
+
+    void write(const std::string& name, const char* ending, const std::string& text) const {
+        write_file_atomically(result_of(options_.out, name, ending), text, options_.out / unfinished_folder);
+    }
+
+    const MergePlan& plan_;
+    const MergeOptions& options_;
+};
+
+}  // namespace
+
+MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const std::filesystem::path& out, bool prune) {
+    MergePlan plan;
+    std::vector<ListedFlight> flights;
+    for (const auto& batch : batches) {
+        std::error_code none;
+        if (std::filesystem::equivalent(batch, out, none)) {
+            throw UsageError(fmt::format("{} would be read and written; choose another folder with -o", out.string()));
+        }
+        auto of_batch = flights_of(batch);
+        plan.given.push_back(of_batch.size());
+        std::ranges::move(of_batch, std::back_inserter(flights));
+    }
+    plan.repeated = keep_each_once(flights);
+    auto& folder = plan.folder;
+    folder.earlier = read_manifest(out);
+    folder.manifest.files = {model_names.begin(), model_names.end()};
+    folder.manifest.files.insert(catalogue_name);
+    FreeNames names;
+    std::set<std::filesystem::path> places;
+    for (auto& [from, listed] : flights) {
+        places.insert(listed.place);
+        const auto name = names.give(listed.log);
+        folder.logs.push_back({listed.log, name, listed.why_not_fitted});
+        folder.manifest.flights.push_back({name, listed.log, listed.place, listed.why_not_fitted});
+        plan.sources.push_back({from, std::move(listed.flight)});
+    }
+    std::ranges::sort(folder.manifest.flights, {}, &ManifestFlight::flight);
+    drop_others(places, out, prune, folder);
+    return plan;
+}
+
+std::vector<BatchFlight> merge_flights(const MergePlan& plan, const MergeOptions& options,
+                                       const BatchProgress& progress) {
+    std::vector<BatchFlight> flights(plan.sources.size());
+    const FlightMerger merger(plan, options);
+    std::mutex mutex;  // guards what follows
+    std::size_t done = 0;
+    for_each_in_parallel(flights.size(), [&](std::size_t i) {
+        flights[i] = merger.merge(i);
+        const std::lock_guard lock(mutex);
+        progress(++done, flights.size(), flights[i]);
+    });
+    return flights;
+}
+
+}  // namespace flightwatt::batch

@@ -1,0 +1,144 @@
+// flightwatt merge: the folders of several batches as one.
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "batch/batch_files.h"
+#include "batch/merge.h"
+#include "batch/write_guard.h"
+#include "cli/output/json_text.h"
+#include "cli/progress.h"
+#include "cli/screen_table.h"
+#include "cli/stage.h"
+#include "mechanical/validation.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace {
+
+using namespace flightwatt;
+using Json = nlohmann::ordered_json;
+
+/// What came of it, for people and programs.
+struct Summary {
+    std::size_t accepted = 0;
+    std::size_t rejected = 0;
+    std::size_t already_there = 0;
+    std::size_t renamed = 0;
+};
+
+Summary summary_of(const batch::MergePlan& plan, const std::vector<batch::BatchFlight>& flights) {
+    Summary summary;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        ++(flights[i].record.accepted ? summary.accepted : summary.rejected);
+        if (flights[i].was_up_to_date) ++summary.already_there;
+        if (plan.sources[i].flight != flights[i].record.flight) ++summary.renamed;
+    }
+    return summary;
+}
+
+Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const std::vector<batch::BatchFlight>& flights,
+             const std::map<std::string, std::string>& copies) {
+    const auto summary = summary_of(plan, flights);
+    Json json{
+        {"folder", *call.output},       {"batches", Json::array()},       {"flights", flights.size()},
+        {"accepted", summary.accepted}, {"rejected", summary.rejected},   {"already_there", summary.already_there},
+        {"renamed", Json::array()},     {"repeated_logs", plan.repeated}, {"copies", Json::array()}};
+    for (std::size_t i = 0; i < plan.given.size(); ++i)
+        json["batches"].push_back({{"folder", call.inputs[i]}, {"flights", plan.given[i]}});
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const auto& [from, before] = plan.sources[i];
+        if (before != flights[i].record.flight)
+            json["renamed"].push_back(
+                {{"folder", from.string()}, {"before", before}, {"flight", flights[i].record.flight}});
+    }
+    for (const auto& [flight, other] : copies) json["copies"].push_back({{"flight", flight}, {"same_as", other}});
+    return json;
+}
+
+std::string text_of(const cli::StageCall& call, const batch::MergePlan& plan,
+                    const std::vector<batch::BatchFlight>& flights) {
+    const auto summary = summary_of(plan, flights);
+    TextTable table{{"batch", "flights"}, {}};
+    for (std::size_t i = 0; i < plan.given.size(); ++i)
+        table.rows.push_back({call.inputs[i], fmt::format("{}", plan.given[i])});
+    table.rows.push_back({*call.output, fmt::format("{}", flights.size())});
+    return screen_text(table, screen_of(call), {"merged", {}}) +
+           fmt::format(
+               "{} accepted, {} rejected; {} renamed, {} were there already, {} of logs that were in another "
+               "batch too\n",
+               summary.accepted, summary.rejected, summary.renamed, summary.already_there, plan.repeated);
+}
+
+/// A model that stands in the folder was fitted to other flights.
+void remove_model(const cli::StageCall& call, const std::filesystem::path& out) {
+    std::vector<std::string> removed;
+    for (const auto* name : batch::model_names) {
+        std::error_code ignored;
+        if (std::filesystem::remove(out / name, ignored)) removed.emplace_back(name);
+    }
+    if (!removed.empty())
+        cli::note(call, fmt::format("removed: {}: made from what the folder held before", fmt::join(removed, ", ")));
+}
+
+int merge(const cli::StageCall& call) {
+    if (!call.output) throw UsageError("no folder given: expected -o FOLDER");
+    const std::filesystem::path out = *call.output;
+    const std::vector<std::filesystem::path> batches(call.inputs.begin(), call.inputs.end());
+    std::optional<batch::FolderLock> lock;
+    std::error_code none;
+    if (std::filesystem::is_directory(out, none)) lock.emplace(out);
+    const auto plan = batch::plan_merge(batches, out, call.has("prune"));
+    batch::refuse_files_of_others(plan.folder, out);
+    for (const auto& dropped : plan.folder.dropped)
+        cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
+    make_directories(out);
+    if (!lock) lock.emplace(out);
+    batch::prepare_folder(plan.folder, out);
+    remove_model(call, out);
+    batch::WriteGate gate;
+    batch::MergeOptions options{out, mechanical::samples_needed(mechanical::ModelFitOptions{}.phases.order), gate};
+    cli::TerminalProgress progress("flights");
+    const batch::Interruption interruption(
+        gate, [&](int) { cli::note(call, "stopped; the same command goes on from there"); });
+    auto flights = batch::merge_flights(
+        plan, options, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
+    progress.hide();
+    const auto copies = batch::exclude_copies(flights);
+    if (!copies.empty()) {
+        const auto& [flight, other] = *copies.begin();
+        cli::warn(call, fmt::format("{} of the flights are others under a second name, and are not fitted: {} is the "
+                                    "same flight as {}{}; --json names all",
+                                    copies.size(), flight, other, copies.size() > 1 ? ", ..." : ""));
+    }
+    write_file_atomically(out / batch::catalogue_name, batch::catalogue_csv(flights), out / batch::unfinished_folder);
+    std::error_code ignored;
+    std::filesystem::remove(out / batch::unfinished_folder, ignored);
+    cli::print(call.json ? cli::json_text(json_of(call, plan, flights, copies)) : text_of(call, plan, flights));
+    cli::note(call, fmt::format("next: flightwatt fit {} -o MODEL.toml", cli::typed_in_shell(out.string())));
+    return cli::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "merge", "OUT... -o OUT",
+        R"(Joins folders of flightwatt batch into one: every flight's files, checked against the fingerprints of their
+records, and flights.csv of all, as one batch of all logs would have written them, whatever folders they came
+from and in whatever order they were joined. The logs are not read. Files are hard links where the
+file system has them, else copies. A log that is in several folders is taken once; flights of one
+name get the names NAME, NAME_2, ... by the paths of their logs. Nothing is fitted: flightwatt fit does that.
+Nothing in OUT is replaced or removed but what OUT/batch.json lists as a batch's.)"};
+    stage.shows_table = true;
+    stage.output_help = "the folder of the results";
+    stage.options.add_options()("prune", "drop the flights of OUT that are in none of the folders given");
+    return cli::run_stage(argc, argv, stage, merge);
+}
