@@ -93,6 +93,20 @@ void add_marks(const Track& track, std::size_t precision, std::uint64_t highest,
 
 /// The least ones, rising, without those that recur.
 void keep_least(std::vector<FlightMark>& marks, std::size_t most) {
+    // Most are beyond. Where too many of those below recur, all are looked at.
+    constexpr std::size_t spare = 2;
+    if (marks.size() > 2 * spare * most) {
+        auto least = marks;
+        const auto nth = least.begin() + static_cast<std::ptrdiff_t>(spare * most);
+        std::ranges::nth_element(least, nth, {}, &FlightMark::fingerprint);
+        const auto highest = nth->fingerprint;
+        std::erase_if(least, [&](const FlightMark& mark) { return mark.fingerprint >= highest; });
+        keep_least(least, most);
+        if (least.size() == most) {
+            marks = std::move(least);
+            return;
+        }
+    }
     std::ranges::sort(marks, {}, [](const FlightMark& mark) { return std::pair(mark.fingerprint, mark.time_s); });
     std::size_t kept = 0;
     for (std::size_t begin = 0, end = 0; begin < marks.size() && kept < most; begin = end) {
@@ -157,17 +171,25 @@ bool agree_in_kind(std::span<const FlightMark> marks, std::span<const FlightMark
     return true;
 }
 
+/// Both rise.
+std::vector<SharedMark> shared_marks(std::span<const FlightMark> marks, std::span<const FlightMark> with) {
+    std::vector<SharedMark> shared;
+    auto other = with.begin();
+    for (const auto& mark : marks) {
+        while (other != with.end() && other->fingerprint < mark.fingerprint) ++other;
+        if (other == with.end()) break;
+        if (other->fingerprint == mark.fingerprint)
+            shared.push_back({mark.fingerprint, mark.time_s, mark.time_s - other->time_s});
+    }
+    return shared;
+}
+
 Likeness compare_at(const FlightContent& one, const FlightContent& other, std::size_t precision) {
     auto marks = comparable(one, other, precision);
     auto with = comparable(other, one, precision);
     if (with.size() < marks.size()) std::swap(marks, with);
-    if (marks.empty()) return {};
-    std::vector<SharedMark> shared;
-    for (const auto& mark : marks) {
-        const auto found = std::ranges::lower_bound(with, mark.fingerprint, {}, &FlightMark::fingerprint);
-        if (found == with.end() || found->fingerprint != mark.fingerprint) continue;
-        shared.push_back({mark.fingerprint, mark.time_s, mark.time_s - found->time_s});
-    }
+    auto shared = shared_marks(marks, with);
+    if (shared.size() < least_shared) return {};  // most pairs end here
     const auto [first, last] = std::ranges::minmax_element(marks, {}, &FlightMark::time_s);
     const double span_s = last->time_s - first->time_s;
     shared = at_one_offset(std::move(shared), clock_slack_s + clock_drift * span_s);

@@ -36,13 +36,17 @@ rule simulate:
         "{FLIGHTWATT} simulate {input.mission} {params.samples} --json -o {output.series} > {output.summary} 2> {log}"
 
 
+# A page of all flights has some 12 kB a flight.
 rule report:
     input:
+        flights=f"{OUT}/flights.csv",
         missions=[mission_to_fly(types.SimpleNamespace(mission=mission)) for mission in MISSIONS],
         model=f"{OUT}/model.toml",
     output:
         f"{OUT}/report.html",
+    params:
+        batch=f"{OUT}/all" if config["report"] == "flights" else "",
     log:
         f"{OUT}/report.log",
     shell:
-        "{FLIGHTWATT} report {input.missions} -o {output} > {log} 2>&1"
+        "{FLIGHTWATT} report {params.batch} {input.missions} -o {output} > {log} 2>&1"

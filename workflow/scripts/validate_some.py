@@ -6,20 +6,16 @@ import subprocess
 import sys
 
 
-def used_flights(folders):
+def used_flights(folder):
     series = {}
-    for folder in folders:
-        catalogue = os.path.join(folder, "flights.csv")
-        if not os.path.exists(catalogue):
-            continue
-        with open(catalogue, newline="") as rows:
-            for row in csv.DictReader(rows):
-                if row["used"] == "true":
-                    series[os.path.join(folder, "flights", row["flight"] + ".series.csv")] = None
+    with open(os.path.join(folder, "flights.csv"), newline="") as rows:
+        for row in csv.DictReader(rows):
+            if row["used"] == "true":
+                series[os.path.join(folder, "flights", row["flight"] + ".series.csv")] = None
     return list(series)
 
 
-flights = used_flights(snakemake.params.folders)
+flights = used_flights(snakemake.params.folder)
 count = min(snakemake.params.flights, len(flights))
 if count < 2:
     sys.exit(
