@@ -4,18 +4,39 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace flightwatt {
+namespace {
+
+/// Counted once: the system is asked by reading a file.
+std::size_t cores() {
+    static const std::size_t count = std::max(1U, std::thread::hardware_concurrency());
+    return count;
+}
+
+/// Whether this thread works for a loop already: one within it would only make more threads than there are cores.
+thread_local bool is_at_work = false;
+
+struct AtWork {
+    bool before = std::exchange(is_at_work, true);
+    ~AtWork() { is_at_work = before; }
+};
+
+}  // namespace
 
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work, std::size_t most_threads) {
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;  // guards what follows
     std::size_t failed = count;
     std::exception_ptr failure;
-    const auto work_on = [&] {
+    const auto work_on = [&](bool is_shared) {
+        std::optional<AtWork> at_work;
+        if (is_shared) at_work.emplace();
         for (std::size_t i = next++; i < count; i = next++) {
             try {
                 work(i);
@@ -29,15 +50,16 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
         }
     };
     {
-        const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-        const std::size_t threads = std::min(most_threads > 0 ? most_threads : cores, count);
+        const std::size_t most = is_at_work ? 1 : most_threads > 0 ? most_threads : cores();
+        const std::size_t threads = std::min(most, count);
+        const bool is_shared = threads > 1;
         std::vector<std::jthread> workers;
         try {
-            for (std::size_t k = 1; k < threads; ++k) workers.emplace_back(work_on);
+            for (std::size_t k = 1; k < threads; ++k) workers.emplace_back(work_on, is_shared);
         } catch (const std::system_error&) {
             // No more threads than these: they will do.
         }
-        work_on();
+        work_on(is_shared);
     }
     if (failure) std::rethrow_exception(failure);
 }

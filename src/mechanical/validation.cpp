@@ -1,12 +1,14 @@
 #include "mechanical/validation.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/units.h"
 #include "mechanical/physical_fit.h"
 #include "mechanical/validation/baselines.h"
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <set>
 
@@ -189,9 +191,11 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
         if (names.insert(flight.samples.flight).second) continue;
         throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
     }
-    std::vector<ValidatedFlight> validated;
-    for (const auto& excluded : flights) {
-        if (progress) progress(validated.size(), flights.size());
+    std::vector<ValidatedFlight> validated(flights.size());
+    std::mutex mutex;  // guards what follows
+    std::size_t done = 0;
+    for_each_in_parallel(flights.size(), [&](std::size_t i) {
+        const auto& excluded = flights[i];
         Others others;
         std::vector<FlightMotion> motions;
         for (const auto& other : flights) {
@@ -200,8 +204,11 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
             motions.push_back(other.motion);
         }
         if (!excluded.motion.bins.empty()) others.physical = physical_model_of(motions);
-        validated.push_back(validate_flight(excluded, others, options, covariates));
-    }
+        validated[i] = validate_flight(excluded, others, options, covariates);
+        if (!progress) return;
+        const std::lock_guard lock(mutex);
+        progress(++done, flights.size());
+    });
     return validated;
 }
 

@@ -61,7 +61,7 @@ struct ValidatedFlight {
 ///   in_flight_constant   predict_rest by the curve's mean
 ///   in_flight_airspeed   predict_rest by the airspeed so far and the others' later airspeed
 ///   in_flight_path       predict_path: the rest's airspeed and climb as flown, as if they had been known
-/// `progress` is told how many of how many flights are done.
+/// `progress` is told how many of how many flights are done, by one thread at a time.
 /// Throws NoAnswerError for fewer than 2 flights, and what fit_phase_model throws.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
                                            std::span<const Covariate> covariates = {},

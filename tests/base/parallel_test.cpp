@@ -1,6 +1,7 @@
 #include "base/parallel.h"
 
 #include <atomic>
+#include <barrier>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -35,6 +36,28 @@ TEST(ForEachInParallel, ThrowsWhatTheLowestNumberThrew) {
             EXPECT_STREQ(error.what(), "7");
         }
     }
+}
+
+TEST(ForEachInParallel, HasOneThreadWithinALoopThatSeveralShare) {
+    std::atomic<int> elsewhere = 0;
+    const auto inner = [&](std::size_t most_threads) {
+        for_each_in_parallel(
+            2,
+            [&](std::size_t) {
+                const auto here = std::this_thread::get_id();
+                for_each_in_parallel(
+                    20, [&](std::size_t) { elsewhere += std::this_thread::get_id() != here; }, 4);
+            },
+            most_threads);
+    };
+    inner(2);
+    EXPECT_EQ(elsewhere, 0);
+    // A loop of one thread leaves the others to the loop within it: each of two calls waits for the other.
+    std::barrier meeting(2);
+    for_each_in_parallel(1, [&](std::size_t) {
+        for_each_in_parallel(
+            2, [&](std::size_t) { meeting.arrive_and_wait(); }, 2);
+    });
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ FlightsAt flights_at(std::span<const ScaledSamples> flights, int order, double t
 
 double log_likelihood(const FlightsAt& flights, double autocorrelation) {
     std::vector<double> parts(flights.size());
-    const auto work = [&](std::size_t i) { parts[i] = evidence_of(flights[i], autocorrelation).log_likelihood; };
+    const auto work = [&](std::size_t i) { parts[i] = log_likelihood_of(flights[i], autocorrelation); };
     for_each_in_parallel(flights.size(), work, threads_for(sample_count(flights)));
     return std::accumulate(parts.begin(), parts.end(), 0.0);
 }

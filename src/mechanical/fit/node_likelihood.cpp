@@ -35,6 +35,35 @@ Eigen::MatrixXd whitened_gram(const Eigen::MatrixXd& rows, const std::vector<dou
     return white.transpose() * white;
 }
 
+/// What the likelihood is made of.
+struct WhitenedFit {
+    Eigen::LLT<Eigen::MatrixXd> cholesky;  ///< of the basis's gram matrix
+    Eigen::VectorXd shift;                 ///< of the coordinates from those of least squares
+    double square_sum = 0.0;
+    double degrees_of_freedom = 0.0;
+    double log_likelihood = 0.0;
+};
+
+WhitenedFit whitened_fit(const FlightAtFrequency& flight, double autocorrelation) {
+    const Eigen::Index size = flight.columns.cols() - 1;
+    double log_determinant = 0.0;
+    Eigen::MatrixXd gram;
+    if (autocorrelation > 0.0) {
+        gram = whitened_gram(flight.columns, flight.gap, autocorrelation, log_determinant);
+    } else {
+        gram = Eigen::MatrixXd::Identity(size + 1, size + 1);
+        gram(size, size) = flight.columns.col(size).squaredNorm();
+    }
+    WhitenedFit fit;
+    fit.cholesky.compute(gram.topLeftCorner(size, size));
+    fit.shift = fit.cholesky.solve(gram.col(size).head(size));
+    fit.square_sum = std::max(gram(size, size) - fit.shift.dot(gram.col(size).head(size)), flight.rounding);
+    fit.degrees_of_freedom = static_cast<double>(flight.columns.rows() - size);
+    const double log_of_basis = 2.0 * fit.cholesky.matrixLLT().diagonal().array().log().sum();
+    fit.log_likelihood = -0.5 * (log_determinant + log_of_basis + fit.degrees_of_freedom * std::log(fit.square_sum));
+    return fit;
+}
+
 }  // namespace
 
 std::vector<double> gaps_of(const ScaledSamples& samples) {
@@ -63,25 +92,18 @@ std::optional<FlightAtFrequency> flight_at(const ScaledSamples& samples, int ord
 
 FlightEvidence evidence_of(const FlightAtFrequency& flight, double autocorrelation) {
     const Eigen::Index size = flight.columns.cols() - 1;
-    double log_determinant = 0.0;
-    Eigen::MatrixXd gram;
-    if (autocorrelation > 0.0) {
-        gram = whitened_gram(flight.columns, flight.gap, autocorrelation, log_determinant);
-    } else {
-        gram = Eigen::MatrixXd::Identity(size + 1, size + 1);
-        gram(size, size) = flight.columns.col(size).squaredNorm();
-    }
-    const Eigen::LLT<Eigen::MatrixXd> cholesky(gram.topLeftCorner(size, size));
-    const Eigen::VectorXd shift = cholesky.solve(gram.col(size).head(size));
+    const auto fit = whitened_fit(flight, autocorrelation);
     FlightEvidence evidence;
-    evidence.coordinates = flight.coordinates + shift;
-    evidence.covariance = cholesky.solve(Eigen::MatrixXd::Identity(size, size));
-    evidence.square_sum = std::max(gram(size, size) - shift.dot(gram.col(size).head(size)), flight.rounding);
-    evidence.degrees_of_freedom = static_cast<double>(flight.columns.rows() - size);
-    const double log_of_basis = 2.0 * cholesky.matrixLLT().diagonal().array().log().sum();
-    evidence.log_likelihood =
-        -0.5 * (log_determinant + log_of_basis + evidence.degrees_of_freedom * std::log(evidence.square_sum));
+    evidence.coordinates = flight.coordinates + fit.shift;
+    evidence.covariance = fit.cholesky.solve(Eigen::MatrixXd::Identity(size, size));
+    evidence.square_sum = fit.square_sum;
+    evidence.degrees_of_freedom = fit.degrees_of_freedom;
+    evidence.log_likelihood = fit.log_likelihood;
     return evidence;
+}
+
+double log_likelihood_of(const FlightAtFrequency& flight, double autocorrelation) {
+    return whitened_fit(flight, autocorrelation).log_likelihood;
 }
 
 WhitenedSum whitened_sum(std::span<const double> values, const std::vector<double>& gap, double autocorrelation) {

@@ -39,6 +39,9 @@ struct FlightEvidence {
 /// coefficients is flat on that basis, so that a frequency does not count more because its harmonics are alike.
 FlightEvidence evidence_of(const FlightAtFrequency& flight, double autocorrelation);
 
+/// Its log_likelihood alone: most places of a search need no more.
+double log_likelihood_of(const FlightAtFrequency& flight, double autocorrelation);
+
 /// x'R^-1 x and log |R|.
 struct WhitenedSum {
     double square_sum = 0.0;
