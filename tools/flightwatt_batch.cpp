@@ -131,13 +131,12 @@ FittedBatch fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight
 
 /// Of all that the model and its tables are made from.
 std::string fingerprint_of(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights,
-                           const std::map<std::string, std::string>& copies, const batch::BatchOptions& options,
+                           const batch::BatchOptions& options,
                            const std::optional<mechanical::MechanicalModel>& published) {
     auto fit_options = read_fit_options(call);
     fit_options.name = call.get<std::string>("name");
     auto more =
         (cli::is_physical(call) ? "physical\n" : "fourier\n") + (published ? to_toml(*published) : std::string());
-    for (const auto& [flight, other] : copies) more += fmt::format("{}\n{}\n", flight, other);
     for (const auto* names : {&options.load.excluded, &options.load.keep})
         more += fmt::format("{}: {}\n", names->size(), fmt::join(*names, "\n"));
     return batch::fingerprint_of_fit(flights, fit_options, more);
@@ -211,7 +210,12 @@ int exit_code(const cli::StageCall& call, std::size_t rejected, std::size_t logs
 /// standard output that nobody reads loses nothing. Returns the exit code.
 int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, const batch::BatchOptions& options,
            const std::optional<mechanical::MechanicalModel>& published) {
-    const auto copies = exclude_copies(flights);
+    const auto made_from = fingerprint_of(call, flights, options, published);
+    const bool is_known = !call.has("no-fit") && !cli::is_physical(call) && batch::is_fit_of(options.out, made_from);
+    std::optional<FittedBatch> known;
+    if (is_known) known = known_fit(options.out);
+    const auto repeated = known ? known->fit.repeated : find_repeated(flights, options.out);
+    const auto copies = exclude_repeated(flights, repeated);
     report_notes(call, flights);
     {
         const batch::WriteGate::Pass pass(*options.gate);
@@ -248,10 +252,9 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
             return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
         }
         refuse_mix(call, flights, options.out);
-        const auto made_from = fingerprint_of(call, flights, copies, options, published);
-        const bool is_known = !cli::is_physical(call) && batch::is_fit_of(options.out, made_from);
-        auto [fit, physical] = is_known ? known_fit(options.out) : fit_batch(call, flights, options.out);
+        auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options.out);
         fit.copies = copies;
+        fit.repeated = repeated;
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
         fit.made_from = made_from;

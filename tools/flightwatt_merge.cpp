@@ -111,7 +111,7 @@ int merge(const cli::StageCall& call) {
     auto flights = batch::merge_flights(
         plan, options, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
     progress.hide();
-    const auto copies = batch::exclude_copies(flights);
+    const auto copies = batch::exclude_repeated(flights, batch::find_repeated(flights, out));
     if (!copies.empty()) {
         const auto& [flight, other] = *copies.begin();
         cli::warn(call, fmt::format("{} of the flights are others under a second name, and are not fitted: {} is the "

@@ -90,6 +90,11 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
         fit.excluded = json.at("exclude").get<std::set<std::string>>();
         fit.keep = json.at("keep").get<std::set<std::string>>();
         for (const auto& copy : json.at("copies")) fit.copies[copy.at("flight")] = copy.at("of");
+        fit.repeated.same_as = fit.copies;
+        for (const auto& copy : json.at("copies_without_power"))
+            fit.repeated.same_as[copy.at("flight")] = copy.at("of");
+        for (const auto& part : json.at("overlaps"))
+            fit.repeated.overlaps.emplace_back(part.at("flight"), part.at("warning"));
         for (const auto phase : flight::all_phases) {
             fit.bands[phase] = band_from(json.at("bands").at(std::string(to_string(phase))));
         }
@@ -140,6 +145,8 @@ std::string fingerprint_of_fit(const std::vector<BatchFlight>& flights, const me
     add(text_of(options));
     add(more);
     for (const auto& [record, was_up_to_date, is_of_this_run, is_kept, selection] : flights) {
+        if (in_record(record.flight) != record.flight) return "";  // its JSON cannot name the flights
+        add(is_kept ? "kept" : "");
         add(record.flight);
         add(record.results);
         add(record.fingerprint);
@@ -152,6 +159,7 @@ std::string fingerprint_of_fit(const std::vector<BatchFlight>& flights, const me
 }
 
 bool is_fit_of(const std::filesystem::path& out, const std::string& made_from) {
+    if (made_from.empty()) return false;
     const OwnFiles own;
     try {
         auto json = Json::parse(read_file(out / fit_name, most_fit_bytes), require_shallow);
@@ -166,7 +174,7 @@ bool is_fit_of(const std::filesystem::path& out, const std::string& made_from) {
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options) {
     auto fitted = fit_model(flights, options);
     const auto analyses = mechanical::analyse_model(fitted);
-    BatchFit fit{options, {}, {}, {}, {}, curve_bands(fitted, analyses), {}};
+    BatchFit fit{options, {}, {}, {}, {}, {}, curve_bands(fitted, analyses), {}};
     fit.model = std::move(fitted.model);
     return fit;
 }
@@ -175,7 +183,12 @@ void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
     Json bands = Json::object();
     for (const auto phase : flight::all_phases) bands[std::string(to_string(phase))] = band_json(fit.bands[phase]);
     Json copies = Json::array();
-    for (const auto& [flight, other] : fit.copies) copies.push_back({{"flight", flight}, {"of", other}});
+    Json without_power = Json::array();
+    for (const auto& [flight, other] : fit.repeated.same_as)
+        (fit.copies.contains(flight) ? copies : without_power).push_back({{"flight", flight}, {"of", other}});
+    Json overlaps = Json::array();
+    for (const auto& [flight, warning] : fit.repeated.overlaps)
+        overlaps.push_back({{"flight", flight}, {"warning", warning}});
     write_file_atomically(out / model_errors_name, to_toml(fit.model), out / unfinished_folder);
     auto plain = fit.model;
     for (auto& phase : plain.phases.values) {
@@ -189,6 +202,8 @@ void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
                     {"exclude", fit.excluded},
                     {"keep", fit.keep},
                     {"copies", copies},
+                    {"copies_without_power", without_power},
+                    {"overlaps", overlaps},
                     {"made_from", fit.made_from},
                     {"bands", bands}};
     auto sealed = Json::parse(text(json));  // as it will be read: numbers and names that are no UTF-8

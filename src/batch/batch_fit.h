@@ -19,13 +19,15 @@ struct BatchFit {
     std::set<std::string> excluded;             ///< flights that were not to be used
     std::set<std::string> keep;                 ///< flights that were used in spite of what spoke against it
     std::map<std::string, std::string> copies;  ///< flights that are another one under a second name, and which
+    RepeatedFlights repeated = {};              ///< these, those without power, and those that share a part
     mechanical::MechanicalModel model;          ///< with its errors
     flight::PerPhase<mechanical::CurveBand> bands;
     std::string made_from;  ///< see fingerprint_of_fit; empty: not to be recognised
 };
 
-/// Of all that a fit is made from: the flights as they are recorded and selected, and how they are fitted. Equal where
-/// the same program would come to the same model.
+/// Of all that a fit is made from: the flights as they are recorded and selected, before copies are looked for, and how
+/// they are fitted. Equal where the same program would come to the same model, of the same flights; empty where that
+/// cannot be told, as fit.json cannot name a flight.
 std::string fingerprint_of_fit(const std::vector<BatchFlight>& flights, const mechanical::ModelFitOptions& options,
                                const std::string& more);
 

@@ -192,6 +192,15 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     return done;
 }
 
+/// Only its file has them.
+FlightMarks marks_of(const FlightRecord& record, const std::filesystem::path& out) {
+    const OwnFiles own;
+    const auto file = out / "flights" / (record.flight + record_ending);
+    auto marks = marks_from_json(read_file(file));
+    if (!marks) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
+    return *std::move(marks);
+}
+
 }  // namespace
 
 void drop_samples(mechanical::MeasuredFlights& selection) {
@@ -225,9 +234,9 @@ std::string reason_of_copy(const std::string& other) {
     return fmt::format("it is the same flight as {}, which is used", other);
 }
 
-std::map<std::string, std::string> exclude_copies(std::vector<BatchFlight>& flights) {
-    std::vector<BatchFlight*> candidates;
-    for (auto& flight : flights)
+RepeatedFlights find_repeated(const std::vector<BatchFlight>& flights, const std::filesystem::path& out) {
+    std::vector<const BatchFlight*> candidates;
+    for (const auto& flight : flights)
         if (!flight.selection.flights.empty() || !flight.record.lacks_power.empty()) candidates.push_back(&flight);
     // The one with power is used, of these one that is still there, of these the better copy.
     std::ranges::stable_sort(candidates, [](const auto* one, const auto* other) {
@@ -239,25 +248,46 @@ std::map<std::string, std::string> exclude_copies(std::vector<BatchFlight>& flig
     });
     flight::KnownFlights known;
     std::vector<std::string> used;
-    std::map<std::string, std::string> copies;
-    for (auto* flight : candidates) {
-        auto& record = flight->record;
-        const auto alike = known.find(record.content);
+    RepeatedFlights repeated;
+    constexpr std::size_t at_once = 256;  // of a hundred thousand, marks would fill the memory
+    std::vector<FlightMarks> marks(at_once);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (i % at_once == 0) {
+            for_each_in_parallel(std::min(at_once, candidates.size() - i),
+                                 [&](std::size_t k) { marks[k] = marks_of(candidates[i + k]->record, out); });
+        }
+        const auto& record = candidates[i]->record;
+        auto content = record.content;
+        content.marks = std::move(marks[i % at_once]);
+        const auto alike = known.find(content);
         const auto same = std::ranges::find_if(alike, [](const auto& like) { return like.likeness.is_same; });
-        if (same == alike.end()) {
-            for (const auto& [number, likeness] : alike)
-                record.warnings.push_back(flight::describe_overlap(used[number], record.flight, likeness));
-            known.add(record.content);
-            used.push_back(record.flight);
+        if (same != alike.end()) {
+            repeated.same_as[record.flight] = used[same->number];
             continue;
         }
-        const auto& other = used[same->number];
-        const bool has_power = record.lacks_power.empty();
-        if (has_power) copies[record.flight] = other;
-        flight->selection.flights.clear();
-        flight->selection.sorties.clear();
-        flight->selection.exclusions.push_back(
-            {record.flight, std::nullopt,
+        for (const auto& [number, likeness] : alike)
+            repeated.overlaps.emplace_back(record.flight,
+                                           flight::describe_overlap(used[number], record.flight, likeness));
+        known.add(std::move(content));
+        used.push_back(record.flight);
+    }
+    return repeated;
+}
+
+std::map<std::string, std::string> exclude_repeated(std::vector<BatchFlight>& flights,
+                                                    const RepeatedFlights& repeated) {
+    std::map<std::string, std::string> copies;
+    std::map<std::string, BatchFlight*> by_name;
+    for (auto& flight : flights) by_name[flight.record.flight] = &flight;
+    for (const auto& [name, warning] : repeated.overlaps) by_name.at(name)->record.warnings.push_back(warning);
+    for (const auto& [name, other] : repeated.same_as) {
+        auto& flight = *by_name.at(name);
+        const bool has_power = flight.record.lacks_power.empty();
+        if (has_power) copies[name] = other;
+        flight.selection.flights.clear();
+        flight.selection.sorties.clear();
+        flight.selection.exclusions.push_back(
+            {name, std::nullopt,
              has_power ? reason_of_copy(other) : fmt::format("it is the same flight as {}", other)});
     }
     return copies;

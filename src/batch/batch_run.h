@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flightwatt::batch {
@@ -48,10 +49,19 @@ std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const Batch
 /// Leaves what tells which phases would be fitted.
 void drop_samples(mechanical::MeasuredFlights& selection);
 
-/// Takes flights out of what is fitted that are there under another name too, and says so: each is used once: one
-/// with power, of these one whose log is still there, of these the better copy (is_better_copy), then the first. Those
-/// that share less than half are warned of. Returns which is a copy of which, by name.
-std::map<std::string, std::string> exclude_copies(std::vector<BatchFlight>& flights);
+/// Flights that are there more than once.
+struct RepeatedFlights {
+    std::map<std::string, std::string> same_as;                   ///< which is another under a second name, and which
+    std::vector<std::pair<std::string, std::string>> overlaps{};  ///< flight and warning: it shares less than half
+};
+
+/// Each flight is used once: one with power, of these one whose log is still there, of these the better copy
+/// (is_better_copy), then the first. Reads the marks of their contents from the records in OUT.
+RepeatedFlights find_repeated(const std::vector<BatchFlight>& flights, const std::filesystem::path& out);
+
+/// Takes copies out of what is fitted, and says so; warns of overlaps. Returns which flight with power is a copy of which,
+/// by name.
+std::map<std::string, std::string> exclude_repeated(std::vector<BatchFlight>& flights, const RepeatedFlights& repeated);
 
 /// Why a flight is not fitted that is a copy of another.
 std::string reason_of_copy(const std::string& other);

@@ -19,7 +19,6 @@ namespace flightwatt::batch {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using FlightMarks = decltype(flight::FlightContent::marks);
 
 // The keys of a record: `visit` is called with each and with what it holds, for writing and for reading.
 
@@ -79,7 +78,6 @@ void visit_content(Content& content, const Visit& visit) {
     visit("samples", content.samples);
     visit("decimals", content.decimals);
     visit("parts", content.parts);
-    visit("marks", content.marks);
 }
 
 template <typename Record, typename Visit>
@@ -93,7 +91,6 @@ void visit_record(Record& record, const Visit& visit) {
     visit("is_of_other_aircraft", record.is_of_other_aircraft);
     visit("aircraft_id", record.aircraft_id);
     visit("aircraft_name", record.aircraft_name);
-    visit("content", record.content);
     visit("power_source", record.power_source);
     visit("current_origin", record.current_origin);
     visit("phases", record.phases);
@@ -103,6 +100,8 @@ void visit_record(Record& record, const Visit& visit) {
     visit("lacks_power", record.lacks_power);
     visit("why_not_fitted", record.why_not_fitted);
     visit("measured", record.measured);
+    visit("content", record.content);
+    // Its marks follow: they stand last, so that all else can be read without them.
 }
 
 /// Writes what it visits into an object.
@@ -285,6 +284,16 @@ std::string seal_of(std::string_view text) {
     return fmt::format("{}{}\"\n}}\n", seal_key, fingerprint.hex());
 }
 
+constexpr auto marks_name = "marks";
+
+/// Where the comma before the marks is. No text of JSON holds a line's end, so that this is the key. Throws
+/// std::out_of_range where there is none.
+std::size_t marks_at(const std::string& text) {
+    const auto at = text.rfind(",\n \"marks\": ");
+    if (at == std::string::npos) throw std::out_of_range("a record without marks");
+    return at;
+}
+
 /// What the best witness of an edge says.
 std::string verdict_text(const flight::ExplainedEdge& explained) {
     if (explained.witnesses.empty()) return explained.verdict;
@@ -327,6 +336,7 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
 std::string to_json_text(const FlightRecord& record) {
     Json json;
     visit_record(record, RecordWriter{json});
+    RecordWriter{json}(marks_name, record.content.marks);
     // File names need not be UTF-8, and a record must never fail for that.
     auto text = json.dump(1, ' ', false, Json::error_handler_t::replace);
     text.resize(text.size() - std::string_view("\n}").size());
@@ -335,13 +345,25 @@ std::string to_json_text(const FlightRecord& record) {
 
 std::optional<FlightRecord> record_from_json(const std::string& text) {
     const auto end = text.rfind(seal_key);
-    if (end == std::string::npos || text.substr(end) != seal_of(text.substr(0, end))) return std::nullopt;
+    if (end == std::string::npos || text.substr(end) != seal_of(std::string_view(text).substr(0, end)))
+        return std::nullopt;
     try {
         FlightRecord record;
-        visit_record(record, RecordReader{Json::parse(text)});
+        visit_record(record, RecordReader{Json::parse(text.substr(0, marks_at(text)) + "}")});
         return record;
     } catch (const std::exception&) {
         return std::nullopt;  // of another version: the log is done again
+    }
+}
+
+std::optional<FlightMarks> marks_from_json(const std::string& text) {
+    try {
+        const auto json = Json::parse("{" + text.substr(marks_at(text) + 1));
+        FlightMarks marks;
+        RecordReader{json}(marks_name, marks);
+        return marks;
+    } catch (const std::exception&) {
+        return std::nullopt;
     }
 }
 

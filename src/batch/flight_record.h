@@ -31,6 +31,8 @@ struct RecordedVerdict {
     std::string text;     ///< "agrees with TAKEOFF (-0.4 s)", "no witness"
 };
 
+using FlightMarks = decltype(flight::FlightContent::marks);
+
 /// What became of one log: enough to go on without reading it again.
 struct FlightRecord {
     std::string flight;
@@ -42,7 +44,6 @@ struct FlightRecord {
     bool is_of_other_aircraft = false;  ///< rejected for that alone: it was not asked for
     std::string aircraft_id;
     std::string aircraft_name;
-    flight::FlightContent content;  ///< to find the same flight under another name
     std::string power_source;
     std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;
@@ -52,15 +53,19 @@ struct FlightRecord {
     std::string lacks_power;                ///< why no power was measured; empty if it was
     std::string why_not_fitted;             ///< what its folder says: see LogFile
     mechanical::MeasuredFlights measured;   ///< of every complete phase, however few its samples
+    flight::FlightContent content;          ///< to find it under another name; its marks are read where they are needed
 };
 
 /// The record of a flight that was read and segmented.
 FlightRecord record_of(const flight::LoadedFlight& loaded);
 
-/// The record as JSON with a seal, the fingerprint of its text, and back. Reading gives std::nullopt for what is no
-/// record of this version, or was changed since.
+/// The record as JSON with a seal, the fingerprint of its text, and back, without the marks of its content. Reading gives
+/// std::nullopt for what is no record of this version, or was changed since.
 std::string to_json_text(const FlightRecord& record);
 std::optional<FlightRecord> record_from_json(const std::string& text);
+
+/// The marks of the record that this is the text of: most of it.
+std::optional<FlightMarks> marks_from_json(const std::string& text);
 
 /// The name as a record holds it: JSON has none that is not UTF-8.
 std::string in_record(const std::string& name);

@@ -130,6 +130,7 @@ class FlightMerger {
         if (name == flight) {
             if (!merged.was_up_to_date) take_over(from, name, merged.record.accepted);
         } else {
+            merged.record.content.marks = marks_from_json(text).value();  // sealed with the rest
             take_over_as(name, from, flight, merged.record);
         }
         merged.selection = select_for_fit(merged.record, options_.needed_samples, {});
@@ -181,6 +182,7 @@ class FlightMerger {
             record.results = results_fingerprint(options_.out, name);
         }
         write(name, record_ending, to_json_text(record));
+        record.content.marks = {};  // of thousands of flights they would fill the memory
     }
 
     void write(const std::string& name, const char* ending, const std::string& text) const {

@@ -109,8 +109,13 @@ TEST(FlightRecord, IsNoneWhereAnythingIsMissingOrWrong) {
         EXPECT_FALSE(record_from_json(sealed(lacking))) << key;
         auto wrong = json;
         wrong[key] = value.is_array() ? nlohmann::json("x") : nlohmann::json::array({1});
-        EXPECT_FALSE(record_from_json(sealed(wrong))) << key;
+        const auto text_of_wrong = sealed(wrong);
+        if (key == "marks")
+            EXPECT_FALSE(marks_from_json(text_of_wrong));
+        else
+            EXPECT_FALSE(record_from_json(text_of_wrong)) << key;
     }
+    EXPECT_FALSE(marks_from_json("{}"));
     auto other_phase = json;
     other_phase["phases"][0]["phase"] = "taxi";
     EXPECT_FALSE(record_from_json(sealed(other_phase)));
@@ -123,7 +128,8 @@ TEST(FlightRecord, IsNoneWhereACountIsNoWholeNumber) {
                                   "/measured/flights/0/motion/bins/0/samples"}) {
             auto wrong = json;
             wrong[nlohmann::ordered_json::json_pointer(place)] = number;
-            EXPECT_FALSE(record_from_json(sealed(wrong))) << place << " " << number;
+            const auto text = sealed(wrong);
+            EXPECT_FALSE(record_from_json(text) && marks_from_json(text)) << place << " " << number;
         }
     }
 }

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -20,6 +20,7 @@ namespace flightwatt::batch {
 namespace {
 
 using testing::HasSubstr;
+using testing::IsEmpty;
 using Paths = std::vector<std::filesystem::path>;
 
 /// What `flightwatt batch --no-fit` does.
@@ -31,7 +32,7 @@ void batch_of(const Paths& logs, const std::filesystem::path& out, double rest_s
     const auto plan = plan_batch(find_logs({logs.begin(), logs.end()}), out, false);
     prepare_folder(plan, out);
     auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const BatchFlight&) {});
-    exclude_copies(flights);
+    exclude_repeated(flights, find_repeated(flights, out));
     write_file_atomically(out / catalogue_name, catalogue_csv(flights));
 }
 
@@ -42,9 +43,20 @@ MergePlan merge(const Paths& batches, const std::filesystem::path& out, bool pru
     prepare_folder(plan.folder, out);
     WriteGate gate;
     auto flights = merge_flights(plan, {out, 8, gate}, [](std::size_t, std::size_t, const BatchFlight&) {});
-    exclude_copies(flights);
+    exclude_repeated(flights, find_repeated(flights, out));
     write_file_atomically(out / catalogue_name, catalogue_csv(flights));
     return plan;
+}
+
+/// The files that are not alike. EXPECT_EQ of their texts would take all memory to show how.
+std::vector<std::string> differing(const std::map<std::string, std::string>& one,
+                                   const std::map<std::string, std::string>& other) {
+    std::vector<std::string> names;
+    for (const auto& [name, text] : one)
+        if (!other.contains(name) || other.at(name) != text) names.push_back(name);
+    for (const auto& [name, text] : other)
+        if (!one.contains(name)) names.push_back(name);
+    return names;
 }
 
 /// Logs of equal names, one that is a copy of another, and one that is none.
@@ -91,7 +103,7 @@ TEST(Merge, GivesTheBytesOfOneBatchHoweverTheLogsWereCut) {
             }
             parts = joined;
         }
-        EXPECT_EQ(test::contents(parts.front()), whole) << cut;
+        EXPECT_THAT(differing(test::contents(parts.front()), whole), IsEmpty()) << cut;
     }
 }
 
@@ -109,19 +121,19 @@ TEST(Merge, AgainDoesNothingAndABatchGoesOnFromIt) {
     const auto flights = merge_flights(plan_merge({scratch / "one", scratch / "other"}, out, false), {out, 8, gate},
                                        [](std::size_t, std::size_t, const BatchFlight&) {});
     EXPECT_TRUE(flights[0].was_up_to_date);
-    EXPECT_EQ(test::contents(out), first);
+    EXPECT_THAT(differing(test::contents(out), first), IsEmpty());
     // A batch over all into the folder has nothing to do; one with other options leaves the merged batch alone.
     const auto plan =
         plan_batch(find_logs({logs[0].string(), logs[1].string(), logs[2].string(), logs[4].string()}), out, false);
     BatchOptions options;
     options.out = out;
     const auto done = run_batch(plan.logs, options, [](std::size_t, std::size_t, const BatchFlight&) {});
-    EXPECT_THAT(test::done_anew(done), testing::IsEmpty());
+    EXPECT_THAT(test::done_anew(done), IsEmpty());
     const auto before = test::contents(scratch / "one");
     options.load.segmentation.cruise_fraction = 0.8;
     const auto anew = run_batch(plan.logs, options, [](std::size_t, std::size_t, const BatchFlight&) {});
     EXPECT_EQ(test::done_anew(anew).size(), 4U);
-    EXPECT_EQ(test::contents(scratch / "one"), before);
+    EXPECT_THAT(differing(test::contents(scratch / "one"), before), IsEmpty());
 }
 
 TEST(Merge, RefusesWhatCannotBeJoined) {

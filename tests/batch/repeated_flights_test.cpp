@@ -26,7 +26,8 @@ TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     copy_sample(1, folder / "in", "b");
     copy_sample(2, folder / "in", "c");
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_copies(flights), UnorderedElementsAre(Pair("b", "a")));
+    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")),
+                UnorderedElementsAre(Pair("b", "a")));
     EXPECT_THAT(flights[1].selection.flights, IsEmpty());
     EXPECT_EQ(to_string(flights[1].selection.exclusions.back()),
               "b: it is excluded from the fit: it is the same flight as a, which is used");
@@ -34,7 +35,8 @@ TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     // Rather that of which the log is there.
     std::filesystem::remove(folder / "in" / "a.data");
     flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_copies(flights), UnorderedElementsAre(Pair("a", "b")));
+    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")),
+                UnorderedElementsAre(Pair("a", "b")));
 }
 
 /// What another receiver made of a log: it lost every nth line.
@@ -51,11 +53,13 @@ TEST(RepeatedFlights, UsesTheBetterOfTwoRecordingsOfAFlight) {
     lose_lines(copy_sample(1, folder / "in", "a"), 4);
     lose_lines(copy_sample(1, folder / "in", "b"), 9);
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_copies(flights), UnorderedElementsAre(Pair("a", "b")));
+    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")),
+                UnorderedElementsAre(Pair("a", "b")));
     // What has its definitions is used, however few its lines.
     std::filesystem::remove(folder / "in" / "b.log");
     flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_copies(flights), UnorderedElementsAre(Pair("b", "a")));
+    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")),
+                UnorderedElementsAre(Pair("b", "a")));
 }
 
 TEST(RepeatedFlights, WarnsOfTwoRecordingsThatShareLittle) {
@@ -68,7 +72,7 @@ TEST(RepeatedFlights, WarnsOfTwoRecordingsThatShareLittle) {
     write_file_atomically(folder / "in" / "b.data",
                           text.substr(0, text.find('\n') + 1) + fmt::format("{}", fmt::join(rest.after, "")));
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_copies(flights), IsEmpty());
+    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")), IsEmpty());
     EXPECT_THAT(flights[0].record.warnings.back() + flights[1].record.warnings.back(),
                 HasSubstr("of one flight both, less than half of either: it counts twice"));
 }
