@@ -295,7 +295,7 @@ std::vector<std::string> listed_logs(const cli::StageCall& call) {
     if (!list) return {};
     const auto text = *list == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : read_file(*list);
     auto paths = batch::listed_paths(text);
-    if (paths.empty() && call.inputs.empty()) {
+    if (paths.empty()) {
         throw InputError({*list == "-" ? "the standard input" : *list}, "names no log",
                          "expected the path of a log in each line");
     }

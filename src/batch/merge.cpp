@@ -43,7 +43,7 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
         if (!std::filesystem::exists(result_of(batch, listed.flight, record_ending), none)) {
             throw InputError({batch.string()},
                              fmt::format("this batch was not finished: {} has no record", listed.flight),
-                             "run the same flightwatt batch again; it goes on where it stopped");
+                             "run the command that makes it again; it goes on where it stopped");
         }
         flights.push_back({batch, std::move(listed)});
     }
