@@ -1,6 +1,7 @@
 // What a live predictor takes of memory and time in a flight:
 //   live_allocations LOG.data MODEL.toml REMAINING_S BATTERY.toml | LOG.data MISSION.toml [--decide]
-// Counts what operator new is asked for after the start. Exit code 1 where a push allocates, or is refused.
+// Counts what operator new is asked for after the start. Exit code 1 where a push allocates, or is refused, or where a
+// look allocates more often than ever was seen.
 
 #include "live/predictor.h"
 
@@ -161,5 +162,8 @@ int main(int argc, char** argv) {
                 static_cast<double>(settled_bytes - start_bytes) / 1e6,
                 static_cast<double>(most_left_bytes - start_bytes) / 1e6,
                 static_cast<double>(allocations.peak_bytes - start_bytes) / 1e6);
-    return pushes == lines.size() && in_pushes == 0 ? 0 : 1;
+    constexpr std::size_t most_in_a_look = 2'000;  // 1,548 were seen, on a real flight of 34 minutes
+    const bool looks_are_lean =
+        std::ranges::all_of(looks, [](const Look& look) { return look.allocations <= most_in_a_look; });
+    return pushes == lines.size() && in_pushes == 0 && looks_are_lean ? 0 : 1;
 }

@@ -29,6 +29,8 @@ struct RestMask {
 
 RestMask rests_of(const PackRecord& record) {
     RestMask mask;
+    mask.resting.reserve(record.time_s.size());
+    mask.since_load_s.reserve(record.time_s.size());
     const double load_a = least_load_of(*std::ranges::max_element(record.current_a));
     double loaded_s = 0.0;
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
@@ -92,14 +94,15 @@ std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std
     for (std::size_t i = 1; i < record.time_s.size(); ++i) {
         const bool anew = begins_anew(logged_ah, i);
         const bool between_loads = mask.resting[i] && mask.since_load_s[i] > 0.0 && i < mask.last_load;
+        const double rise = (record.voltage_v[i] - record.voltage_v[i - 1]) / record.voltage_v[i - 1];
+        // The step is seen from all the samples beside it: it lies where two neighbours differ by most of it, and is not
+        // looked for where they do not.
         double step = 0.0;
-        if (between_loads) {
+        if (between_loads && rise > lesser_step / 2.0) {
             step = step_up(record, mask, i, anew ? 0.0 : settled_s);
             if (const double early = step_up(record, mask, i, recovery_s); early > fresh_step) step = early;
         }
-        // The step is seen from all the samples beside it: it lies where two neighbours differ by most of it.
-        const bool steps_here = record.voltage_v[i] - record.voltage_v[i - 1] > step / 2.0 * record.voltage_v[i - 1];
-        if (steps_here && step > lesser_step) {
+        if (rise > step / 2.0 && step > lesser_step) {
             notes.push_back(
                 fmt::format("the pack was changed at {:.0f} s: the voltage rises from {:.2f} to {:.2f} V at "
                             "rest{}; its discharges are told apart",
