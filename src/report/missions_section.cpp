@@ -117,8 +117,9 @@ Section schedule_section(Missions missions, const PublishedFigures& published) {
                                                           "cut off at [s]", "empty at [s]", "energy [Wh]", "utility"}});
     section.html += paragraph(
         "Energies are what the whole mission demands, also where the battery is empty before its end. The "
-        "chance is that of 1000 flights drawn a mission, from what its models and its [uncertainty] say of "
-        "how flights differ: 95 % intervals reach 3 percent points at most; \"-\": nothing says it.",
+        "chance is that of 1000 flights drawn a mission, 200 where a policy plans in flight, from what its models and its "
+        "[uncertainty] say of how flights differ: 95 % intervals reach 3 percent points at most, or 7; \"-\": nothing "
+        "says it.",
         "soft");
     if (!sources.empty()) section.html += "<div class=\"soft\">" + list_html(sources) + "</div>\n";
     if (!failures.empty()) section.html += "<div class=\"warning\">" + list_html(failures) + "</div>\n";
