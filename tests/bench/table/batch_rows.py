@@ -1,0 +1,149 @@
+"""A batch beside the sum of its work, its memory over many logs, and how it ends when it is stopped."""
+
+import os
+import random
+import shutil
+import signal
+import time
+
+from measure import BenchError, make_flights, say
+from rows import Row, at_most
+
+TARGETS = ["flightwatt-synthesize", "flightwatt-batch"]
+REAL_LOG = ("--cruise", "4200")  # 4.2 MB
+SMALL_LOG = ("--cruise", "60", "--flight-messages-only")
+THINNING = 2  # of small logs every second message of a kind: 70 kB
+ORIGINALS = 300  # of the small logs, which are linked
+
+
+def contents(folder):
+    """Every file below a folder, by its path in there."""
+    files = {}
+    for place, _, names in os.walk(folder):
+        for name in names:
+            path = os.path.join(place, name)
+            with open(path, "rb") as file:
+                files[os.path.relpath(path, folder)] = file.read()
+    return files
+
+
+def fresh_batch(bench, inputs, out, *options):
+    shutil.rmtree(out, ignore_errors=True)
+    return bench.run([bench.program("batch"), *inputs, "-o", out, *options])
+
+
+def beside_its_work(bench, source, logs, out):
+    """The clock's time of a batch on all cores, beside the processor's time of one job divided by the cores."""
+    say(f"a batch of {logs} real-sized logs, and the same by one job")
+    wall_s, work_s = [], []
+    for _ in range(min(2, bench.sizes.rounds)):
+        work_s.append(fresh_batch(bench, [source], out, "--jobs", "1").cpu_s)
+        one_job = contents(out)
+        wall_s.append(fresh_batch(bench, [source], out).wall_s)
+    cores = len(bench.cores)
+    by_cores_s = min(work_s) / cores
+    of = f"{logs} logs of 4 MB"
+    ratio = min(wall_s) / by_cores_s
+    return [
+        Row("batch, with its fit", of, min(wall_s), "s", at_most(1.1), f"work / {cores}", by_cores_s, ratio),
+        Row("files that depend on the jobs", of, different_files(one_job, contents(out)), "files", at_most(0, "files")),
+    ]
+
+
+def different_files(some, others):
+    return sum(some.get(path) != others.get(path) for path in {*some, *others})
+
+
+def stop_and_go_on(bench, source, out, kills, wall_s, how):
+    """Stops a batch again and again while it works; the longest time to its end [s]."""
+    command = [bench.program("batch"), source, "-o", out]
+    longest_s = 0.0
+    for _ in range(kills):
+        batch = bench.started(command)
+        time.sleep(random.uniform(0.0, 1.5 * wall_s / (kills + 1)))
+        begin = time.monotonic()
+        was_running = batch.poll() is None
+        batch.send_signal(how)
+        code = batch.wait()
+        if was_running and code not in (-how, 128 + how, 0):
+            raise BenchError(f"the batch ended with {code} after signal {how}")
+        longest_s = max(longest_s, time.monotonic() - begin)
+    bench.run(command)
+    return longest_s
+
+
+def stopped(bench, source, logs, out):
+    """`out` holds what a batch left that nobody stopped."""
+    kills = bench.sizes.kills
+    say(f"stopping it {kills} times by SIGKILL and by Ctrl-C")
+    whole = contents(out)
+    rows = []
+    for how, name in ((signal.SIGKILL, "SIGKILL"), (signal.SIGINT, "Ctrl-C")):
+        again = fresh_batch(bench, [source], out)
+        shutil.rmtree(out)
+        longest_s = stop_and_go_on(bench, source, out, kills, again.wall_s, how)
+        different = different_files(whole, contents(out))
+        of = f"{logs} logs, {kills} times"
+        rows.append(Row(f"files that {name} changes", of, different, "files", at_most(0, "files")))
+    rows.append(Row("Ctrl-C ends a batch within", of, longest_s, "s", at_most(1, "s")))
+    return rows
+
+
+def thin(log):
+    """Leaves every second message of a kind in a log."""
+    seen, kept = {}, []
+    with open(log, encoding="ascii") as file:
+        for line in file:
+            message = line.split(" ", 3)[2]
+            seen[message] = seen.get(message, -1) + 1
+            if seen[message] % THINNING == 0:
+                kept.append(line)
+    with open(log, "w", encoding="ascii") as file:
+        file.writelines(kept)
+
+
+def link_logs(bench, originals, count):
+    """A list of `count` hard links to logs, in a folder of their own."""
+    folder = bench.path(f"links{count}")
+    os.mkdir(folder)
+    names = []
+    for number in range(count):
+        log = originals[number % len(originals)]
+        name = os.path.join(folder, f"flight_{number:07}")
+        os.link(log, name + ".data")
+        os.link(log.removesuffix(".data") + ".log", name + ".log")
+        names.append(name + ".data\n")
+    with open(folder + ".txt", "w", encoding="utf-8") as file:
+        file.writelines(names)
+    return folder
+
+
+def memory_of_archive(bench):
+    many = bench.sizes.archive
+    few = max(1, many // 100)
+    say(f"making small logs, {many} links")
+    originals = make_flights(bench, "small", min(ORIGINALS, few), *SMALL_LOG)
+    for log in originals:
+        thin(log)
+    memory_mb = []
+    for count in (few, many):
+        folder = link_logs(bench, originals, count)
+        say(f"a batch of {count} small logs")
+        out = folder + ".out"
+        memory_mb.append(fresh_batch(bench, ["--files-from", folder + ".txt"], out).memory_mb)
+        shutil.rmtree(out)
+        shutil.rmtree(folder)
+    ratio = memory_mb[1] / memory_mb[0]
+    beside = f"{few} logs"
+    return Row("memory of a batch, small logs", f"{many} logs", memory_mb[1], "MB", at_most(1.2), beside, memory_mb[0], ratio)
+
+
+def measure(bench):
+    say(f"making {bench.sizes.real_logs} logs of 4 MB")
+    logs = make_flights(bench, "real", bench.sizes.real_logs, *REAL_LOG)
+    source, out = bench.path("real"), bench.path("real.out")
+    rows = beside_its_work(bench, source, len(logs), out)
+    rows += stopped(bench, source, len(logs), out)
+    shutil.rmtree(source)
+    shutil.rmtree(out)
+    return [*rows, memory_of_archive(bench)]
