@@ -6,7 +6,7 @@ import shutil
 from measure import make_flights, say
 from rows import Row, at_least, at_most, times_as_fast
 
-TARGETS = ["flightwatt-synthesize", "flightwatt-batch", "flightwatt-report", "flightwatt-validate", "flightwatt-battery"]
+TARGETS = [f"flightwatt-{stage}" for stage in ("synthesize", "batch", "report", "validate", "battery")]
 
 
 def batched(bench, logs, out):

@@ -103,19 +103,25 @@ class Bench:
         return os.path.join(self.build, "tests/bench", name)
 
     def started(self, command, one_core=False, variables=None):
-        """The process of a command; its output goes to files. One core is the last: the first serves most interrupts."""
+        """The process of a command; its output goes to files. One core is the last: the first serves interrupts."""
         pinned = ["taskset", "-c", str(self.cores[-1])] if one_core else []
         # Not to /dev/null: grep stops at the first match there.
+        environment = dict(os.environ, **(variables or {}))
         with open(self.output, "wb") as out, open(self.output + ".errors", "wb") as errors:
             return subprocess.Popen(
-                pinned + command, stdin=subprocess.DEVNULL, stdout=out, stderr=errors, env=dict(os.environ, **(variables or {}))
+                pinned + command, stdin=subprocess.DEVNULL, stdout=out, stderr=errors, env=environment
             )
 
     def run(self, command, one_core=False, variables=None):
         """A command that has to end with 0."""
         begin = time.monotonic()
         process = self.started(command, one_core, variables)
-        _, status, usage = os.wait4(process.pid, 0)
+        try:
+            _, status, usage = os.wait4(process.pid, 0)
+        except BaseException:  # also of a signal: nothing goes on in a folder that is removed
+            process.kill()
+            process.wait()
+            raise
         wall_s = time.monotonic() - begin
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode != 0:
@@ -129,11 +135,11 @@ class Bench:
         with open(self.output, encoding="utf-8") as file:
             return file.read()
 
-    def least(self, commands):
+    def least(self, commands, rounds=None):
         """Runs of {name: (command, one core alone)}, by turns, so that what disturbs the machine disturbs all; of each
         the least seconds and memory."""
         runs = {name: [] for name in commands}
-        for number in range(self.sizes.rounds + 1):
+        for number in range((rounds or self.sizes.rounds) + 1):
             for name, (command, one_core) in commands.items():
                 run = self.run(command, one_core, {"LC_ALL": "C"})
                 if number > 0:

@@ -6,36 +6,36 @@ UNITS = {"s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")), "/s": ((1e6, "M/s"), (1
 
 
 def quantity(value, unit):
-    """Three digits and a unit that suits them: "6.10 ms"."""
+    """Two or three digits and a unit that suits them: "6.1 ms"."""
     if unit == "files":
         return f"{value:.0f} {unit}"
     scale, name = next((pair for pair in UNITS.get(unit, ((1.0, unit),)) if abs(value) >= pair[0]), (1.0, unit))
     scaled = value / scale
-    text = f"{scaled:.0f}" if abs(scaled) >= 100 else f"{scaled:.3g}"
-    return f"{text} {name}"
+    if abs(scaled) >= 100:
+        return f"{scaled:.0f} {name}"
+    return f"{scaled:.3g} {name}" if scaled == 0 or abs(scaled) >= 1e-3 else f"{scaled:.1e} {name}"
 
 
 @dataclasses.dataclass(frozen=True)
 class Goal:
-    """`unit` "times" is of the ratio, any other of our own value."""
+    """Without a unit of the ratio, else of our own value."""
 
     relation: str  # ">=" or "<="
     value: float
-    unit: str = "times"
+    unit: str = ""
 
     def is_met(self, measured):
         return measured >= self.value if self.relation == ">=" else measured <= self.value
 
     def __str__(self):
-        value = f"{self.value:g} times" if self.unit == "times" else quantity(self.value, self.unit)
-        return f"{self.relation} {value}"
+        return f"{self.relation} {quantity(self.value, self.unit) if self.unit else format(self.value, 'g')}"
 
 
-def at_least(value, unit="times"):
+def at_least(value, unit=""):
     return Goal(">=", value, unit)
 
 
-def at_most(value, unit="times"):
+def at_most(value, unit=""):
     return Goal("<=", value, unit)
 
 
@@ -48,22 +48,21 @@ class Row:
     goal: Goal
     beside: str = ""  # the peer or the floor; empty: there is none
     other: float = None  # its value, in the same unit; None: it is absent
-    ratio: float = None  # what the goal in "times" is of
+    ratio: float = None  # what a goal without a unit is of
 
     def judged(self):
-        return self.ratio if self.goal.unit == "times" else self.ours
+        return self.ours if self.goal.unit else self.ratio
 
     def verdict(self):
         if self.judged() is None:
-            return "not measured"
+            return "no peer"
         return "met" if self.goal.is_met(self.judged()) else "NOT met"
 
     def cells(self):
-        other = "-"
-        if self.beside:
-            other = f"{quantity(self.other, self.unit)}: {self.beside}" if self.other is not None else f"{self.beside}: absent"
+        other = "absent" if self.other is None else quantity(self.other, self.unit)
+        beside = f"{other}: {self.beside}" if self.beside else "-"
         ratio = "-" if self.ratio is None else f"{self.ratio:.3g}"
-        return [self.what, self.of, quantity(self.ours, self.unit), other, ratio, str(self.goal), self.verdict()]
+        return [self.what, self.of, quantity(self.ours, self.unit), beside, ratio, str(self.goal), self.verdict()]
 
 
 def times_as_fast(what, of, ours_s, beside, other_s, goal):
