@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds scripts/bench to a whole table: table_test.py BUILD. Its rows are those of docs/performance.md, each with its
-numbers and a verdict that these bear out. What the numbers are is not asked: the inputs are small, the machine any."""
+numbers and a verdict that these bear out. What the numbers are is not asked: the inputs are small, the machine any.
+Exits with 77 (skipped) where the report cannot be drawn."""
 
 import os
 import re
@@ -114,4 +115,7 @@ class Refusals(unittest.TestCase):
         self.refused(3, "does not begin with a time", "--quick", "--build", sys.argv[1], "--log", readme, "log")
 
 
+if not os.path.isdir(os.path.join(ROOT, "web/node_modules/vega")):
+    print("skipped: web/node_modules is missing; scripts/install_dependencies installs it", file=sys.stderr)
+    sys.exit(77)
 unittest.main(argv=sys.argv[:1])

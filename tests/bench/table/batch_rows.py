@@ -60,9 +60,10 @@ def stop_and_go_on(bench, source, out, kills, wall_s, how):
     command = [bench.program("batch"), source, "-o", out]
     done, longest_s = 0, 0.0
     for _ in range(kills):
-        batch = bench.started(command)
-        time.sleep(random.uniform(0.0, 1.5 * wall_s / (kills + 1)))
-        if batch.poll() is None:
+        with bench.started(command) as batch:
+            time.sleep(random.uniform(0.0, 1.5 * wall_s / (kills + 1)))
+            if batch.poll() is not None:
+                continue
             begin = time.monotonic()
             batch.send_signal(how)
             code = batch.wait()
@@ -74,19 +75,21 @@ def stop_and_go_on(bench, source, out, kills, wall_s, how):
     return done, longest_s
 
 
-def stopped(bench, source, logs, out):
-    """`out` holds what a batch left that nobody stopped."""
+def stopped(bench, source):
+    """Of the files that a batch leaves that nobody stops, how many are others after it was stopped."""
     kills = bench.sizes.kills
-    say(f"stopping it {kills} times by SIGKILL and by Ctrl-C")
+    say(f"a batch that is stopped {kills} times by SIGKILL and by Ctrl-C")
+    out = bench.path("stopped.out")
+    wall_s = fresh_batch(bench, [source], out).wall_s
     whole = contents(out)
     rows = []
     for how, name in ((signal.SIGKILL, "SIGKILL"), (signal.SIGINT, "Ctrl-C")):
-        again = fresh_batch(bench, [source], out)
         shutil.rmtree(out)
-        done, longest_s = stop_and_go_on(bench, source, out, kills, again.wall_s, how)
+        done, longest_s = stop_and_go_on(bench, source, out, kills, wall_s, how)
         different = different_files(whole, contents(out))
-        of = f"{logs} logs, {done} times"
+        of = f"{done} of {kills} times"
         rows.append(Row(f"files that {name} changes", of, different, "files", at_most(0, "files")))
+    shutil.rmtree(out)
     rows.append(Row("Ctrl-C ends a batch within", of, longest_s, "s", at_most(1, "s")))
     return rows
 
@@ -120,13 +123,9 @@ def link_logs(bench, originals, count):
     return folder
 
 
-def memory_of_archive(bench):
+def memory_of_archive(bench, originals):
     many = bench.sizes.archive
     few = max(1, many // 100)
-    say(f"making small logs, {many} links")
-    originals = make_flights(bench, "small", min(ORIGINALS, few), *SMALL_LOG)
-    for log in originals:
-        thin(log)
     memory_mb = []
     for count in (few, many):
         folder = link_logs(bench, originals, count)
@@ -145,7 +144,10 @@ def measure(bench):
     logs = make_flights(bench, "real", bench.sizes.real_logs, *REAL_LOG)
     source, out = bench.path("real"), bench.path("real.out")
     rows = beside_its_work(bench, source, len(logs), out)
-    rows += stopped(bench, source, len(logs), out)
     shutil.rmtree(source)
     shutil.rmtree(out)
-    return [*rows, memory_of_archive(bench)]
+    say("making small logs")
+    small = make_flights(bench, "small", min(ORIGINALS, bench.sizes.archive), *SMALL_LOG)
+    for log in small:
+        thin(log)
+    return [*rows, *stopped(bench, os.path.dirname(small[0])), memory_of_archive(bench, small)]
