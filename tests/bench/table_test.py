@@ -85,7 +85,7 @@ class Rows(unittest.TestCase):
         measured = ((0.0061, "s"), (4.04e-4, "s"), (1.52e6, "/s"), (253.4, "MB"), (0, "s"))
         written = [rows.quantity(*pair) for pair in measured]
         self.assertEqual(written, ["6.1 ms", "404 µs", "1.52 M/s", "253 MB", "0 s"])
-        self.assertEqual(rows.quantity(9.49e-12, "points"), "9.5e-12 points")
+        self.assertEqual(rows.quantity(9.49e-12, "%"), "9.5e-12 %")
         self.assertEqual(rows.quantity(100_000, "files"), "100000 files")
 
     def test_goals_are_of_the_ratio_or_of_our_own_value(self):

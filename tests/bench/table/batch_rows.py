@@ -43,7 +43,7 @@ def beside_its_work(bench, source, logs, out):
         wall_s.append(fresh_batch(bench, [source], out).wall_s)
     cores = len(bench.cores)
     by_cores_s = min(work_s) / cores
-    of = f"{logs} logs of 4 MB"
+    of = f"{logs} of 4 MB"
     ratio = min(wall_s) / by_cores_s
     return [
         Row("batch, with its fit", of, min(wall_s), "s", at_most(1.1), f"work / {cores}", by_cores_s, ratio),
@@ -137,7 +137,7 @@ def memory_of_archive(bench, originals):
         shutil.rmtree(folder)
     ratio = memory_mb[1] / memory_mb[0]
     goal = at_most(1.2)
-    return Row("memory of a batch", f"{many} small logs", memory_mb[1], "MB", goal, f"{few} logs", memory_mb[0], ratio)
+    return Row("memory of a batch", f"{many} logs", memory_mb[1], "MB", goal, f"{few} logs", memory_mb[0], ratio)
 
 
 def measure(bench):

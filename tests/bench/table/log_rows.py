@@ -44,7 +44,7 @@ def rows_of(of, runs):
         row("energy messages of a log", "energy", "grep -F -c", "grep", 1),
         row("energy messages, beside lines", "energy", "memchr", "lines", 0.5),
         row("every line into words", "words", "Python", "python", 5),
-        row("words, fields as numbers", "numbers", "Python, words", "python", 5),
+        row("words, fields as numbers", "numbers", "Python", "python", 5),
         row("flightwatt parse, one core", "parse", "grep -F -c", "grep", 1),
         times_as_fast("flightwatt parse, all cores", of, all_s, "grep -F -c", grep_s, at_least(2)),
     ]

@@ -65,11 +65,11 @@ def schedule_rows(bench):
     seconds = {name: run["cpu_time"] * 1e-3 for name, run in runs.items()}
     tables, slots, odeint = (seconds[f"final_soc_by_{name}"] for name in ("tables", "slots", "odeint"))
     off = max(runs[f"final_soc_by_{name}"]["worst_difference_percent"] for name in ("tables", "slots"))
-    of = f"{count} schedules"
+    of = str(count)
     return [
-        times_as_fast("final charge by tables", of, tables, "Odeint", odeint, at_least(20)),
-        times_as_fast("the same, common slots", of, slots, "Odeint", odeint, at_least(20)),
-        Row("their worst difference", "100 schedules", off, "points", at_most(1e-4, "points")),
+        times_as_fast("schedules by tables", of, tables, "Odeint", odeint, at_least(20)),
+        times_as_fast("schedules of common slots", of, slots, "Odeint", odeint, at_least(20)),
+        Row("schedules, off by", "100", off, "%", at_most(1e-4, "%")),
     ]
 
 
@@ -87,12 +87,12 @@ def sampling_rows(bench):
             if "worst_difference_percent" in run:
                 off[name] = run["worst_difference_percent"]
     rows = []
-    for battery, title in (("thevenin", "Thévenin pack"), ("paper", "the paper's pack")):
+    for battery, title in (("thevenin", "Thévenin pack"), ("paper", "paper's pack")):
         together, alone = most[f"side_by_side/{battery}"], most[f"one_at_a_time/{battery}"]
         ratio = together / alone
         rows.append(Row("drawn flights a core", title, together, "/s", at_least(1e5, "/s"), "one by one", alone, ratio))
         worst = off[f"off_runge_kutta/{battery}"]
-        rows.append(Row("their worst difference", title, worst, "points", at_most(0.01, "points")))
+        rows.append(Row("drawn flights, off by", title, worst, "%", at_most(0.01, "%")))
     return rows
 
 

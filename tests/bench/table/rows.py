@@ -13,7 +13,7 @@ def quantity(value, unit):
     scaled = value / scale
     if abs(scaled) >= 100:
         return f"{scaled:.0f} {name}"
-    return f"{scaled:.3g} {name}" if scaled == 0 or abs(scaled) >= 1e-3 else f"{scaled:.1e} {name}"
+    return f"{scaled:.3g} {name}" if abs(scaled) >= 0.1 else f"{scaled:.2g} {name}"
 
 
 @dataclasses.dataclass(frozen=True)
