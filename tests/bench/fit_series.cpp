@@ -1,6 +1,7 @@
 // Makes four noisy series of 600 s at 10 Hz (1.0, 1.3, 4.2 and 10 periods of Table I's cruise, harmonics four
-// times as large, noise of 1.5 W), writes them as CSV for others to fit, fits them, and prints what it took.
-// usage: fit_series FOLDER
+// times as large, noise of 1.5 W), writes them as CSV for others to fit, fits them, and prints a line each: periods,
+// seconds of the fit, periods found, seconds of one linear solve at the right frequency, and what its residuals are
+// [W RMS]. usage: fit_series FOLDER
 
 #include "base/atomic_file.h"
 #include "base/units.h"
@@ -8,12 +9,13 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <random>
 #include <string>
 #include <vector>
 
+#include <Eigen/Dense>
 #include <fmt/format.h>
 
 namespace {
@@ -38,18 +40,45 @@ mechanical::PhaseSamples make_series(double periods, std::mt19937_64& random) {
     return series;
 }
 
-/// The least seconds of nine fits, and the periods that they found.
-std::pair<double, double> timed_fit(const mechanical::PhaseSamples& series) {
-    double best_s = 1e9;
-    double periods = 0.0;
+struct Timed {
+    double seconds = 1e9;
+    double found = 0.0;
+};
+
+/// The least seconds of the processor of nine runs of `compute`, and what it returned.
+template <typename Compute>
+Timed timed(Compute compute) {
+    Timed least;
     for (int round = 0; round < 9; ++round) {
-        const auto start = std::chrono::steady_clock::now();
-        const auto fit = fit_phase(flight::Phase::cruise, std::span(&series, 1));
-        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-        best_s = std::min(best_s, taken.count());
-        periods = fit.theta_rad / units::rad_per_turn;
+        const auto start = std::clock();
+        least.found = compute();
+        const auto taken = static_cast<double>(std::clock() - start);
+        least.seconds = std::min(least.seconds, taken / static_cast<double>(CLOCKS_PER_SEC));
     }
-    return {best_s, periods};
+    return least;
+}
+
+double fitted_periods(const mechanical::PhaseSamples& series) {
+    return fit_phase(flight::Phase::cruise, std::span(&series, 1)).theta_rad / units::rad_per_turn;
+}
+
+/// The residuals [W RMS] of a constant and three harmonics at `periods`, by normal equations: the least that a fit has
+/// to compute.
+double rms_of_linear_solve(const mechanical::PhaseSamples& series, double periods) {
+    constexpr Eigen::Index harmonics = 3;
+    const auto count = static_cast<Eigen::Index>(series.tau.size());
+    const Eigen::ArrayXd angle =
+        Eigen::Map<const Eigen::ArrayXd>(series.tau.data(), count) * units::rad_from_turns(periods);
+    const Eigen::Map<const Eigen::VectorXd> power(series.power_w.data(), count);
+    Eigen::MatrixXd basis(count, 1 + 2 * harmonics);
+    basis.col(0).setOnes();
+    for (Eigen::Index n = 1; n <= harmonics; ++n) {
+        const auto multiple = static_cast<double>(n) * angle;
+        basis.col(2 * n - 1) = multiple.cos();
+        basis.col(2 * n) = multiple.sin();
+    }
+    const Eigen::VectorXd coefficients = (basis.transpose() * basis).ldlt().solve(basis.transpose() * power);
+    return (power - basis * coefficients).norm() / std::sqrt(static_cast<double>(count));
 }
 
 }  // namespace
@@ -67,8 +96,9 @@ int main(int argc, char** argv) {
             csv += fmt::format("{},{}\n", series.tau[i] * duration_s, series.power_w[i]);
         }
         write_file_atomically(fmt::format("{}/{}.csv", argv[1], periods), csv);
-        const auto [seconds, found] = timed_fit(series);
-        fmt::print("{} {} {}\n", periods, seconds, found);
+        const auto fit = timed([&] { return fitted_periods(series); });
+        const auto solve = timed([&] { return rms_of_linear_solve(series, periods); });
+        fmt::print("{} {} {} {} {:.4f}\n", periods, fit.seconds, fit.found, solve.seconds, solve.found);
     }
     return 0;
 }

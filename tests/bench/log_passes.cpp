@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 namespace flightwatt::bench {
 
@@ -26,6 +27,16 @@ std::size_t row_count(const telemetry::TelemetryLog& log) {
         for (const auto& table : sender.tables) rows += table.time_s.size();
     }
     return rows;
+}
+
+std::size_t count_lines(std::string_view text) {
+    std::size_t lines = 0;
+    const char* const end = text.data() + text.size();
+    for (const char* at = text.data(); at != end; ++lines) {
+        const void* const found = std::memchr(at, '\n', static_cast<std::size_t>(end - at));
+        at = found == nullptr ? end : static_cast<const char*>(found) + 1;
+    }
+    return lines;
 }
 
 WordCount count_words(std::string_view text) {

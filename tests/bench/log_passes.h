@@ -17,6 +17,9 @@ std::vector<telemetry::MessageRequest> energy_messages();
 /// All rows of all senders and messages.
 std::size_t row_count(const telemetry::TelemetryLog& log);
 
+/// Lines by std::memchr alone: what any reader of lines has to do at least.
+std::size_t count_lines(std::string_view text);
+
 struct WordCount {
     std::size_t lines = 0;
     std::size_t words = 0;

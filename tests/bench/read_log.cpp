@@ -12,13 +12,14 @@
 
 #include <fmt/format.h>
 
-/// One pass over one log as a process of its own, so that scripts/bench can set it beside grep and Python.
+/// One pass over one log as a process of its own, so that scripts/bench can set it beside others.
 namespace flightwatt::bench {
 namespace {
 
 constexpr auto usage =
     "usage: read_log PASS FILE.data\n"
     "  energy   parse ENERGY, ESTIMATOR, NAVIGATION, PPRZ_MODE and TAKEOFF, as a flight is read\n"
+    "  lines    find every line's end by memchr, nothing else\n"
     "  words    split every line into words\n"
     "  numbers  split every line and parse its fields as numbers\n"
     "  memory   as energy; prints the peak memory beyond the file's own pages\n";
@@ -59,6 +60,8 @@ int run(std::string_view pass, const std::filesystem::path& path) {
     if (pass == "energy") {
         const auto log = parse_energy(path, telemetry::DataFile(path).text());
         fmt::print("lines {} rows {}\n", log.lines, row_count(log));
+    } else if (pass == "lines") {
+        fmt::print("lines {}\n", count_lines(telemetry::DataFile(path).text()));
     } else if (pass == "words") {
         const auto count = count_words(telemetry::DataFile(path).text());
         fmt::print("lines {} words {} characters {}\n", count.lines, count.words, count.characters);

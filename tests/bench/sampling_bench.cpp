@@ -1,9 +1,13 @@
-// Flights sampled by a single thread: of both battery kinds, beside the same flights one at a time.
+// Flights sampled by a single thread: of both battery kinds, beside the same flights one at a time, and how far they
+// are off Runge-Kutta.
 
 #include "log_passes.h"
 #include "mission/mission_file.h"
 #include "mission/sampling/flight_lanes.h"
+#include "mission/simulation.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <variant>
@@ -51,10 +55,35 @@ void one_at_a_time(benchmark::State& state, const char* path) {
     state.SetItemsProcessed(static_cast<std::int64_t>(flights));
 }
 
+/// Over flights that are not empty before they land: the reference stops there.
+void off_runge_kutta(benchmark::State& state, const char* path) {
+    const Sampled sampled(path);
+    std::vector<std::vector<double>> normals;
+    for (std::size_t i = 0; i < 100; ++i) normals.push_back(draw_normals(count_normals(sampled.setup), 1, i));
+    std::vector<Landing> landings(normals.size());
+    for (auto _ : state) sampled.lanes.fly(normals, landings);
+    double worst_percent = 0.0;
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        if (landings[i].battery_failure) continue;
+        const auto flight = flight_of(sampled.setup, sampled.spreads, normals[i]);
+        const auto schedule =
+            rescale_to_flown_durations(sampled.mission.schedule, sampled.setup.duration_s, flight.duration_s);
+        const auto reference = simulate(flight, schedule, {60.0, 0.25}).summary.final_soc_percent;
+        worst_percent = std::max(worst_percent, std::abs(landings[i].final_soc_percent - reference.value()));
+        ++compared;
+    }
+    if (compared == 0) state.SkipWithError("no flight lands");
+    state.counters["compared"] = static_cast<double>(compared);
+    state.counters["worst_difference_percent"] = worst_percent;
+}
+
 BENCHMARK_CAPTURE(side_by_side, thevenin, "missions/synthetic/thevenin-pack.toml");
 BENCHMARK_CAPTURE(one_at_a_time, thevenin, "missions/synthetic/thevenin-pack.toml");
 BENCHMARK_CAPTURE(side_by_side, paper, "missions/paper/phased.toml");
 BENCHMARK_CAPTURE(one_at_a_time, paper, "missions/paper/phased.toml");
+BENCHMARK_CAPTURE(off_runge_kutta, thevenin, "missions/synthetic/thevenin-pack.toml")->Iterations(1);
+BENCHMARK_CAPTURE(off_runge_kutta, paper, "missions/paper/phased.toml")->Iterations(1);
 
 }  // namespace
 
