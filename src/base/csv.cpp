@@ -5,6 +5,7 @@
 #include "base/number.h"
 
 #include <algorithm>
+#include <forward_list>
 #include <stdexcept>
 
 #include <boost/algorithm/string/replace.hpp>
@@ -18,54 +19,69 @@ constexpr std::size_t most_columns = 1000;
 /// Of a table in memory, where a row costs as much as two cells: some 500 MB. Series are read row by row.
 constexpr std::size_t most_cells = 8'000'000;
 
-/// One line into cells, in place of those of the last line: most of them keep their memory. `text` ends before the line
-/// break.
-void split_line(std::string_view text, const std::string& file, std::size_t line, std::vector<CsvTable::Cell>& cells) {
-    std::size_t p = 0;
-    for (std::size_t count = 1;; ++count) {
-        if (cells.size() < count) cells.emplace_back();
-        auto& cell = cells[count - 1];
-        cell.text.clear();
-        cell.column = p + 1;
-        if (p < text.size() && text[p] == '"') {
-            while (true) {
-                const auto quote = text.find('"', p + 1);
-                if (quote == std::string_view::npos) {
-                    throw InputError({file, line, cell.column}, "a quote is opened and not closed");
-                }
-                cell.text += text.substr(p + 1, quote - p - 1);
-                p = quote + 1;
-                if (p >= text.size() || text[p] != '"') break;
-                cell.text += '"';
+/// Splits lines into cells, in place of those of the last line.
+class LineSplitter {
+  public:
+    LineSplitter(const std::string& file, CsvRowView& row) : file_(file), row_(row) {}
+
+    /// `text` ends before the line break.
+    void split(std::string_view text) {
+        row_.cells.clear();
+        unquoted_.clear();
+        for (std::size_t p = 0;; ++p) {
+            if (row_.cells.size() == most_columns) {
+                throw InputError({file_, row_.line}, fmt::format("has more than {} cells", most_columns),
+                                 "is it a CSV table?");
             }
-            if (p < text.size() && text[p] != ',') {
-                throw InputError({file, line, p + 1}, "text follows a closing quote", "put a comma between the cells");
-            }
-        } else {
-            const auto comma = std::min(text.find(',', p), text.size());
-            cell.text.assign(text, p, comma - p);
-            p = comma;
+            p = p < text.size() && text[p] == '"' ? add_quoted(text, p) : add_plain(text, p);
+            if (p >= text.size()) return;
         }
-        if (count > most_columns) {
-            throw InputError({file, line}, fmt::format("has more than {} cells", most_columns), "is it a CSV table?");
-        }
-        if (p >= text.size()) {
-            cells.resize(count);
-            return;
-        }
-        ++p;
     }
-}
+
+  private:
+    /// Where the cell that begins at `p` ends.
+    std::size_t add_plain(std::string_view text, std::size_t p) {
+        const auto begin = p;
+        while (p < text.size() && text[p] != ',') ++p;  // cells are short, and many are empty
+        row_.cells.push_back({text.substr(begin, p - begin), begin + 1});
+        return p;
+    }
+
+    std::size_t add_quoted(std::string_view text, std::size_t p) {
+        const auto column = p + 1;
+        auto& cell = unquoted_.emplace_front();
+        while (true) {
+            const auto quote = text.find('"', p + 1);
+            if (quote == std::string_view::npos)
+                throw InputError({file_, row_.line, column}, "a quote is opened and not closed");
+            cell += text.substr(p + 1, quote - p - 1);
+            p = quote + 1;
+            if (p >= text.size() || text[p] != '"') break;
+            cell += '"';
+        }
+        if (p < text.size() && text[p] != ',') {
+            throw InputError({file_, row_.line, p + 1}, "text follows a closing quote",
+                             "put a comma between the cells");
+        }
+        row_.cells.push_back({cell, column});
+        return p;
+    }
+
+    const std::string& file_;
+    CsvRowView& row_;
+    std::forward_list<std::string> unquoted_;  ///< of the line
+};
 
 }  // namespace
 
 void for_each_csv_row(std::string_view text, const std::string& file,
-                      const std::function<void(CsvTable::Row&)>& on_row) {
+                      const std::function<void(const CsvRowView&)>& on_row) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // spreadsheets begin with it
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     std::size_t line_number = 0;
     std::size_t width = 0;
-    CsvTable::Row row{0, {}};
+    CsvRowView row{0, {}};
+    LineSplitter splitter(file, row);
     while (!text.empty()) {
         const auto end = std::min(text.find('\n'), text.size());
         auto line = text.substr(0, end);
@@ -74,8 +90,7 @@ void for_each_csv_row(std::string_view text, const std::string& file,
         if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
         if (line.empty() || line.front() == '#') continue;
         row.line = line_number;
-        row.cells.reserve(width);
-        split_line(line, file, line_number, row.cells);
+        splitter.split(line);
         if (width == 0) width = row.cells.size();
         if (row.cells.size() != width) {
             throw InputError({file, line_number},
@@ -89,17 +104,19 @@ void for_each_csv_row(std::string_view text, const std::string& file,
 CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header) {
     CsvTable table{file, {}, {}};
     std::size_t cells = 0;
-    for_each_csv_row(text, file, [&](CsvTable::Row& row) {
+    for_each_csv_row(text, file, [&](const CsvRowView& row) {
         cells += row.cells.size() + 2;
         if (cells > most_cells) {
             throw InputError({file, row.line}, fmt::format("holds more than {} rows and cells", most_cells),
                              "is it the file that was meant?");
         }
         if (header == CsvHeader::present && table.columns.empty()) {
-            for (auto& cell : row.cells) table.columns.push_back(std::move(cell.text));
-        } else {
-            table.rows.push_back(std::move(row));
+            for (const auto& cell : row.cells) table.columns.emplace_back(cell.text);
+            return;
         }
+        auto& kept = table.rows.emplace_back(CsvTable::Row{row.line, {}});
+        kept.cells.reserve(row.cells.size());
+        for (const auto& cell : row.cells) kept.cells.push_back({std::string(cell.text), cell.column});
     });
     return table;
 }

@@ -35,10 +35,20 @@ enum class CsvHeader { present, absent };
 CsvTable read_csv(const std::filesystem::path& path, CsvHeader header = CsvHeader::present);
 CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header = CsvHeader::present);
 
-/// The rows of a CSV text one at a time, the header's first, for files too large to hold as text. Throws as
+/// A row where it stands in the text that it is of.
+struct CsvRowView {
+    struct Cell {
+        std::string_view text;  ///< valid until the next row
+        std::size_t column;     ///< where the cell begins in its line, from 1
+    };
+    std::size_t line;
+    std::vector<Cell> cells;
+};
+
+/// The rows of a CSV text one at a time, the header's first, for files too large to hold as cells. Throws as
 /// parse_csv does.
 void for_each_csv_row(std::string_view text, const std::string& file,
-                      const std::function<void(CsvTable::Row&)>& on_row);
+                      const std::function<void(const CsvRowView&)>& on_row);
 
 /// The index of a named column. Throws InputError that lists the columns there are.
 std::size_t column_index(const CsvTable& table, std::string_view name);

@@ -41,23 +41,34 @@ Track make_track(const std::vector<double>& time_s, const std::vector<double>& v
         track.value = values;
         return track;
     }
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (std::isfinite(values[i])) order.push_back(i);
-    const auto is_earlier = [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; };
-    if (!std::ranges::is_sorted(order, is_earlier)) std::stable_sort(order.begin(), order.end(), is_earlier);
+    const auto finite =
+        static_cast<std::size_t>(std::ranges::count_if(values, [](double value) { return std::isfinite(value); }));
+    track.time_s.reserve(finite);
+    track.value.reserve(finite);
     std::size_t merged = 0;  // how many rows the last point is made of
-    for (const auto i : order) {
+    const auto add = [&](std::size_t i) {
         if (!track.empty() && track.time_s.back() == time_s[i]) {
             ++merged;
             auto& value = track.value.back();
             value = merge == Merge::latest ? values[i] : value + (values[i] - value) / static_cast<double>(merged);
-            continue;
+            return;
         }
         merged = 1;
         track.time_s.push_back(time_s[i]);
         track.value.push_back(values[i]);
+    };
+    if (std::ranges::is_sorted(time_s)) {  // of most: a message came twice
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (std::isfinite(values[i])) add(i);
+        return track;
     }
+    std::vector<std::size_t> order;
+    order.reserve(finite);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (std::isfinite(values[i])) order.push_back(i);
+    const auto is_earlier = [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; };
+    if (!std::ranges::is_sorted(order, is_earlier)) std::stable_sort(order.begin(), order.end(), is_earlier);
+    for (const auto i : order) add(i);
     return track;
 }
 

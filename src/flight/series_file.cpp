@@ -25,7 +25,7 @@ class TableReader {
   public:
     TableReader(FrontMatter matter, std::string file) : matter_(std::move(matter)), file_(std::move(file)) {}
 
-    void read_row(const CsvTable::Row& row) {
+    void read_row(const CsvRowView& row) {
         if (columns_.empty()) return bind(row);
         const double time_s = number(row, time_column_);
         if (!(time_s > last_s_)) {
@@ -54,16 +54,16 @@ class TableReader {
     }
 
   private:
-    double number(const CsvTable::Row& row, std::size_t column) const {
+    double number(const CsvRowView& row, std::size_t column) const {
         const auto& cell = row.cells[column];
         if (const auto value = parse_number(cell.text)) return *value;
         throw InputError({file_, row.line, cell.column},
                          fmt::format("{} is not a finite number: '{}'", columns_[column], cell.text));
     }
 
-    void bind(const CsvTable::Row& header) {
+    void bind(const CsvRowView& header) {
         CsvTable table{file_, {}, {}};
-        for (const auto& cell : header.cells) table.columns.push_back(cell.text);
+        for (const auto& cell : header.cells) table.columns.emplace_back(cell.text);
         columns_ = table.columns;
         time_column_ = column_index(table, "time_s");
         const bool has_altitude = std::ranges::find(columns_, "altitude_m") != columns_.end();
@@ -127,7 +127,7 @@ void write_csv(const FlightSeries& series, const TextSink& sink, std::size_t mos
 
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file) {
     TableReader reader(read_front_matter(text, file.string()), file.string());
-    for_each_csv_row(text, file.string(), [&](const CsvTable::Row& row) { reader.read_row(row); });
+    for_each_csv_row(text, file.string(), [&](const CsvRowView& row) { reader.read_row(row); });
     auto series = reader.take();
     series.file = file.string();
     if (series.flight.empty()) series.flight = telemetry::flight_name(file);

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -50,22 +51,22 @@ class LiveFlight::Watch {
     void receive(const IncomingMessage& message, double arrival_s) {
         ++messages_;
         choice_.count(message.text);
-        std::vector<ClockFilter::Line> believed;
+        believed_.clear();
         const auto anew =
-            clocks_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed, arrival_s);
+            clocks_.push(message.time_s.value_or(arrival_s), message.text, message.after_restart, believed_, arrival_s);
         const bool is_restart = anew == SenderClocks::Anew::all ||
                                 (anew == SenderClocks::Anew::sender && clocks_.is_followed(sender_of(message.text)));
         if (anew != SenderClocks::Anew::none) store_pending();
         if (anew == SenderClocks::Anew::sender) store_.drop(std::string(sender_of(message.text)));
         if (anew == SenderClocks::Anew::all) store_.clear();
         if (is_restart) restart();
-        take(believed, is_restart);
+        take(is_restart);
     }
 
     void end() {
-        std::vector<ClockFilter::Line> believed;
-        clocks_.flush(believed);
-        take(believed, false);
+        believed_.clear();
+        clocks_.flush(believed_);
+        take(false);
         ended_ = true;
     }
 
@@ -77,10 +78,11 @@ class LiveFlight::Watch {
     const std::optional<LiveState>& last_predicted() const { return last_predicted_; }
 
   private:
-    void take(const std::vector<ClockFilter::Line>& believed, bool anew) {
+    void take(bool anew) {
         const auto begin = pending_.size();
-        for (const auto& line : believed) pending_ += fmt::format("{} {}\n", line.time_s, line.text);
-        if (options_.on_lines && !believed.empty()) options_.on_lines(std::string_view(pending_).substr(begin), anew);
+        for (const auto& line : believed_)
+            fmt::format_to(std::back_inserter(pending_), "{} {}\n", line.time_s, line.text);
+        if (options_.on_lines && !believed_.empty()) options_.on_lines(std::string_view(pending_).substr(begin), anew);
         constexpr std::size_t most_pending_bytes = 1'000'000;
         if (pending_.size() > most_pending_bytes) store_pending();
     }
@@ -117,7 +119,8 @@ class LiveFlight::Watch {
     TelemetryStore store_;
     SenderClocks clocks_;
     AircraftChoice choice_;
-    std::optional<PathPlaceFinder> places_;  ///< where the path is to go on from
+    std::optional<PathPlaceFinder> places_;    ///< where the path is to go on from
+    std::vector<ClockFilter::Line> believed_;  ///< of the last message: its memory is used again
     std::string pending_;
     std::size_t messages_ = 0;
     std::size_t restarts_ = 0;

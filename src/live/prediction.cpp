@@ -186,7 +186,10 @@ void require_physical(const mechanical::MechanicalModel& model, const std::strin
 }
 
 double initial_soc_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown) {
-    if (basis.initial_soc_percent) return *basis.initial_soc_percent;
+    return basis.initial_soc_percent ? *basis.initial_soc_percent : initial_soc_by_voltage_percent(basis, flown);
+}
+
+double initial_soc_by_voltage_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown) {
     const auto& battery = basis.battery.value();
     if (!battery.thevenin) {
         throw InputError({basis.battery_file}, "a battery of constant voltage does not tell its state of charge",

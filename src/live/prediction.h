@@ -79,6 +79,9 @@ void require_physical(const mechanical::MechanicalModel& model, const std::strin
 /// constant voltage would have to tell it. The basis has a battery.
 double initial_soc_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown);
 
+/// The same by the voltage at rest, whatever was given.
+double initial_soc_by_voltage_percent(const PredictionBasis& basis, const battery::DischargeRecord& flown);
+
 /// The rest of a flight that is where `flown` says, and of which `series` holds what was measured until then. Throws
 /// NoAnswerError where the moment does not allow it (the path is behind it, more charge was drawn than there was),
 /// UsageError for a remaining time that the path does not have, and as mechanical::predict_rest and

@@ -38,7 +38,8 @@ PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& spa
     for (auto i = static_cast<std::size_t>(first) + edges.at_start; i + edges.at_end < static_cast<std::size_t>(last);
          ++i) {
         const double time_s = power.time_s[i];
-        samples.tau.push_back((time_s - span.start.time_s) / samples.duration_s);
+        // The duration is rounded to the millisecond: a sample at the very end may be 1 + 2e-16 of it.
+        samples.tau.push_back(std::min(1.0, (time_s - span.start.time_s) / samples.duration_s));
         samples.power_w.push_back(power.value[i]);
     }
     return samples;

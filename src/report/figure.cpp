@@ -1,8 +1,10 @@
 #include "report/figure.h"
 
 #include "base/csv.h"
+#include "base/number.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -61,17 +63,19 @@ void FigureData::add(std::initializer_list<double> numbers, std::initializer_lis
     std::size_t column = 0;
     for (const double number : numbers) {
         if (std::isfinite(number)) {
-            if (decimals_.empty())
+            if (decimals_.empty()) {
                 fmt::format_to(std::back_inserter(row), "{:.6g}", number);
-            else
-                fmt::format_to(std::back_inserter(row), "{}", rounded(number, decimals_.at(column)));
+            } else {
+                std::array<char, longest_number> text{};
+                row.append(text.data(), write_number(text.data(), rounded(number, decimals_.at(column))));
+            }
         }
         row += ',';
         ++column;
     }
-    for (const auto text : texts) row += csv_cell(valid_utf8(text)) + ",";
+    for (const auto text : texts) row.append(csv_cell(valid_utf8(text))).append(",");
     row.pop_back();
-    csv_ += "\n" + row;
+    csv_.append("\n").append(row);
     ++rows_;
 }
 

@@ -243,13 +243,15 @@ TextTable flights_table(std::span<const ReportFlight> flights) {
                     {}};
     const bool has_folders = are_of_folders(flights);
     if (has_folders) table.header.insert(table.header.begin() + 1, "folder");
-    for (const auto& flight : flights) {
-        if (!flight.rejected.empty()) continue;
-        for (std::size_t s = 0; s < flight.phases.sorties.size(); ++s) {
-            table.rows.push_back(cells_of(flight, s));
-            if (has_folders) table.rows.back().insert(table.rows.back().begin() + 1, folders_of(flight));
+    std::vector<std::vector<std::vector<std::string>>> rows(flights.size());
+    for_each_in_parallel(flights.size(), [&](std::size_t f) {
+        if (!flights[f].rejected.empty()) return;
+        for (std::size_t s = 0; s < flights[f].phases.sorties.size(); ++s) {
+            rows[f].push_back(cells_of(flights[f], s));
+            if (has_folders) rows[f].back().insert(rows[f].back().begin() + 1, folders_of(flights[f]));
         }
-    }
+    });
+    for (auto& of_flight : rows) std::ranges::move(of_flight, std::back_inserter(table.rows));
     return table;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,6 +31,22 @@ TEST(Csv, QuotedCellsGoThereAndBack) {
     const auto table = parse_csv("name,x\n" + csv_cell(odd) + ",1\n", "a.csv");
     EXPECT_EQ(table.rows[0].cells[0].text, odd);
     EXPECT_EQ(csv_cell("plain"), "plain");
+}
+
+TEST(Csv, RowsAreReadWhereTheyStand) {
+    const std::string text = "a,b,c,d\n1.5,\"say \"\"so\"\"\",,\"x,y\"\n,,,\n";
+    std::vector<std::vector<std::string>> rows;
+    std::vector<std::size_t> columns;
+    for_each_csv_row(text, "a.csv", [&](const CsvRowView& row) {
+        auto& cells = rows.emplace_back();
+        for (const auto& cell : row.cells) cells.emplace_back(cell.text);
+        if (row.line != 2) return;
+        EXPECT_EQ(row.cells[0].text.data(), text.data() + text.find("1.5")) << "no copy";
+        for (const auto& cell : row.cells) columns.push_back(cell.column);
+    });
+    EXPECT_THAT(rows, ElementsAre(ElementsAre("a", "b", "c", "d"), ElementsAre("1.5", "say \"so\"", "", "x,y"),
+                                  ElementsAre("", "", "", "")));
+    EXPECT_THAT(columns, ElementsAre(1U, 5U, 18U, 19U));
 }
 
 void expect_error(const std::string& text, std::size_t line, std::size_t column, const std::string& message) {
@@ -61,7 +78,7 @@ TEST(Csv, RefusesWhatWouldFillTheMemory) {
     for (int i = 0; i < 3'000'000; ++i) rows += "1\n";
     expect_error(rows, 2666667, 0, "holds more than 8000000 rows and cells");
     std::size_t count = 0;
-    for_each_csv_row(rows, "a.csv", [&](const CsvTable::Row&) { ++count; });
+    for_each_csv_row(rows, "a.csv", [&](const CsvRowView&) { ++count; });
     EXPECT_EQ(count, 3'000'001U) << "one at a time there is no limit";
 }
 

@@ -2,6 +2,7 @@
 
 #include "helpers/sample_columns.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -89,6 +90,21 @@ TEST(MeasuredFlights, LieWithinEdgesBetweenTwoOfThem) {
     EXPECT_DOUBLE_EQ(takeoff.tau.back(), 19.75 / 20.5);
     EXPECT_THAT(takeoff.tau, Each(testing::AllOf(testing::Ge(0.0), testing::Le(1.0))));
     EXPECT_FALSE(selection.flights[0].phases[flight::Phase::cruise].has_value());
+}
+
+TEST(MeasuredFlights, EndWithASampleAtTheirVeryEnd) {
+    test::SampleColumns columns;
+    for (int i = 0; i < 30; ++i) {
+        columns.time_s.push_back(64.86 + i);
+        columns.power_w.push_back(20.0);
+    }
+    columns.time_s.push_back(92.7);  // 92.7 - 64.86 is more than 27.84
+    columns.power_w.push_back(20.0);
+    std::ranges::sort(columns.time_s);
+    flight::FlightPhases phases;
+    phases.sorties.emplace_back().phases = {span(flight::Phase::takeoff, 64.86, 92.7)};
+    const auto flights = measure_flights(test::series_of(columns), phases, needed).flights;
+    EXPECT_EQ(flights.at(0).samples.phases[flight::Phase::takeoff].value().tau.back(), 1.0);
 }
 
 TEST(MeasuredFlights, CountEverySortieAsAFlight) {

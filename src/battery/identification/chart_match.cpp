@@ -136,6 +136,15 @@ double weighted_quantile(std::vector<std::pair<double, double>> values, double p
     return values.back().first;
 }
 
+/// The part of a normal distribution that lies below `limit`, both in standard deviations times the root of two from its
+/// mean. Beyond eight of these it is 0 or 1 to more digits than a sum keeps, and most of a posterior lies there.
+double part_below(double limit) {
+    constexpr double certain = 8.0;
+    if (limit > certain) return 1.0;
+    if (limit < -certain) return 0.0;
+    return std::erfc(-limit) / 2.0;
+}
+
 }  // namespace
 
 std::vector<ChargeScale> match_chart(const ShownCurve& shown, std::optional<double> given_ah) {
@@ -196,7 +205,7 @@ Interval missing_interval_ah(std::span<const ChargeScale> posterior, double offs
             double sum = 0.0;
             for (const auto& scale : posterior) {
                 const double begins_ah = offset_ah + (scale.is_full && full_is_full ? 0.0 : scale.missing_ah);
-                sum += scale.probability * std::erfc((begins_ah - missing_ah) / (error_ah * std::numbers::sqrt2)) / 2.0;
+                sum += scale.probability * part_below((missing_ah - begins_ah) / (error_ah * std::numbers::sqrt2));
             }
             return sum;
         };

@@ -18,6 +18,7 @@ double ground_beside(const FlightGrid& grid, GridSpan rest, bool before) {
 
 double median_of_upper_half(const std::vector<double>& heights, double highest) {
     std::vector<double> upper;
+    upper.reserve(heights.size());
     std::copy_if(heights.begin(), heights.end(), std::back_inserter(upper),
                  [&](double h) { return h > 0.5 * highest; });
     return upper.empty() ? highest : upper_median(std::move(upper));
@@ -73,6 +74,7 @@ Grounds grounds_of(const FlightGrid& grid, const Activity& activity, const std::
 Heights heights_of(const FlightGrid& grid, const Activity& activity, const Grounds& grounds) {
     Heights heights;
     const auto count = activity.span.end - activity.span.begin;
+    heights.height_m.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         const double part = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0.0;
         const double ground_m = std::lerp(grounds.before_m, grounds.after_m, part);

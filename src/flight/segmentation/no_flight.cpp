@@ -61,6 +61,7 @@ std::vector<double> altitudes_within(const Track& track, double start_s, double 
     const auto bounds = physical_bounds("altitude_m").value();
     std::vector<double> values;
     const auto first = std::ranges::lower_bound(track.time_s, start_s) - track.time_s.begin();
+    values.reserve(track.time_s.size() - static_cast<std::size_t>(first));
     for (auto i = static_cast<std::size_t>(first); i < track.time_s.size() && track.time_s[i] <= end_s; ++i) {
         if (track.value[i] >= bounds.low && track.value[i] <= bounds.high) values.push_back(track.value[i]);
     }
@@ -196,6 +197,7 @@ std::optional<double> times_as_much(const std::vector<double>& a, const std::vec
 std::vector<double> changes_seen(const FlightGrid& grid, double window_s) {
     std::vector<double> changes_m;
     const auto steps = grid.steps(window_s);
+    changes_m.reserve(grid.size() / steps + 1);
     for (const auto& piece : grid.pieces) {
         for (auto i = piece.begin; i + steps < piece.end; i += steps) {
             changes_m.push_back(grid.altitude_m[i + steps] - grid.altitude_m[i]);
@@ -208,6 +210,7 @@ std::vector<double> changes_seen(const FlightGrid& grid, double window_s) {
 std::vector<double> changes_said(const FlightGrid& grid, const Track& track, double window_s) {
     std::vector<double> changes_m;
     const auto steps = grid.steps(window_s);
+    changes_m.reserve(grid.size() / steps + 1);
     const double most_m = physical_bounds("altitude_m").value().high;
     std::vector<double> middles_s(track.name == "altitude_m" ? 0 : grid.size());
     for (std::size_t i = 0; i < middles_s.size(); ++i) middles_s[i] = grid.time_s(i) + 0.5 * grid.step_s;

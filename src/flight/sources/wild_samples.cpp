@@ -31,6 +31,7 @@ struct ComparedPower {
 
 std::vector<ComparedPower> compared(const Track& power, const Track& product) {
     std::vector<ComparedPower> pairs;
+    pairs.reserve(std::min(power.time_s.size(), product.time_s.size()));
     for (std::size_t i = 0, j = 0; i < power.time_s.size(); ++i) {
         while (j < product.time_s.size() && product.time_s[j] < power.time_s[i]) ++j;
         if (j == product.time_s.size() || product.time_s[j] != power.time_s[i]) continue;
@@ -99,6 +100,7 @@ std::vector<double> counter_spikes(const Track& track) {
 std::vector<double> contradicted_times(const Track& power, const Track& product) {
     const auto pairs = compared(power, product);
     std::vector<double> parts;
+    parts.reserve(pairs.size());
     for (const auto& pair : pairs)
         if (pair.larger_w > contradicting_w) parts.push_back(pair.difference_w / pair.larger_w);
     constexpr std::size_t enough = 10;

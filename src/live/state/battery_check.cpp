@@ -127,12 +127,10 @@ constexpr double other_pack_percent = 15.0;
 void set_initial(const PredictionBasis& basis, const std::optional<double>& carried_percent,
                  const battery::DischargeRecord& record, LiveBattery& result) {
     result.initial_is_measured = !basis.initial_soc_percent;
-    auto of = basis;
-    if (carried_percent && !record.is_other_pack) of.initial_soc_percent = carried_percent;
-    result.initial_soc_percent = initial_soc_percent(of, record);
-    if (!carried_percent || record.is_other_pack || !basis.battery->thevenin) return;
-    of.initial_soc_percent.reset();
-    const double by_voltage = initial_soc_percent(of, record);
+    const bool goes_on = carried_percent && !record.is_other_pack;
+    result.initial_soc_percent = goes_on ? *carried_percent : initial_soc_percent(basis, record);
+    if (!goes_on || !basis.battery->thevenin) return;
+    const double by_voltage = initial_soc_by_voltage_percent(basis, record);
     result.initial_is_measured = by_voltage > result.initial_soc_percent + other_pack_percent;
     if (result.initial_is_measured) result.initial_soc_percent = by_voltage;
 }

@@ -1,86 +1,122 @@
 #include "report/blocks/packed_tables.h"
 
 #include "base/csv.h"
+#include "base/error.h"
 #include "base/number.h"
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
-#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
 
 namespace flightwatt::report {
 namespace {
 
+constexpr auto table_name = "a figure's table";
 constexpr std::size_t most_digits = 15;  ///< that a double keeps, and JavaScript with it
 
-/// How many decimals the cells have at most; none where a cell is not of a sign, digits and a point alone.
-std::optional<std::size_t> decimals_of(const CsvTable& table, std::size_t column) {
-    std::size_t most = 0;
-    std::size_t whole = 0;
-    for (const auto& row : table.rows) {
-        const std::string_view text = row.cells[column].text;
-        const auto digits = text.substr(text.starts_with('-') ? 1 : 0);
-        if (digits.find_first_not_of("0123456789.") != std::string_view::npos) return std::nullopt;
-        const auto point = digits.find('.');
-        whole = std::max(whole, std::min(point, digits.size()));
-        if (point != std::string_view::npos) most = std::max(most, digits.size() - point - 1);
-    }
-    if (whole + most > most_digits) return std::nullopt;
-    return most;
-}
+/// A cell of a column of numbers.
+struct NumberCell {
+    bool is_empty = false;
+    double value = 0.0;
+    std::int64_t digits = 0;  ///< without the point: -15 of "-1.5"
+    std::size_t whole = 0;    ///< how many stand before the point
+    std::size_t decimals = 0;
+    bool is_decimal = true;  ///< of a sign, digits and a point alone, and no more digits than there may be
+};
 
-/// "-1.5" with three decimals: -1500.
-std::int64_t in_last_decimal(const std::string& text, std::size_t decimals) {
-    std::string digits;
-    std::ranges::remove_copy(text, std::back_inserter(digits), '.');
+NumberCell number_cell(const CsvRowView::Cell& cell, std::size_t line) {
+    NumberCell number;
+    number.is_empty = cell.text.empty();
+    if (number.is_empty) return number;
+    const auto value = parse_number(cell.text);
+    if (!value)
+        throw InputError({table_name, line, cell.column}, fmt::format("'{}' is not a finite number", cell.text));
+    number.value = *value;
+    const bool is_negative = cell.text.front() == '-';
+    const auto text = cell.text.substr(is_negative ? 1 : 0);
     const auto point = text.find('.');
-    digits.append(decimals - (point == std::string::npos ? 0 : text.size() - point - 1), '0');
-    return std::strtoll(digits.c_str(), nullptr, 10);
+    number.whole = std::min(point, text.size());
+    number.decimals = point == std::string_view::npos ? 0 : text.size() - point - 1;
+    number.is_decimal = number.whole + number.decimals <= most_digits;
+    for (const char c : text) {
+        if (!number.is_decimal || c == '.') continue;
+        number.is_decimal = c >= '0' && c <= '9';
+        number.digits = number.digits * 10 + (c - '0');
+    }
+    if (is_negative) number.digits = -number.digits;
+    return number;
 }
 
-VegaJson steps(const CsvTable& table, std::size_t column, std::size_t decimals) {
-    auto numbers = VegaJson::array();
-    std::int64_t last = 0;
-    for (const auto& row : table.rows) {
-        const auto& text = row.cells[column].text;
-        if (text.empty()) {
-            numbers.push_back(nullptr);
-            continue;
-        }
-        const auto number = in_last_decimal(text, decimals);
-        numbers.push_back(number - last);
-        last = number;
-    }
-    return numbers;
-}
+/// A column as its cells come in.
+class PackedColumn {
+  public:
+    PackedColumn(std::string_view name, bool are_numbers) : name_(name), are_numbers_(are_numbers) {}
 
-VegaJson cells(const CsvTable& table, std::size_t column, bool are_numbers) {
-    auto all = VegaJson::array();
-    for (const auto& row : table.rows) {
-        const auto& text = row.cells[column].text;
-        if (!are_numbers) {
-            all.push_back(text);
-        } else if (text.empty()) {
-            all.push_back(nullptr);
-        } else {
-            all.push_back(cell_number(table, row, column));
-        }
+    void add(const CsvRowView::Cell& cell, std::size_t line) {
+        if (are_numbers_)
+            numbers_.push_back(number_cell(cell, line));
+        else
+            texts_.emplace_back(cell.text);
     }
-    return all;
-}
+
+    VegaJson json() const {
+        if (!are_numbers_) return VegaJson::array_t{name_, texts_};
+        std::size_t whole = 0;
+        std::size_t decimals = 0;
+        for (const auto& number : numbers_) {
+            whole = std::max(whole, number.whole);
+            decimals = std::max(decimals, number.decimals);
+            if (!number.is_decimal) return VegaJson::array_t{name_, values()};
+        }
+        if (whole + decimals > most_digits) return VegaJson::array_t{name_, values()};
+        return VegaJson::array_t{name_, decimals, steps(decimals)};
+    }
+
+  private:
+    VegaJson::array_t steps(std::size_t decimals) const {
+        VegaJson::array_t all;
+        all.reserve(numbers_.size());
+        std::int64_t last = 0;
+        for (const auto& number : numbers_) {
+            if (number.is_empty) {
+                all.emplace_back(nullptr);
+                continue;
+            }
+            auto digits = number.digits;
+            for (auto at = number.decimals; at < decimals; ++at) digits *= 10;
+            all.emplace_back(digits - last);
+            last = digits;
+        }
+        return all;
+    }
+
+    VegaJson::array_t values() const {
+        VegaJson::array_t all;
+        for (const auto& number : numbers_) all.push_back(number.is_empty ? VegaJson() : VegaJson(number.value));
+        return all;
+    }
+
+    std::string name_;
+    bool are_numbers_;
+    std::vector<NumberCell> numbers_;
+    VegaJson::array_t texts_;
+};
 
 VegaJson packed_table(const std::string& csv, const VegaJson& parse) {
-    const auto table = parse_csv(csv, "a figure's table");
-    auto columns = VegaJson::array();
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-        const bool are_numbers = parse.contains(table.columns[c]);
-        const auto decimals = are_numbers ? decimals_of(table, c) : std::nullopt;
-        if (decimals)
-            columns.push_back({table.columns[c], *decimals, steps(table, c, *decimals)});
-        else
-            columns.push_back({table.columns[c], cells(table, c, are_numbers)});
-    }
-    return {{"packed", columns}};
+    std::vector<PackedColumn> columns;
+    for_each_csv_row(csv, table_name, [&](const CsvRowView& row) {
+        if (columns.empty()) {
+            for (const auto& cell : row.cells) columns.emplace_back(cell.text, parse.contains(cell.text));
+            return;
+        }
+        for (std::size_t c = 0; c < columns.size(); ++c) columns[c].add(row.cells[c], row.line);
+    });
+    auto packed = VegaJson::array();
+    for (const auto& column : columns) packed.push_back(column.json());
+    return {{"packed", std::move(packed)}};
 }
 
 bool is_csv(const VegaJson& data) {
@@ -94,13 +130,15 @@ VegaJson packed_tables(const VegaJson& spec) {
     if (!spec.is_structured()) return spec;
     if (spec.is_object() && is_csv(spec))
         return packed_table(spec["values"].get_ref<const std::string&>(), spec["format"]["parse"]);
-    auto packed = spec.is_array() ? VegaJson::array() : VegaJson::object();
-    for (const auto& [key, part] : spec.items()) {
-        if (spec.is_array())
-            packed.push_back(packed_tables(part));
-        else
-            packed[key] = packed_tables(part);
+    if (spec.is_array()) {
+        VegaJson::array_t packed;
+        packed.reserve(spec.size());
+        for (const auto& part : spec) packed.push_back(packed_tables(part));
+        return packed;
     }
+    VegaJson::object_t packed;
+    packed.reserve(spec.size());
+    for (const auto& [key, part] : spec.get_ref<const VegaJson::object_t&>()) packed.emplace(key, packed_tables(part));
     return packed;
 }
 

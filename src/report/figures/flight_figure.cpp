@@ -79,9 +79,9 @@ FigureData edge_rows(const ReportFlight& flight) {
 }
 
 /// Measured power, and the model's curve of every phase of the flight.
-FigureData power_rows(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model) {
+FigureData power_rows(const ReportFlight& flight, const flight::Track& power,
+                      const std::optional<mechanical::MechanicalModel>& model) {
     FigureData data({"time_s", "power_w"}, {"curve"});
-    const auto power = power_track(flight.series);
     data.round_to({decimals_for(power.time_s, time_steps, 1), decimals_for(power.value, value_steps, 1)});
     for (const auto i : visible_rows(power.time_s, power.value, power_columns)) {
         data.add({power.time_s[i], power.value[i]}, {"measured"});
@@ -176,10 +176,9 @@ std::string description_of(const ReportFlight& flight) {
     return text;
 }
 
-std::string caption_of(const ReportFlight& flight, bool has_model) {
+std::string caption_of(const flight::Track& power, bool has_model) {
     std::string text = "Phases are shaded and end at the dashed lines; those tell their evidence when pointed at.";
     if (has_model) text += " The model is each phase's curve, stretched to the time flown.";
-    const auto power = power_track(flight.series);
     const auto samples = power.time_s.size();
     const auto drawn = visible_rows(power.time_s, power.value, power_columns).size();
     if (drawn < samples) {
@@ -214,14 +213,17 @@ std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
 
 Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical::MechanicalModel>& model,
                      const std::string& id) {
-    auto figure = new_figure(id, caption_of(flight, model.has_value()), description_of(flight));
+    const flight::ChosenTracks tracks(flight.series);
+    const auto& power = tracks["power_w"];
+    const auto& time_s = power.time_s;
+    auto figure = new_figure(id, caption_of(power, model.has_value()), description_of(flight));
     const auto phases = phase_rows(flight.phases);
     const auto edges = edge_rows(flight);
-    const auto time_s = power_track(flight.series).time_s;
     auto panels = VegaJson::array();
     const auto add_channel = [&](const std::string& column, const std::string& title, int height) {
-        const auto values = chosen_at(flight.series, column, time_s);
-        if (values.empty()) return;
+        const auto& track = tracks[column];
+        if (track.empty()) return;
+        const auto values = resample(track, time_s);
         auto layers = phase_layers(phases, edges, panels.empty());
         layers.push_back(line_layer(channel_rows(time_s, values, column), column, title));
         panels.push_back(panel(layers, height, false));
@@ -229,7 +231,7 @@ Figure flight_figure(const ReportFlight& flight, const std::optional<mechanical:
     add_channel("altitude_m", "altitude [m]", 110);
     add_channel("throttle_percent", "throttle [%]", 80);
     auto layers = phase_layers(phases, edges, panels.empty());
-    layers.push_back(power_layer(power_rows(flight, model)));
+    layers.push_back(power_layer(power_rows(flight, power, model)));
     panels.push_back(panel(layers, 190, true));
     auto views = VegaJson::array();
     for (auto& view : panels) {

@@ -30,6 +30,13 @@ TEST(PackedTables, KeepNumbersThatNoStepsHold) {
                                                      ["wide", 0, [1, null]]]})"));
 }
 
+TEST(PackedTables, KeepWhatHasMoreDigitsThanADouble) {
+    const VegaJson csv{{"values", "sum,long\n123456789012.5,1234567890123456\n0.12345,1\n"},
+                       {"format", {{"type", "csv"}, {"parse", {{"sum", "number"}, {"long", "number"}}}}}};
+    EXPECT_EQ(packed_tables(csv), VegaJson::parse(R"({"packed": [["sum", [123456789012.5, 0.12345]],
+                                                                 ["long", [1234567890123456.0, 1.0]]]})"));
+}
+
 TEST(PackedTables, LeaveEverythingElse) {
     const auto spec = vega(R"({"data": {"values": [{"a": 1}]}, "datasets": {"edges": "a,b\n1,2"},
                                "other": {"values": "a,b\n1,2", "format": {"type": "tsv"}}, "list": [1, null, "text"]})");
