@@ -229,10 +229,24 @@ struct VoltageErrors {
     double load_v2 = 0.0;  ///< from the first load on
 };
 
+PredictedVoltage predict_from_settled(const Battery& battery, const DischargeRecord& record,
+                                      std::span<const double> settled_a, double initial_charge_ah) {
+    const auto& circuit = battery.thevenin.value();
+    PredictedVoltage predicted;
+    predicted.soc_percent.reserve(record.time_s.size());
+    predicted.voltage_v.reserve(record.time_s.size());
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+        const double drawn_ah = initial_charge_ah + record.charge_ah[i];
+        const BatteryState state{units::percent_per_whole - units::percent_of(drawn_ah, battery.capacity_ah),
+                                 circuit.rc_resistance_ohm * settled_a[i]};
+        predicted.soc_percent.push_back(state.soc_percent);
+        predicted.voltage_v.push_back(terminal_voltage_v(battery, state, record.current_a[i]));
+    }
+    return predicted;
+}
+
 /// Before the first load the voltage lies `above_v` above the curve.
-VoltageErrors voltage_errors(const Battery& battery, const DischargeRecord& record, double initial_charge_ah,
-                             double above_v) {
-    const auto predicted = predict_voltage(battery, record, initial_charge_ah);
+VoltageErrors errors_of(const PredictedVoltage& predicted, const DischargeRecord& record, double above_v) {
     double rest_squares = 0.0;
     double load_squares = 0.0;
     double loaded = 0.0;
@@ -259,7 +273,10 @@ double beyond_percent(const BatteryIdentification& identified, const DischargeRe
 /// The initial charge with which the record's voltage under load is met best.
 void add_best_place(const Battery& battery, const DischargeRecord& record, LeftOutCheck& check) {
     constexpr int places = 50;
-    const auto error_at = [&](double tried_ah) { return voltage_errors(battery, record, tried_ah, 0.0).load_v2; };
+    const auto settled_a = settled_current_a(record, battery.thevenin.value().rc_time_constant_s);
+    const auto error_at = [&](double tried_ah) {
+        return errors_of(predict_from_settled(battery, record, settled_a, tried_ah), record, 0.0).load_v2;
+    };
     double best_ah = 0.0;
     double least_v2 = std::numeric_limits<double>::infinity();
     const auto at = [&](int place) { return battery.capacity_ah * place / places; };
@@ -287,8 +304,8 @@ LeftOutCheck checked(const Told& told, const DischargeRecord& record, bool chain
         place_ah = earlier.initial_charge_ah + link->charge_ah;
     }
     check.initial_charge_ah = identified.missing_ah + place_ah;
-    const auto errors =
-        voltage_errors(identified.battery, record, check.initial_charge_ah, identified.fit.common_rest_offset_v);
+    const auto errors = errors_of(predict_voltage(identified.battery, record, check.initial_charge_ah), record,
+                                  identified.fit.common_rest_offset_v);
     check.voltage_rms_v = std::sqrt(errors.all_v2);
     check.load_rms_v = std::sqrt(errors.load_v2);
     check.beyond_percent = beyond_percent(identified, record, check.initial_charge_ah);
@@ -303,17 +320,8 @@ BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
 }
 
 PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah) {
-    const auto& circuit = battery.thevenin.value();
-    const auto settled_a = settled_current_a(record, circuit.rc_time_constant_s);
-    PredictedVoltage predicted;
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-        const double drawn_ah = initial_charge_ah + record.charge_ah[i];
-        const BatteryState state{units::percent_per_whole - units::percent_of(drawn_ah, battery.capacity_ah),
-                                 circuit.rc_resistance_ohm * settled_a[i]};
-        predicted.soc_percent.push_back(state.soc_percent);
-        predicted.voltage_v.push_back(terminal_voltage_v(battery, state, record.current_a[i]));
-    }
-    return predicted;
+    const auto settled_a = settled_current_a(record, battery.thevenin.value().rc_time_constant_s);
+    return predict_from_settled(battery, record, settled_a, initial_charge_ah);
 }
 
 std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records, const IdentificationOptions& options,

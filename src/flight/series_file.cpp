@@ -11,6 +11,7 @@
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -56,7 +57,7 @@ class TableReader {
   private:
     double number(const CsvRowView& row, std::size_t column) const {
         const auto& cell = row.cells[column];
-        if (const auto value = parse_number(cell.text)) return *value;
+        if (const double value = number_or_nan(cell.text); !std::isnan(value)) return value;
         throw InputError({file_, row.line, cell.column},
                          fmt::format("{} is not a finite number: '{}'", columns_[column], cell.text));
     }
