@@ -107,11 +107,12 @@ struct FittedBatch {
 
 /// Fits what the batch accepted. Takes the samples out of `flights`: of thousands, two copies are too many.
 FittedBatch fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight>& flights,
-                      const std::filesystem::path& out) {
+                      const batch::BatchOptions& batch) {
     auto options = read_fit_options(call);
     options.name = call.get<std::string>("name");
     std::vector<mechanical::MeasuredFlight> measured;
     std::vector<mechanical::FlightSamples> samples;
+    read_samples(flights, batch);
     for (auto& flight : flights) {
         for (auto& taken : flight.selection.flights) {
             samples.push_back(std::move(taken.samples));
@@ -124,7 +125,7 @@ FittedBatch fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight
         if (cli::is_physical(call)) fitted.physical = cli::fit_motion(call, measured, fitted.fit.model);
         return fitted;
     } catch (...) {
-        remove_model(call, out);
+        remove_model(call, batch.out);
         throw;
     }
 }
@@ -185,7 +186,6 @@ batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechani
     options.out = *call.output;
     options.load = cli::read_flight_options(call);
     options.jobs = static_cast<unsigned>(cli::count_option(call, "jobs", 0, 256));
-    options.keeps_samples = !call.has("no-fit");
     options.needed_samples = mechanical::samples_needed(fit_options.phases.order);
     return options;
 }
@@ -252,7 +252,7 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
             return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
         }
         refuse_mix(call, flights, options.out);
-        auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options.out);
+        auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options);
         fit.copies = copies;
         fit.repeated = repeated;
         fit.excluded = options.load.excluded;

@@ -222,12 +222,25 @@ std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const Batch
     std::size_t done = 0;
     const auto work = [&](std::size_t i) {
         flights[i] = do_log(logs[i], options);
-        if (!options.keeps_samples) drop_samples(flights[i].selection);
+        drop_samples(flights[i].selection);
         const std::lock_guard lock(mutex);
         progress(++done, logs.size(), flights[i]);
     };
     for_each_in_parallel(logs.size(), work, options.jobs);
     return flights;
+}
+
+void read_samples(std::vector<BatchFlight>& flights, const BatchOptions& options) {
+    for_each_in_parallel(flights.size(), [&](std::size_t i) {
+        auto& selection = flights[i].selection;
+        if (selection.flights.empty()) return;
+        const OwnFiles own;
+        const auto file = result_path(options, flights[i].record.flight, record_ending);
+        auto record = record_from_json(read_file(file));
+        if (!record) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
+        record->flight = flights[i].record.flight;  // of a name that is no UTF-8, too
+        selection.flights = select_for_fit(*record, options.needed_samples, options.load).flights;
+    });
 }
 
 std::string reason_of_copy(const std::string& other) {

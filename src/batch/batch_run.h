@@ -21,7 +21,6 @@ struct BatchOptions {
     flight::LoadOptions load;
     unsigned jobs = 0;  ///< logs at a time; 0: one a core
     std::size_t needed_samples = 8;
-    bool keeps_samples = true;  ///< for a fit; false: of thousands of flights they would fill the memory
     WriteGate* gate = nullptr;  ///< passed to write a file, if there is one
 };
 
@@ -31,7 +30,7 @@ struct BatchFlight {
     bool was_up_to_date = false;
     bool is_of_this_run = true;             ///< see LogFile
     bool is_kept = false;                   ///< its log is gone: it is as an earlier run left it
-    mechanical::MeasuredFlights selection;  ///< what a fit takes from it; empty if it was rejected
+    mechanical::MeasuredFlights selection;  ///< what a fit takes from it, without samples; empty if it was rejected
 };
 
 /// Called as logs finish, from one thread at a time: how many are done, of how many, and which it was.
@@ -45,6 +44,10 @@ using BatchProgress = std::function<void(std::size_t done, std::size_t all, cons
 /// (manifest.h).
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
                                    const BatchProgress& progress);
+
+/// The selection of each flight with its samples, of which thousands would fill the memory while copies are still among
+/// them. Throws InputError where a record is no longer as it was.
+void read_samples(std::vector<BatchFlight>& flights, const BatchOptions& options);
 
 /// Leaves what tells which phases would be fitted.
 void drop_samples(mechanical::MeasuredFlights& selection);

@@ -27,7 +27,6 @@ using Paths = std::vector<std::filesystem::path>;
 void batch_of(const Paths& logs, const std::filesystem::path& out, double rest_s = 10.0) {
     BatchOptions options;
     options.out = out;
-    options.keeps_samples = false;
     options.load.segmentation.rest_s = rest_s;
     const auto plan = plan_batch(find_logs({logs.begin(), logs.end()}), out, false);
     prepare_folder(plan, out);

@@ -37,7 +37,7 @@ inline std::map<std::string, std::string> contents(const std::filesystem::path& 
     return files;
 }
 
-/// A batch over `input` into `out`, with the catalogue that flightwatt batch writes.
+/// A batch over `input` into `out`, with the catalogue that flightwatt batch writes, and with samples.
 inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input, const std::filesystem::path& out,
                                              unsigned jobs = 2, bool prune = false) {
     batch::BatchOptions options;
@@ -48,6 +48,7 @@ inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input,
     prepare_folder(plan, out);
     auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const batch::BatchFlight&) {});
     write_file_atomically(out / "flights.csv", batch::catalogue_csv(flights));
+    read_samples(flights, options);
     return flights;
 }
 
