@@ -174,18 +174,31 @@ std::vector<double> equal_knots(std::span<const AlignedRecord> records, int segm
     return knots;
 }
 
-Eigen::MatrixXd joint_derivatives(const AlignedFit& aligned) {
-    auto columns = voltage_derivatives(aligned.records, aligned.fit);
-    const auto width = columns.cols();
-    columns.conservativeResize(Eigen::NoChange, width + static_cast<Eigen::Index>(aligned.records.size()));
-    columns.rightCols(static_cast<Eigen::Index>(aligned.records.size())).setZero();
-    Eigen::Index row = 0;
+Eigen::Index joint_width(const AlignedFit& aligned) {
+    return columns_of(aligned.fit).width + static_cast<Eigen::Index>(aligned.records.size());
+}
+
+std::vector<RecordDerivatives> joint_derivatives(const AlignedFit& aligned) {
+    const auto at = columns_of(aligned.fit);
+    const auto shared = shared_derivatives(aligned.records, aligned.fit);
+    std::vector<RecordDerivatives> records;
+    Eigen::Index first = 0;
     for (std::size_t f = 0; f < aligned.records.size(); ++f) {
-        const auto slopes = slopes_v_per_ah(aligned.records[f], aligned.fit);
-        if (f != aligned.reference) columns.block(row, width + static_cast<Eigen::Index>(f), slopes.size(), 1) = slopes;
-        row += slopes.size();
+        const auto& record = *aligned.records[f].record;
+        const auto flight = static_cast<Eigen::Index>(f);
+        const auto rows = used_samples(record);
+        RecordDerivatives own{first, {}, Eigen::MatrixXd::Zero(rows, shared.cols() + 2)};
+        for (Eigen::Index c = 0; c < at.rest; ++c) own.places.push_back(c);
+        for (Eigen::Index c = at.rc; c < at.width; ++c) own.places.push_back(c);
+        own.places.insert(own.places.end(), {at.rest + flight, at.width + flight});
+        own.columns.leftCols(shared.cols()) = shared.middleRows(first, rows);
+        own.columns.col(shared.cols()).head(used_rests(record)).setOnes();
+        if (f != aligned.reference)
+            own.columns.col(shared.cols() + 1) = slopes_v_per_ah(aligned.records[f], aligned.fit);
+        first += rows;
+        records.push_back(std::move(own));
     }
-    return columns;
+    return records;
 }
 
 JointBelief joint_belief(const AlignedFit& aligned) {
@@ -200,7 +213,7 @@ JointBelief joint_belief(const AlignedFit& aligned) {
     Eigen::VectorXd now = Eigen::VectorXd::Zero(at.width + flights);
     for (Eigen::Index k = 0; k < at.resistance; ++k) now[k] = fit.open_circuit_v[static_cast<std::size_t>(k)];
     for (Eigen::Index f = 0; f < flights; ++f) now[at.rest + f] = fit.rest_offset_v[static_cast<std::size_t>(f)];
-    now[at.rest + flights] = fit.common_rest_offset_v;
+    now[at.common] = fit.common_rest_offset_v;
     belief.residual = -belief.rows * now;
     for (Eigen::Index l = 0; l < links; ++l) {
         const auto& [later, earlier, charge_ah, error_ah] = aligned.links[static_cast<std::size_t>(l)];
@@ -216,12 +229,20 @@ JointBelief joint_belief(const AlignedFit& aligned) {
     return belief;
 }
 
+Eigen::MatrixXd joint_normal(std::span<const RecordDerivatives> records, const JointBelief& belief) {
+    Eigen::MatrixXd normal = belief.rows.transpose() * belief.rows;
+    for (const auto& record : records)
+        normal(record.places, record.places) += record.columns.transpose() * record.columns;
+    return normal;
+}
+
 Eigen::VectorXd joint_step(const AlignedFit& aligned) {
-    const auto columns = joint_derivatives(aligned);
+    const auto records = joint_derivatives(aligned);
     const auto belief = joint_belief(aligned);
-    Eigen::MatrixXd normal = columns.transpose() * columns + belief.rows.transpose() * belief.rows;
-    const Eigen::VectorXd pull =
-        columns.transpose() * aligned.fit.residual_v + belief.rows.transpose() * belief.residual;
+    auto normal = joint_normal(records, belief);
+    Eigen::VectorXd pull = belief.rows.transpose() * belief.residual;
+    for (const auto& [first, places, columns] : records)
+        pull(places) += columns.transpose() * aligned.fit.residual_v.segment(first, columns.rows());
     // Parameters have their own units: each is scaled to length 1 first, and what nothing tells stays where it is.
     const Eigen::VectorXd length = normal.diagonal().cwiseSqrt().cwiseMax(1e-12);
     normal = length.cwiseInverse().asDiagonal() * normal * length.cwiseInverse().asDiagonal();

@@ -34,16 +34,28 @@ struct AlignedFit {
 /// determine no circuit whose voltage falls as charge is drawn.
 AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links = {});
 
-/// Derivatives of the fitted voltages by all parameters: those of voltage_derivatives, then the initial charge of each
-/// record, the reference's being 0 throughout.
-Eigen::MatrixXd joint_derivatives(const AlignedFit& aligned);
+/// Derivatives of one record's fitted voltages, one row a used sample, and the parameters that they are by: places in
+/// the order of FitColumns, then of the records' initial charges (the reference's derivative is 0 throughout). By the
+/// other records' parameters they are 0.
+struct RecordDerivatives {
+    Eigen::Index first = 0;  ///< its first row among all used samples
+    std::vector<Eigen::Index> places;
+    Eigen::MatrixXd columns;
+};
+std::vector<RecordDerivatives> joint_derivatives(const AlignedFit& aligned);
 
-/// What is believed and what the links say, as rows beneath those derivatives, and what they leave, in the same order.
+/// Shared parameters and those of all records: FitColumns, then the initial charges.
+Eigen::Index joint_width(const AlignedFit& aligned);
+
+/// What is believed and what the links say, as rows of all parameters, and what they leave.
 struct JointBelief {
     Eigen::MatrixXd rows;
     Eigen::VectorXd residual;
 };
 JointBelief joint_belief(const AlignedFit& aligned);
+
+/// The normal matrix of samples and of what is believed.
+Eigen::MatrixXd joint_normal(std::span<const RecordDerivatives> records, const JointBelief& belief);
 
 /// What the joint fit would change of its parameters: of a linear problem, all that is left to do.
 Eigen::VectorXd joint_step(const AlignedFit& aligned);

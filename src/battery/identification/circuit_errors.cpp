@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace flightwatt::battery {
 namespace {
@@ -19,6 +20,7 @@ constexpr double tells_nothing = 10.0;  // of a logarithm: beyond a factor e^10 
 
 /// Rows that follow each other, and by how much rounding may be off throughout.
 struct Block {
+    std::size_t record = 0;
     Eigen::Index first = 0;
     Eigen::Index count = 0;
     double rounding_v = 0.0;  ///< standard deviation
@@ -35,14 +37,14 @@ double common_rounding_v(const DischargeRecord& record, const std::vector<double
 std::vector<Block> blocks_of_time(std::span<const AlignedRecord> records, double block_s) {
     std::vector<Block> blocks;
     Eigen::Index row = 0;
-    for (const auto& aligned : records) {
-        const auto* record = aligned.record;
+    for (std::size_t f = 0; f < records.size(); ++f) {
+        const auto* record = records[f].record;
         double end_s = record->time_s.front() + block_s;
         std::vector<double> voltages_v;
         const auto close = [&] {
             if (voltages_v.empty()) return;
             const auto count = static_cast<Eigen::Index>(voltages_v.size());
-            blocks.push_back({row, count, common_rounding_v(*record, voltages_v)});
+            blocks.push_back({f, row, count, common_rounding_v(*record, voltages_v)});
             row += count;
             voltages_v.clear();
         };
@@ -61,8 +63,8 @@ std::vector<Block> blocks_of_time(std::span<const AlignedRecord> records, double
 std::vector<Block> blocks_of_records(std::span<const AlignedRecord> records) {
     std::vector<Block> blocks;
     Eigen::Index row = 0;
-    for (const auto& [record, charge] : records) {
-        blocks.push_back({row, used_samples(*record), 0.0});
+    for (std::size_t f = 0; f < records.size(); ++f) {
+        blocks.push_back({f, row, used_samples(*records[f].record), 0.0});
         row += blocks.back().count;
     }
     return blocks;
@@ -70,51 +72,60 @@ std::vector<Block> blocks_of_records(std::span<const AlignedRecord> records) {
 
 /// The joint problem, each parameter scaled to length 1.
 struct Scaled {
-    Eigen::MatrixXd columns;
-    Eigen::MatrixXd believed;
-    Eigen::VectorXd residual_v;
+    std::vector<RecordDerivatives> records;
+    Eigen::MatrixXd normal;
     Eigen::VectorXd length;
 };
 
-/// Of the first `width` parameters; the others are held.
+/// Of the first `width` parameters; the others, the last of each record's, are held.
 Scaled scaled(const AlignedFit& aligned, Eigen::Index width) {
     Scaled problem;
-    problem.columns = joint_derivatives(aligned).leftCols(width);
-    problem.believed = joint_belief(aligned).rows.leftCols(width);
-    problem.residual_v = aligned.fit.residual_v;
-    problem.length = (problem.columns.colwise().squaredNorm() + problem.believed.colwise().squaredNorm())
-                         .cwiseSqrt()
-                         .transpose()
-                         .cwiseMax(1e-12);
+    problem.records = joint_derivatives(aligned);
+    auto belief = joint_belief(aligned);
+    belief.rows.conservativeResize(Eigen::NoChange, width);
+    for (auto& [first, places, columns] : problem.records) {
+        std::erase_if(places, [&](Eigen::Index place) { return place >= width; });
+        columns.conservativeResize(Eigen::NoChange, std::ssize(places));
+    }
+    problem.normal = joint_normal(problem.records, belief);
+    problem.length = problem.normal.diagonal().cwiseSqrt().cwiseMax(1e-12);
     const Eigen::VectorXd inverse = problem.length.cwiseInverse();
-    problem.columns = problem.columns * inverse.asDiagonal();
-    problem.believed = problem.believed * inverse.asDiagonal();
+    problem.normal = inverse.asDiagonal() * problem.normal * inverse.asDiagonal();
+    for (auto& [first, places, columns] : problem.records)
+        columns = columns * Eigen::VectorXd(inverse(places)).asDiagonal();
+    // A knot that one block alone has seen cannot be estimated without it: then it stays where it is.
+    constexpr double ridge = 1e-9;
+    problem.normal.diagonal().array() += ridge;
     return problem;
 }
 
-/// Covariance of the scaled parameters.
-Eigen::MatrixXd jackknife(const Scaled& problem, const std::vector<Block>& blocks) {
-    const auto width = problem.columns.cols();
-    // A knot that one block alone has seen cannot be estimated without it: then it stays where it is.
-    constexpr double ridge = 1e-9;
-    const Eigen::MatrixXd normal = problem.columns.transpose() * problem.columns +
-                                   problem.believed.transpose() * problem.believed +
-                                   ridge * Eigen::MatrixXd::Identity(width, width);
-    const auto all = normal.ldlt();
-    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(width, width);
+Eigen::MatrixXd inverse_of(const Scaled& problem) {
+    const auto width = problem.normal.rows();
+    return problem.normal.ldlt().solve(Eigen::MatrixXd::Identity(width, width));
+}
+
+/// Covariance of the scaled parameters. `inverse` is the normal matrix's.
+Eigen::MatrixXd jackknife(const Scaled& problem, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& residual_v,
+                          const std::vector<Block>& blocks) {
+    const auto width = problem.normal.rows();
+    Eigen::MatrixXd changes(width, std::ssize(blocks));
     Eigen::VectorXd rounding = Eigen::VectorXd::Zero(width);
-    for (const auto& [first, rows, rounding_v] : blocks) {
-        const auto part = problem.columns.middleRows(first, rows);
-        const Eigen::VectorXd score = part.transpose() * problem.residual_v.segment(first, rows);
-        const Eigen::MatrixXd others = normal - part.transpose() * part;
-        const Eigen::VectorXd change = others.ldlt().solve(score);
-        covariance += change * change.transpose();
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        const auto& [record, first, rows, rounding_v] = blocks[b];
+        const auto& [record_first, places, columns] = problem.records[record];
+        const auto part = columns.middleRows(first - record_first, rows);
+        const Eigen::VectorXd score = part.transpose() * residual_v.segment(first, rows);
+        const Eigen::MatrixXd across = inverse(Eigen::all, places);
+        // (N - P)^-1 s with the inverse of N alone, as P has the record's columns only (Woodbury).
+        const Eigen::MatrixXd without = Eigen::MatrixXd::Identity(score.size(), score.size()) -
+                                        part.transpose() * part * across(places, Eigen::all);
+        changes.col(static_cast<Eigen::Index>(b)) = across * without.partialPivLu().solve(score);
         // Packs rest at the same voltages, and so do their roundings: they add up.
-        const Eigen::VectorXd shift = all.solve(part.colwise().sum().transpose()) * rounding_v;
+        const Eigen::VectorXd shift = across * part.colwise().sum().transpose() * rounding_v;
         rounding += shift.cwiseAbs();
     }
     const auto count = static_cast<double>(blocks.size());
-    covariance *= (count - 1.0) / count;
+    Eigen::MatrixXd covariance = changes * changes.transpose() * ((count - 1.0) / count);
     covariance.diagonal() += rounding.cwiseAbs2();
     return covariance;
 }
@@ -143,16 +154,6 @@ Eigen::VectorXd moved_by_finer_curve(const AlignedFit& aligned) {
     return moved;
 }
 
-/// Standard deviations of the scaled parameters if samples were independent, each with its effective error: what counts
-/// where no sample tells a parameter, and only what is believed does.
-Eigen::VectorXd believed_deviation(const Scaled& problem, double sample_error_v) {
-    Eigen::MatrixXd normal =
-        problem.columns.transpose() * problem.columns + problem.believed.transpose() * problem.believed;
-    normal.diagonal().array() += 1e-9;
-    const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
-    return inverse.diagonal().cwiseMax(0.0).cwiseSqrt() * sample_error_v;
-}
-
 /// A half width made at least as wide, the covariance with it.
 void widen(Eigen::MatrixXd& covariance, Eigen::VectorXd& half_width, Eigen::Index i, double wider) {
     if (wider <= half_width[i]) return;
@@ -165,24 +166,30 @@ void widen(Eigen::MatrixXd& covariance, Eigen::VectorXd& half_width, Eigen::Inde
 /// Half widths of 95 % intervals, of all parameters.
 Eigen::VectorXd half_widths(const AlignedFit& aligned, const std::vector<Block>& in_time, Eigen::MatrixXd& covariance) {
     const auto at = columns_of(aligned.fit);
-    const auto problem = scaled(aligned, at.width + static_cast<Eigen::Index>(aligned.records.size()));
-    const double degrees_of_freedom = static_cast<double>(in_time.size()) - static_cast<double>(problem.columns.cols());
-    const Eigen::VectorXd inverse = problem.length.cwiseInverse();
-    covariance = inverse.asDiagonal() * jackknife(problem, in_time) * inverse.asDiagonal();
+    const auto problem = scaled(aligned, joint_width(aligned));
+    const auto inverse = inverse_of(problem);
+    const auto& residual_v = aligned.fit.residual_v;
+    const double degrees_of_freedom = static_cast<double>(in_time.size()) - static_cast<double>(inverse.cols());
+    const Eigen::VectorXd unit = problem.length.cwiseInverse();
+    covariance = unit.asDiagonal() * jackknife(problem, inverse, residual_v, in_time) * unit.asDiagonal();
     const double t_in_time = student_t_half_width(degrees_of_freedom);
     covariance *= std::pow(t_in_time / normal_half_width(), 2);
     Eigen::VectorXd half_width = covariance.diagonal().cwiseSqrt() * normal_half_width();
-    const auto believed = believed_deviation(problem, aligned.fit.weights.sample_error_v);
+    // If samples were independent, each with its effective error: what counts where no sample tells a parameter, and
+    // only what is believed does.
+    const Eigen::VectorXd believed =
+        inverse.diagonal().cwiseMax(0.0).cwiseSqrt().cwiseProduct(unit) * aligned.fit.weights.sample_error_v;
     for (Eigen::Index f = 0; f < static_cast<Eigen::Index>(aligned.records.size()); ++f) {
         const auto i = at.width + f;
         if (static_cast<std::size_t>(f) != aligned.reference)
-            widen(covariance, half_width, i, believed[i] * inverse[i] * normal_half_width());
+            widen(covariance, half_width, i, believed[i] * normal_half_width());
     }
     for (Eigen::Index k = 0; k < at.resistance; ++k)
-        widen(covariance, half_width, k, believed[k] * inverse[k] * normal_half_width());
+        widen(covariance, half_width, k, believed[k] * normal_half_width());
     if (aligned.records.size() < enough_records) return half_width;
     const auto held = scaled(aligned, at.width);
-    const Eigen::VectorXd of_records = jackknife(held, blocks_of_records(aligned.records)).diagonal().cwiseSqrt();
+    const auto blocks = blocks_of_records(aligned.records);
+    const Eigen::VectorXd of_records = jackknife(held, inverse_of(held), residual_v, blocks).diagonal().cwiseSqrt();
     const double t = student_t_half_width(static_cast<double>(aligned.records.size()) - 1.0);
     for (Eigen::Index i = 0; i < at.width; ++i) widen(covariance, half_width, i, of_records[i] / held.length[i] * t);
     return half_width;

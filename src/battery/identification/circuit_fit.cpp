@@ -34,16 +34,15 @@ Eigen::VectorXd gathered(std::span<const AlignedRecord> records, const Channel& 
     return values;
 }
 
-/// What is linear whatever the time constant, in the order of FitColumns.
-Eigen::MatrixXd linear_columns(std::span<const AlignedRecord> records, const std::vector<double>& knots_ah) {
+/// Derivatives by the knots and the resistance, one row a used sample.
+Eigen::MatrixXd curve_columns(std::span<const AlignedRecord> records, const std::vector<double>& knots_ah) {
     const auto knots = static_cast<Eigen::Index>(knots_ah.size());
     const auto charge = gathered(records, [](const AlignedRecord& aligned) {
         auto values = aligned.record->charge_ah;
         for (auto& value : values) value += aligned.initial_charge_ah;
         return values;
     });
-    const auto rests = static_cast<Eigen::Index>(records.size());
-    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(charge.size(), knots + 1 + rests + 1);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(charge.size(), knots + 1);
     for (Eigen::Index row = 0; row < charge.size(); ++row) {
         const auto place = place_among(knots_ah, charge[row]);
         const auto lower = static_cast<Eigen::Index>(place.lower);
@@ -51,39 +50,87 @@ Eigen::MatrixXd linear_columns(std::span<const AlignedRecord> records, const std
         columns(row, lower + 1) = place.fraction;
     }
     columns.col(knots) = -gathered(records, [](const AlignedRecord& a) { return a.record->current_a; });
-    Eigen::Index row = 0;
-    for (Eigen::Index f = 0; f < rests; ++f) {
-        const auto& record = *records[static_cast<std::size_t>(f)].record;
-        for (std::size_t i = 0; i < record.used.size(); ++i) {
-            if (!record.used[i]) continue;
-            if (i < record.rest_samples) columns(row, knots + 1 + f) = 1.0;
-            ++row;
-        }
-    }
     return columns;
 }
 
-Eigen::MatrixXd belief(std::span<const AlignedRecord> records, Eigen::Index knots, Eigen::Index width,
-                       const FitWeights& weights) {
-    const auto weight = [&](double sd) { return weights.sample_error_v / sd; };
-    const auto bends = std::max<Eigen::Index>(0, knots - 2);
-    const auto flights = static_cast<Eigen::Index>(records.size());
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(flights + 1 + bends, width);
-    const auto common = knots + 1 + flights;
-    for (Eigen::Index f = 0; f < flights; ++f) {
-        const double rest_v = rest_sd_v(*records[static_cast<std::size_t>(f)].record, weights);
-        rows(f, knots + 1 + f) = weight(rest_v);
-        rows(f, common) = -weight(rest_v);
-    }
-    rows(flights, common) = weight(common_rest_sd_v * weights.cells);
-    for (Eigen::Index b = 0; b < bends; ++b) {
-        const auto row = flights + 1 + b;
-        rows(row, b) = weight(bend_sd_v * weights.cells);
-        rows(row, b + 1) = -2.0 * weight(bend_sd_v * weights.cells);
-        rows(row, b + 2) = weight(bend_sd_v * weights.cells);
+/// What is believed of the curve's bends, as rows of `width` columns that begin with the knots'.
+Eigen::MatrixXd bend_rows(Eigen::Index knots, Eigen::Index width, const FitWeights& weights) {
+    const double weight = weights.sample_error_v / (bend_sd_v * weights.cells);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(0, knots - 2), width);
+    for (Eigen::Index b = 0; b < rows.rows(); ++b) {
+        rows(b, b) = weight;
+        rows(b, b + 1) = -2.0 * weight;
+        rows(b, b + 2) = weight;
     }
     return rows;
 }
+
+double common_rest_weight(const FitWeights& weights) {
+    return weights.sample_error_v / (common_rest_sd_v * weights.cells);
+}
+
+/// Takes the records' own rests out of a least squares. Each stands in its record's rest samples and in one row of what is
+/// believed, so one Householder reflection of these leaves it in that row alone; the other rows no longer know it.
+class WithoutRests {
+  public:
+    WithoutRests(std::span<const AlignedRecord> records, const FitWeights& weights) {
+        Eigen::Index first = 0;
+        for (const auto& [record, initial_ah] : records) {
+            Rest rest;
+            rest.first = first;
+            rest.rows = used_rests(*record);
+            rest.believed = weights.sample_error_v / rest_sd_v(*record, weights);
+            rest.length = std::hypot(std::sqrt(static_cast<double>(rest.rows)), rest.believed);
+            rests_.push_back(rest);
+            first += used_samples(*record);
+        }
+    }
+
+    /// Reflects a column of the samples that is 0 in what is believed. Returns those rows, one a record.
+    Eigen::VectorXd reflect(Eigen::Ref<Eigen::VectorXd> samples) const {
+        return reflect(samples, Eigen::VectorXd::Zero(std::ssize(rests_)));
+    }
+
+    /// The column of the common rest: 0 in the samples before it is reflected.
+    Eigen::VectorXd reflect_common(Eigen::Ref<Eigen::VectorXd> samples) const {
+        Eigen::VectorXd believed(std::ssize(rests_));
+        for (Eigen::Index f = 0; f < believed.size(); ++f) believed[f] = -at(f).believed;
+        samples.setZero();
+        return reflect(samples, believed);
+    }
+
+    /// The record's rest of what its row, reflected, leaves for it.
+    double rest_of(Eigen::Index f, double left) const { return -left / at(f).length; }
+
+    double believed(Eigen::Index f) const { return at(f).believed; }
+    Eigen::Index first(Eigen::Index f) const { return at(f).first; }
+    Eigen::Index rows(Eigen::Index f) const { return at(f).rows; }
+
+  private:
+    struct Rest {
+        Eigen::Index first = 0;  ///< row
+        Eigen::Index rows = 0;
+        double believed = 0.0;  ///< the rest's factor in the row of what is believed
+        double length = 0.0;    ///< of its column
+    };
+
+    const Rest& at(Eigen::Index f) const { return rests_[static_cast<std::size_t>(f)]; }
+
+    Eigen::VectorXd reflect(Eigen::Ref<Eigen::VectorXd> samples, Eigen::VectorXd believed) const {
+        for (Eigen::Index f = 0; f < believed.size(); ++f) {
+            const auto& rest = at(f);
+            const double last = rest.believed + rest.length;  // of the reflection's vector, whose others are 1
+            auto part = samples.segment(rest.first, rest.rows);
+            const double along =
+                2.0 * (part.sum() + last * believed[f]) / (static_cast<double>(rest.rows) + last * last);
+            part.array() -= along;
+            believed[f] -= along * last;
+        }
+        return believed;
+    }
+
+    std::vector<Rest> rests_;
+};
 
 Eigen::VectorXd settled(std::span<const AlignedRecord> records, double time_constant_s) {
     return gathered(records,
@@ -103,32 +150,72 @@ std::pair<double, double> time_constant_range(std::span<const AlignedRecord> rec
     return {std::log(low_s), std::log(std::max(2.0 * low_s, longest_part * longest_s))};
 }
 
+/// What is linear whatever the time constant, without the records' own rests: columns of the knots, the resistance, the
+/// common rest and, once it is known, the RC pair. Rows of the samples, then of what is believed of all.
+struct Reduced {
+    Eigen::MatrixXd rows;
+    Eigen::VectorXd target;
+    Eigen::MatrixXd of_rests;     ///< a row a record, which tells its rest
+    Eigen::VectorXd rest_target;  ///< of these
+};
+
+Reduced reduced(const WithoutRests& without, const Eigen::MatrixXd& curve, const Eigen::VectorXd& voltage_v,
+                const FitWeights& weights, Eigen::Index flights) {
+    const auto samples = curve.rows();
+    const auto knots = curve.cols() - 1;
+    const auto bends = bend_rows(knots, knots + 2, weights);
+    Reduced problem{Eigen::MatrixXd::Zero(samples + 1 + bends.rows(), knots + 2),
+                    Eigen::VectorXd::Zero(samples + 1 + bends.rows()),
+                    Eigen::MatrixXd(flights, knots + 2),
+                    {}};
+    problem.rows.topLeftCorner(samples, knots + 1) = curve;
+    for (Eigen::Index c = 0; c <= knots; ++c)
+        problem.of_rests.col(c) = without.reflect(problem.rows.col(c).head(samples));
+    problem.of_rests.col(knots + 1) = without.reflect_common(problem.rows.col(knots + 1).head(samples));
+    problem.rows(samples, knots + 1) = common_rest_weight(weights);
+    problem.rows.bottomRows(bends.rows()) = bends;
+    problem.target.head(samples) = voltage_v;
+    problem.rest_target = without.reflect(problem.target.head(samples));
+    return problem;
+}
+
+void add_rc(Reduced& problem, const WithoutRests& without, const Eigen::VectorXd& settled_a) {
+    const auto width = problem.rows.cols();
+    problem.rows.conservativeResize(Eigen::NoChange, width + 1);
+    problem.of_rests.conservativeResize(Eigen::NoChange, width + 1);
+    problem.rows.col(width).setZero();
+    problem.rows.col(width).head(settled_a.size()) = -settled_a;
+    problem.of_rests.col(width) = without.reflect(problem.rows.col(width).head(settled_a.size()));
+}
+
 /// Least squares once the linear columns are projected out, through their normal equations.
 class Projection {
   public:
-    Projection(std::span<const AlignedRecord> records, const Eigen::MatrixXd& columns, const Eigen::MatrixXd& believed,
-               const Eigen::VectorXd& voltage_v)
-        : records_(records), columns_(columns) {
-        normal_.compute(columns.transpose() * columns + believed.transpose() * believed);
-        const Eigen::VectorXd solution = normal_.solve(columns.transpose() * voltage_v);
-        rest_v_ = voltage_v - columns * solution;
-        left_ = rest_v_.squaredNorm() + (believed * solution).squaredNorm();
+    Projection(std::span<const AlignedRecord> records, const WithoutRests& without, const Reduced& problem)
+        : records_(records), without_(without), rows_(problem.rows) {
+        normal_.compute(rows_.transpose() * rows_);
+        const Eigen::VectorXd solution = normal_.solve(rows_.transpose() * problem.target);
+        rest_v_ = problem.target - rows_ * solution;
+        left_ = rest_v_.squaredNorm();
     }
 
     /// How much of the sum of squares an RC pair explains; its resistance is not negative.
     double explained(double log_time_constant) const {
-        const auto x = settled(records_, std::exp(log_time_constant));
-        const Eigen::VectorXd along = columns_.transpose() * x;
-        const double norm = x.squaredNorm() - along.dot(normal_.solve(along));
-        const double product = -x.dot(rest_v_);
-        return product > 0.0 && norm > 1e-9 * x.squaredNorm() ? product * product / norm : 0.0;
+        auto x = settled(records_, std::exp(log_time_constant));
+        const double own = x.squaredNorm();
+        const auto of_rests = without_.reflect(x);
+        const Eigen::VectorXd along = rows_.topRows(x.size()).transpose() * x;
+        const double norm = own - of_rests.squaredNorm() - along.dot(normal_.solve(along));
+        const double product = -x.dot(rest_v_.head(x.size()));
+        return product > 0.0 && norm > 1e-9 * own ? product * product / norm : 0.0;
     }
 
     double left() const { return left_; }
 
   private:
     std::span<const AlignedRecord> records_;
-    const Eigen::MatrixXd& columns_;
+    const WithoutRests& without_;
+    const Eigen::MatrixXd& rows_;
     Eigen::LDLT<Eigen::MatrixXd> normal_;
     Eigen::VectorXd rest_v_;
     double left_ = 0.0;
@@ -155,22 +242,11 @@ double best_time_constant(const Projection& projection, std::pair<double, double
         .first;
 }
 
-/// Parts of least squares: rows of samples, rows of what is believed.
-struct Rows {
-    Eigen::MatrixXd columns;
-    Eigen::MatrixXd believed;
-};
-
-Eigen::VectorXd solved(const Rows& rows, const Eigen::VectorXd& voltage_v) {
-    const auto samples = rows.columns.rows();
-    Eigen::MatrixXd all(samples + rows.believed.rows(), rows.columns.cols());
-    all << rows.columns, rows.believed;
-    Eigen::VectorXd target = Eigen::VectorXd::Zero(all.rows());
-    target.head(samples) = voltage_v;
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(all);
-    if (qr.rank() < all.cols())
+Eigen::VectorXd solved(const Reduced& problem) {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(problem.rows);
+    if (qr.rank() < problem.rows.cols())
         throw NoAnswerError("the flights do not determine the battery: charge and current vary too little");
-    return qr.solve(target);
+    return qr.solve(problem.target);
 }
 
 }  // namespace
@@ -184,52 +260,62 @@ FitColumns columns_of(const CircuitFit& fit) {
     FitColumns columns;
     columns.resistance = static_cast<Eigen::Index>(fit.knots_ah.size());
     columns.rest = columns.resistance + 1;
-    columns.rc = columns.rest + static_cast<Eigen::Index>(fit.rest_offset_v.size()) + 1;
+    columns.common = columns.rest + static_cast<Eigen::Index>(fit.rest_offset_v.size());
+    columns.rc = columns.common + 1;
     columns.width = columns.rc + (fit.rc_resistance_ohm > 0.0 ? 2 : 0);
     return columns;
 }
 
 CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector<double>& knots_ah,
                        const FitWeights& weights, std::optional<double> rc_time_constant_s) {
-    Rows rows{linear_columns(records, knots_ah), {}};
+    const auto curve = curve_columns(records, knots_ah);
     const auto voltage_v = gathered(records, [](const AlignedRecord& a) { return a.record->voltage_v; });
     const auto knots = static_cast<Eigen::Index>(knots_ah.size());
     const auto flights = static_cast<Eigen::Index>(records.size());
-    const auto linear = rows.columns.cols();
-    rows.believed = belief(records, knots, linear, weights);
+    const WithoutRests without(records, weights);
+    auto problem = reduced(without, curve, voltage_v, weights, flights);
+    const auto rc = problem.rows.cols();
     double tau_s = rc_time_constant_s.value_or(0.0);
     if (!rc_time_constant_s) {
-        const Projection projection(records, rows.columns, rows.believed, voltage_v);
+        const Projection projection(records, without, problem);
         tau_s = std::exp(best_time_constant(projection, time_constant_range(records)));
     }
+    Eigen::VectorXd settled_a;
     if (tau_s > 0.0) {
-        rows.columns.conservativeResize(Eigen::NoChange, linear + 1);
-        rows.columns.col(linear) = -settled(records, tau_s);
-        rows.believed = belief(records, knots, linear + 1, weights);
+        settled_a = settled(records, tau_s);
+        add_rc(problem, without, settled_a);
     }
-    const Eigen::VectorXd solution = solved(rows, voltage_v);
-    if (tau_s > 0.0 && solution[linear] <= 0.0) return fit_circuit(records, knots_ah, weights, 0.0);
+    const Eigen::VectorXd solution = solved(problem);
+    if (tau_s > 0.0 && solution[rc] <= 0.0) return fit_circuit(records, knots_ah, weights, 0.0);
     CircuitFit fit;
     fit.knots_ah = knots_ah;
     fit.open_circuit_v.assign(solution.begin(), solution.begin() + knots);
     fit.resistance_ohm = solution[knots];
-    fit.rest_offset_v.assign(solution.begin() + knots + 1, solution.begin() + knots + 1 + flights);
-    fit.common_rest_offset_v = solution[knots + 1 + flights];
+    fit.common_rest_offset_v = solution[knots + 1];
     fit.weights = weights;
+    fit.residual_v = voltage_v - curve * solution.head(knots + 1);
     if (tau_s > 0.0) {
-        fit.rc_resistance_ohm = solution[linear];
+        fit.rc_resistance_ohm = solution[rc];
         fit.rc_time_constant_s = tau_s;
+        fit.residual_v += solution[rc] * settled_a;
     }
     if (!(fit.resistance_ohm > 0.0))
         throw NoAnswerError("the voltage does not fall with the current: no series resistance is seen");
-    fit.residual_v = voltage_v - rows.columns * solution;
-    fit.objective = fit.residual_v.squaredNorm() + (rows.believed * solution).squaredNorm();
+    const Eigen::VectorXd left = problem.rest_target - problem.of_rests * solution;
+    double believed = (problem.rows.bottomRows(problem.rows.rows() - voltage_v.size()) * solution).squaredNorm();
+    for (Eigen::Index f = 0; f < flights; ++f) {
+        const double rest_v = without.rest_of(f, left[f]);
+        fit.rest_offset_v.push_back(rest_v);
+        fit.residual_v.segment(without.first(f), without.rows(f)).array() -= rest_v;
+        believed += std::pow(without.believed(f) * (rest_v - fit.common_rest_offset_v), 2);
+    }
+    fit.objective = fit.residual_v.squaredNorm() + believed;
     fit.rms_v = std::sqrt(fit.residual_v.squaredNorm() / static_cast<double>(fit.residual_v.size()));
     return fit;
 }
 
-Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit) {
-    auto columns = linear_columns(records, fit.knots_ah);
+Eigen::MatrixXd shared_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit) {
+    auto columns = curve_columns(records, fit.knots_ah);
     if (fit.rc_resistance_ohm == 0.0) return columns;
     const auto width = columns.cols();
     columns.conservativeResize(Eigen::NoChange, width + 2);
@@ -243,7 +329,18 @@ Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, cons
 }
 
 Eigen::MatrixXd believed_rows(std::span<const AlignedRecord> records, const CircuitFit& fit) {
-    return belief(records, static_cast<Eigen::Index>(fit.knots_ah.size()), columns_of(fit).width, fit.weights);
+    const auto at = columns_of(fit);
+    const auto flights = static_cast<Eigen::Index>(records.size());
+    const auto bends = bend_rows(at.resistance, at.width, fit.weights);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(flights + 1 + bends.rows(), at.width);
+    for (Eigen::Index f = 0; f < flights; ++f) {
+        const double rest_v = rest_sd_v(*records[static_cast<std::size_t>(f)].record, fit.weights);
+        rows(f, at.rest + f) = fit.weights.sample_error_v / rest_v;
+        rows(f, at.common) = -rows(f, at.rest + f);
+    }
+    rows(flights, at.common) = common_rest_weight(fit.weights);
+    rows.bottomRows(bends.rows()) = bends;
+    return rows;
 }
 
 Eigen::VectorXd slopes_v_per_ah(const AlignedRecord& aligned, const CircuitFit& fit) {

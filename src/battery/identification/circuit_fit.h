@@ -63,17 +63,19 @@ CircuitFit fit_circuit(std::span<const AlignedRecord> records, const std::vector
 struct FitColumns {
     Eigen::Index knots = 0;       ///< from column 0 on
     Eigen::Index resistance = 0;  ///< this column
-    Eigen::Index rest = 0;        ///< from this one on, one a record; then the common one
+    Eigen::Index rest = 0;        ///< from this one on, one a record
+    Eigen::Index common = 0;      ///< the common rest
     Eigen::Index rc = 0;          ///< rc_resistance, then the logarithm of rc_time_constant; absent without an RC pair
     Eigen::Index width = 0;
 };
 FitColumns columns_of(const CircuitFit& fit);
 
-/// Derivatives of the fitted voltages, one row a used sample.
-Eigen::MatrixXd voltage_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit);
+/// Derivatives of the fitted voltages by what all records share, one row a used sample: the knots, the resistance and, with
+/// an RC pair, its resistance and the logarithm of its time constant. (By a record's rest they are 1 before its first load.)
+Eigen::MatrixXd shared_derivatives(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
-/// What is believed, as rows beneath those derivatives: of each record its rest, then the common rest, then the bends of
-/// the curve.
+/// What is believed, as rows of the columns of FitColumns: of each record its rest, then the common rest, then the bends
+/// of the curve.
 Eigen::MatrixXd believed_rows(std::span<const AlignedRecord> records, const CircuitFit& fit);
 
 /// [V/Ah] The curve's slope at the used samples of one record.

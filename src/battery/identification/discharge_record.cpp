@@ -181,10 +181,20 @@ DischargeRecords discharge_records(const flight::ChosenTracks& tracks) {
 
 std::ptrdiff_t used_samples(const DischargeRecord& record) { return std::ranges::count(record.used, true); }
 
+std::ptrdiff_t used_rests(const DischargeRecord& record) {
+    const auto rests = static_cast<std::ptrdiff_t>(std::min(record.rest_samples, record.used.size()));
+    return std::count(record.used.begin(), record.used.begin() + rests, true);
+}
+
 std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s) {
     std::vector<double> settled(record.time_s.size(), record.resting_current_a);
+    double step_s = 0.0;
+    double decay = 1.0;
     for (std::size_t i = 1; i < settled.size(); ++i) {
-        const double decay = std::exp(-(record.time_s[i] - record.time_s[i - 1]) / time_constant_s);
+        if (const double own_s = record.time_s[i] - record.time_s[i - 1]; own_s != step_s) {
+            step_s = own_s;
+            decay = std::exp(-own_s / time_constant_s);
+        }
         settled[i] = settled[i - 1] * decay + record.mean_current_a[i] * (1.0 - decay);
     }
     return settled;

@@ -50,6 +50,9 @@ DischargeRecords discharge_records(const flight::ChosenTracks& tracks);
 
 std::ptrdiff_t used_samples(const DischargeRecord& record);
 
+/// Used samples before the first load.
+std::ptrdiff_t used_rests(const DischargeRecord& record);
+
 /// The current [A] that has settled in an RC pair of that time constant at every sample: the solution of
 /// tau dx/dt = I - x from the resting current on, exact for a current that is constant between samples.
 std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s);

@@ -104,7 +104,7 @@ JointBelief worn_belief(const WornFit& worn, const Places& places, double fitted
     belief.residual = Eigen::VectorXd::Zero(belief.rows.rows());
     belief.residual.head(first) = of_fit.residual;
     belief.rows.topLeftCorner(first, places.knots) = of_fit.rows.leftCols(places.knots);
-    belief.rows.col(places.common_rest()).head(first) = of_fit.rows.col(at.rest + places.flights);
+    belief.rows.col(places.common_rest()).head(first) = of_fit.rows.col(at.common);
     const double sample_v = worn.aligned.fit.weights.sample_error_v;
     const double per_ohm = sample_v / (resistance_sd_part * fitted_ohm);
     const double per_log = sample_v / log_capacity_sd;
@@ -259,8 +259,8 @@ struct Load {
     bool tells_resistance = false;
 };
 
-Load load_of(const FlightRows& rows, const Places& places, std::size_t rest_rows) {
-    const auto under_load = rows.columns.bottomRows(rows.columns.rows() - static_cast<Eigen::Index>(rest_rows));
+Load load_of(const FlightRows& rows, const Places& places, Eigen::Index rest_rows) {
+    const auto under_load = rows.columns.bottomRows(rows.columns.rows() - rest_rows);
     // The reference has no derivative by its initial charge: the slope of the curve is taken from its knots.
     const Eigen::VectorXd current = under_load.col(places.common() + 2);
     const Eigen::VectorXd slope = under_load.col(places.common() + 1);
@@ -281,12 +281,6 @@ double unlike_others(const WornFit& worn, std::size_t f) {
     const double fall_v = voltage_v(initial_ah) - voltage_v(initial_ah + drawn_ah);
     constexpr double least_v = 1e-3;
     return charged_rest_sd_v * fit.weights.cells / std::max(least_v, fall_v);
-}
-
-std::size_t used_rests(const DischargeRecord& record) {
-    std::size_t rows = 0;
-    for (std::size_t i = 0; i < std::min(record.rest_samples, record.used.size()); ++i) rows += record.used[i] ? 1 : 0;
-    return rows;
 }
 
 }  // namespace

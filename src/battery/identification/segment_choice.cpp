@@ -53,16 +53,14 @@ struct LoadRows {
 LoadRows load_rows(std::span<const AlignedRecord> records, const CircuitFit& like, int segments) {
     auto fit = fit_circuit(records, equal_knots(records, segments), like.weights, like.rc_time_constant_s);
     const auto at = columns_of(fit);
-    const auto all = voltage_derivatives(records, fit);
+    const auto all = shared_derivatives(records, fit);
     const auto believed = believed_rows(records, fit);
     const Eigen::Index rc = fit.rc_resistance_ohm > 0.0 ? 1 : 0;
     LoadRows rows;
-    rows.columns.resize(all.rows(), at.rest + rc);
-    rows.columns.leftCols(at.rest) = all.leftCols(at.rest);
+    rows.columns = all.leftCols(at.rest + rc);  // without the time constant's
     const auto bends = std::max<Eigen::Index>(0, at.resistance - 2);
     rows.believed = Eigen::MatrixXd::Zero(bends, at.rest + rc);
     rows.believed.leftCols(at.rest) = believed.bottomRows(bends).leftCols(at.rest);
-    if (rc > 0) rows.columns.col(at.rest) = all.col(at.rc);
     rows.voltage_v.resize(all.rows());
     rows.charge_ah.resize(all.rows());
     Eigen::Index row = 0;
