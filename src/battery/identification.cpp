@@ -1,6 +1,7 @@
 #include "battery/identification.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
 #include "battery/identification/aligned_fit.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -80,9 +82,10 @@ bool agrees(const Chained& free, std::size_t later, const PackLink& link) {
 }
 
 /// The circuit with every flight's pack its own; then chained, where that agrees.
-Chained chained_fit(std::span<const DischargeRecord> records, int cells, const IdentificationOptions& options) {
+Chained chained_fit(std::span<const DischargeRecord> records, int cells, const IdentificationOptions& options,
+                    std::span<const double> begin_ah) {
     Chained chained;
-    chained.aligned = aligned_fit(records, cells);
+    chained.aligned = aligned_fit(records, cells, {}, begin_ah);
     chained.links.resize(records.size());
     add_errors(chained, options.with_capacities);
     std::vector<ChargeLink> links;
@@ -93,7 +96,7 @@ Chained chained_fit(std::span<const DischargeRecord> records, int cells, const I
         chained.links[f] = link;
     }
     if (links.empty()) return chained;
-    chained.aligned = aligned_fit(records, cells, links);
+    chained.aligned = aligned_fit(records, cells, links, begin_ah);
     add_errors(chained, options.with_capacities);
     return chained;
 }
@@ -156,10 +159,11 @@ std::vector<IdentifiedFlight> identified_flights(const Chained& chained, std::sp
     return flights;
 }
 
-/// All that is told of a battery, and what another record is predicted with.
+/// All that is told of a battery but what is told of each flight, and what that is told from.
 struct Told {
     BatteryIdentification identification;
-    AlignedFit aligned;
+    Chained chained;
+    std::vector<ChargeScale> posterior;
 };
 
 Battery battery_of(const BatteryIdentification& result, const ExtendedCurve& extended, const std::string& name) {
@@ -179,28 +183,26 @@ Battery battery_of(const BatteryIdentification& result, const ExtendedCurve& ext
     return battery;
 }
 
-Told told_by(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
+/// `begin_ah`: see aligned_fit.
+Told told_by(std::span<const DischargeRecord> records, const IdentificationOptions& options,
+             std::span<const double> begin_ah = {}) {
     if (records.empty()) throw NoAnswerError("no flight is left to identify a battery from");
     const int cells = cells_of(records, options);
-    auto chained = chained_fit(records, cells, options);
-    const auto posterior = match_chart(shown_curve(chained), options.capacity_ah);
     Told told;
+    told.chained = chained_fit(records, cells, options, begin_ah);
+    told.posterior = match_chart(shown_curve(told.chained), options.capacity_ah);
+    const auto& [identification, chained, posterior] = told;
     auto& result = told.identification;
     result.fit = chained.aligned.fit;
     result.errors = chained.errors;
     result.cells = cells;
     result.capacity = capacity_of(result.fit.knots_ah.back(), posterior, options.capacity_ah);
     result.missing_ah = probable_missing_ah(posterior);
-    result.flights = identified_flights(chained, posterior, result.missing_ah);
-    std::vector<std::optional<FlightResistance>> in_order;
-    for (const auto f : order_in_time(chained.aligned.records)) in_order.push_back(chained.resistances[f]);
-    result.trend = resistance_trend(in_order);
     const auto extended = extended_curve(result.fit, result.errors.open_circuit_standard_error_v,
                                          result.capacity.value_ah, result.missing_ah);
     result.known_down_to_percent = extended.known_down_to_percent;
     result.known_up_to_percent = extended.known_up_to_percent;
     result.battery = battery_of(result, extended, options.name);
-    told.aligned = std::move(chained.aligned);
     return told;
 }
 
@@ -297,9 +299,10 @@ LeftOutCheck checked(const Told& told, const DischargeRecord& record, bool chain
     const auto& identified = told.identification;
     LeftOutCheck check;
     check.flight = record.flight;
-    double place_ah = resting_place_ah(record, told.aligned);
-    if (const auto link = chain ? pack_link(record, told.aligned.records, told.aligned.fit) : std::nullopt) {
-        const auto& earlier = told.aligned.records[link->earlier];
+    const auto& aligned = told.chained.aligned;
+    double place_ah = resting_place_ah(record, aligned);
+    if (const auto link = chain ? pack_link(record, aligned.records, aligned.fit) : std::nullopt) {
+        const auto& earlier = aligned.records[link->earlier];
         check.pack_of = earlier.record->flight;
         place_ah = earlier.initial_charge_ah + link->charge_ah;
     }
@@ -316,7 +319,12 @@ LeftOutCheck checked(const Told& told, const DischargeRecord& record, bool chain
 }  // namespace
 
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
-    return told_by(records, options).identification;
+    auto [result, chained, posterior] = told_by(records, options);
+    result.flights = identified_flights(chained, posterior, result.missing_ah);
+    std::vector<std::optional<FlightResistance>> in_order;
+    for (const auto f : order_in_time(chained.aligned.records)) in_order.push_back(chained.resistances[f]);
+    result.trend = resistance_trend(in_order);
+    return result;
 }
 
 PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah) {
@@ -326,14 +334,24 @@ PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& 
 
 std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records, const IdentificationOptions& options,
                                          const std::function<void(std::size_t, std::size_t)>& progress) {
-    std::vector<LeftOutCheck> checks;
-    if (records.size() < 2) return checks;
-    for (std::size_t k = 0; k < records.size(); ++k) {
-        if (progress) progress(k, records.size());
-        std::vector<DischargeRecord> others(records.begin(), records.end());
-        others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-        checks.push_back(checked(told_by(others, options), records[k], options.chain));
-    }
+    if (records.size() < 2) return {};
+    const auto all = told_by(records, options).chained.aligned;
+    std::vector<LeftOutCheck> checks(records.size());
+    std::mutex mutex;  // guards what follows
+    std::size_t done = 0;
+    for_each_in_parallel(records.size(), [&](std::size_t k) {
+        std::vector<DischargeRecord> others;
+        std::vector<double> begin_ah;
+        for (std::size_t f = 0; f < records.size(); ++f) {
+            if (f == k) continue;
+            others.push_back(records[f]);
+            begin_ah.push_back(all.records[f].initial_charge_ah);
+        }
+        checks[k] = checked(told_by(others, options, begin_ah), records[k], options.chain);
+        if (!progress) return;
+        const std::lock_guard lock(mutex);
+        progress(++done, records.size());
+    });
     return checks;
 }
 

@@ -113,8 +113,8 @@ TEST(Identification, AlignsFlightsByTheirVoltage) {
     EXPECT_LT(found.fit.rms_v, 0.015);
     std::vector<std::size_t> done;
     const auto checks =
-        leave_each_out(records, {2.4, {}, ""}, [&](std::size_t record, std::size_t) { done.push_back(record); });
-    EXPECT_EQ(done, (std::vector<std::size_t>{0, 1}));
+        leave_each_out(records, {2.4, {}, ""}, [&](std::size_t so_many, std::size_t) { done.push_back(so_many); });
+    EXPECT_EQ(done, (std::vector<std::size_t>{1, 2}));
     ASSERT_EQ(checks.size(), 2U);
     EXPECT_EQ(checks[0].flight, "synthetic_1");
     EXPECT_GT(checks[1].beyond_percent, 20.0);  // its end was never flown before

@@ -119,14 +119,27 @@ void step_to_optimum(AlignedFit& aligned, int segments) {
     refit(aligned, segments, false);
 }
 
-/// The records laid onto each other one by one, the fullest first.
-AlignedFit laid_out(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links) {
+/// The records in the order of how full their packs were.
+std::vector<std::size_t> fullest_first(std::span<const DischargeRecord> records) {
     std::vector<std::size_t> order(records.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return records[i].resting_voltage_v; });
+    return order;
+}
+
+FitWeights first_weights(const DischargeRecord& fullest, int cells) {
+    FitWeights weights;
+    weights.cells = cells;
+    weights.fullest_rest_v = fullest.resting_voltage_v;
+    return weights;
+}
+
+/// Initial charges of records that are laid onto each other one by one, the fullest first.
+std::vector<double> laid_one_by_one(std::span<const DischargeRecord> records, int cells,
+                                    std::span<const ChargeLink> links) {
+    const auto order = fullest_first(records);
     AlignedFit growing;
-    growing.fit.weights.cells = cells;
-    growing.fit.weights.fullest_rest_v = records[order.front()].resting_voltage_v;
+    growing.fit.weights = first_weights(records[order.front()], cells);
     std::vector<double> initial_ah(records.size(), 0.0);
     for (const auto at : order) {
         const auto linked = std::ranges::find(links, at, &ChargeLink::later);
@@ -139,13 +152,19 @@ AlignedFit laid_out(std::span<const DischargeRecord> records, int cells, std::sp
             initial_ah[at] = best_place_ah(records[at], growing.fit);
         }
         growing.records.push_back({&records[at], initial_ah[at]});
-        refit(growing, first_segments, false);
+        if (at != order.back()) refit(growing, first_segments, false);
     }
+    return initial_ah;
+}
+
+/// With the initial charges that are about right.
+AlignedFit laid_out(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links,
+                    std::span<const double> initial_ah) {
     AlignedFit aligned;
     for (std::size_t i = 0; i < records.size(); ++i) aligned.records.push_back({&records[i], initial_ah[i]});
     aligned.links.assign(links.begin(), links.end());
-    aligned.reference = order.front();
-    aligned.fit.weights = growing.fit.weights;
+    aligned.reference = fullest_first(records).front();
+    aligned.fit.weights = first_weights(records[aligned.reference], cells);
     refit(aligned, first_segments, false);
     aligned.fit.weights.sample_error_v = effective_error_v(aligned.records, aligned.fit.residual_v);
     refit(aligned, first_segments, false);
@@ -252,8 +271,10 @@ Eigen::VectorXd joint_step(const AlignedFit& aligned) {
     return scaled.cwiseQuotient(length);
 }
 
-AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links) {
-    auto rough = laid_out(records, cells, links);
+AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links,
+                       std::span<const double> begin_ah) {
+    auto rough = begin_ah.empty() ? laid_out(records, cells, links, laid_one_by_one(records, cells, links))
+                                  : laid_out(records, cells, links, begin_ah);
     step_to_optimum(rough, first_segments);
     for (const int segments : segments_by_prediction(rough.records, rough.fit)) {
         auto aligned = rough;

@@ -28,11 +28,12 @@ struct AlignedFit {
 
 /// Circuit and initial charges in one least squares: what was missing from the pack is a parameter of each record but
 /// the reference's, told by the voltage under load, the resting voltage (as far as it can be believed, circuit_fit.h)
-/// and the links. Solved by Gauss-Newton steps from where each record's voltage lies best on the curve of the fuller
-/// ones. The curve has as many equal segments (12 at most) as predict best what was left out: each record in turn, or,
+/// and the links. Solved by Gauss-Newton steps from `begin_ah`, initial charges that are about right; without them from
+/// where each record's voltage lies best on the curve of the fuller ones. The curve has as many equal segments (12 at most) as predict best what was left out: each record in turn, or,
 /// of a single one, each twentieth of it. The curve begins at charge 0. Throws NoAnswerError where the records
 /// determine no circuit whose voltage falls as charge is drawn.
-AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links = {});
+AlignedFit aligned_fit(std::span<const DischargeRecord> records, int cells, std::span<const ChargeLink> links = {},
+                       std::span<const double> begin_ah = {});
 
 /// Derivatives of one record's fitted voltages, one row a used sample, and the parameters that they are by: places in
 /// the order of FitColumns, then of the records' initial charges (the reference's derivative is 0 throughout). By the

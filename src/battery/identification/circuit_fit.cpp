@@ -132,9 +132,20 @@ class WithoutRests {
     std::vector<Rest> rests_;
 };
 
+/// The settled currents of the used samples.
 Eigen::VectorXd settled(std::span<const AlignedRecord> records, double time_constant_s) {
-    return gathered(records,
-                    [&](const AlignedRecord& aligned) { return settled_current_a(*aligned.record, time_constant_s); });
+    std::size_t samples = 0;
+    for (const auto& [record, initial_ah] : records) samples += record->time_s.size();
+    Eigen::VectorXd settled_a(static_cast<Eigen::Index>(samples));
+    Eigen::Index used = 0;
+    for (const auto& [record, initial_ah] : records) {
+        settle_current_a(*record, time_constant_s, {settled_a.data() + used, record->time_s.size()});
+        const Eigen::Index first = used;  // unused samples fall out by moving the others up
+        for (std::size_t i = 0; i < record->used.size(); ++i)
+            if (record->used[i]) settled_a[used++] = settled_a[first + static_cast<Eigen::Index>(i)];
+    }
+    settled_a.conservativeResize(used);
+    return settled_a;
 }
 
 /// The time constants to search, as logarithms.

@@ -186,18 +186,23 @@ std::ptrdiff_t used_rests(const DischargeRecord& record) {
     return std::count(record.used.begin(), record.used.begin() + rests, true);
 }
 
-std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s) {
-    std::vector<double> settled(record.time_s.size(), record.resting_current_a);
+void settle_current_a(const DischargeRecord& record, double time_constant_s, std::span<double> settled_a) {
+    settled_a.front() = record.resting_current_a;
     double step_s = 0.0;
     double decay = 1.0;
-    for (std::size_t i = 1; i < settled.size(); ++i) {
+    for (std::size_t i = 1; i < settled_a.size(); ++i) {
         if (const double own_s = record.time_s[i] - record.time_s[i - 1]; own_s != step_s) {
             step_s = own_s;
             decay = std::exp(-own_s / time_constant_s);
         }
-        settled[i] = settled[i - 1] * decay + record.mean_current_a[i] * (1.0 - decay);
+        settled_a[i] = settled_a[i - 1] * decay + record.mean_current_a[i] * (1.0 - decay);
     }
-    return settled;
+}
+
+std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s) {
+    std::vector<double> settled_a(record.time_s.size());
+    settle_current_a(record, time_constant_s, settled_a);
+    return settled_a;
 }
 
 }  // namespace flightwatt::battery

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,5 +57,7 @@ std::ptrdiff_t used_rests(const DischargeRecord& record);
 /// The current [A] that has settled in an RC pair of that time constant at every sample: the solution of
 /// tau dx/dt = I - x from the resting current on, exact for a current that is constant between samples.
 std::vector<double> settled_current_a(const DischargeRecord& record, double time_constant_s);
+/// Into a span of as many.
+void settle_current_a(const DischargeRecord& record, double time_constant_s, std::span<double> settled_a);
 
 }  // namespace flightwatt::battery
