@@ -1,11 +1,15 @@
 #include "mechanical/model_fit.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
+#include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
+#include "mechanical/fit/frequency_scan.h"
 #include "mechanical/level_law.h"
 #include "mechanical/prediction/level_spread.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -93,6 +97,33 @@ std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flight
         samples.back().flight = flight.flight;
     }
     return samples;
+}
+
+void keep_scans(std::span<FlightSamples> flights, const ModelFitOptions& options) {
+    for (const auto phase : flight::all_phases) {
+        auto phase_options = options.phases;
+        phase_options.order = options.order(phase);
+        if (phase_options.order <= 0) continue;
+        const auto samples = samples_of_phase(flights, phase);
+        const auto lacks_samples = [&](const auto& own) {
+            return own.tau.size() < samples_needed(phase_options.order) || own.tau.size() != own.power_w.size();
+        };
+        if (samples.empty() || std::ranges::any_of(samples, lacks_samples)) continue;
+        std::optional<FrequencyRange> range;
+        try {
+            range = admissible_range(samples, phase_options);
+        } catch (const NoAnswerError&) {
+            continue;  // as the fits will say
+        }
+        for_each_in_parallel(flights.size(), [&](std::size_t i) {
+            auto& own = flights[i].phases[phase];
+            if (!own) return;
+            ScaledSamples values{own->tau, own->power_w};
+            const double mean_w = mean(values.value);
+            for (double& value : values.value) value -= mean_w;
+            own->scan = std::make_shared<const FlightScan>(scan_flight(values, phase_options.order, *range));
+        });
+    }
 }
 
 FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,

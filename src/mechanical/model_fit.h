@@ -43,6 +43,10 @@ struct ModelFit {
 /// The flights that have the phase, in their order, under their flights' names.
 std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, flight::Phase phase);
 
+/// Keeps with the samples what each flight contributes to the scan for the frequency (PhaseSamples::scan), so that fits
+/// to most of these flights need not make it again. A phase that cannot be fitted keeps nothing.
+void keep_scans(std::span<FlightSamples> flights, const ModelFitOptions& options);
+
 /// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights
 /// that have it and averaged with their weights. A phase's rms_w is that of the samples about their own
 /// flights' curves. Throws NoAnswerError naming a phase that no flight has, or a flight with too few samples

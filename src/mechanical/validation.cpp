@@ -191,6 +191,9 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
         if (names.insert(flight.samples.flight).second) continue;
         throw UsageError(fmt::format("flight '{}' is given twice: it would predict itself", flight.samples.flight));
     }
+    std::vector<FlightSamples> samples(flights.size());
+    std::ranges::transform(flights, samples.begin(), &MeasuredFlight::samples);
+    keep_scans(samples, options);
     std::vector<ValidatedFlight> validated(flights.size());
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
@@ -198,10 +201,10 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
         const auto& excluded = flights[i];
         Others others;
         std::vector<FlightMotion> motions;
-        for (const auto& other : flights) {
-            if (&other == &excluded) continue;
-            others.samples.push_back(other.samples);
-            motions.push_back(other.motion);
+        for (std::size_t other = 0; other < flights.size(); ++other) {
+            if (other == i) continue;
+            others.samples.push_back(samples[other]);
+            motions.push_back(flights[other].motion);
         }
         if (!excluded.motion.bins.empty()) others.physical = physical_model_of(motions);
         validated[i] = validate_flight(excluded, others, options, covariates);

@@ -321,7 +321,7 @@ FrequencyPosterior frequency_posterior(std::span<const ScaledSamples> unsorted, 
     posterior.highest_autocorrelation = highest_autocorrelation_of(flights);
     const double highest = posterior.highest_autocorrelation;
     const bool is_told = options.order > 0 && mechanical::sample_count(flights) >= many_samples &&
-                         is_one_frequency(flights, options.order, options.range, options.found_rad);
+                         is_one_frequency(flights, options.order, options.range, options.found_rad, options.scan);
     std::vector<double> starts{options.found_rad};
     auto autocorrelations = coarse_autocorrelations(highest);
     if (is_told) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mechanical/fit/frequency_scan.h"
 #include "mechanical/fit/phase_samples.h"
 #include "mechanical/mechanical_model.h"
 
@@ -39,7 +40,8 @@ struct FrequencyPosterior {
 struct PosteriorOptions {
     int order = 3;
     FrequencyRange range;
-    double found_rad = 0.0;  ///< of least squares: one place where the density is looked for
+    double found_rad = 0.0;               ///< of least squares: one place where the density is looked for
+    const FrequencyScan* scan = nullptr;  ///< of the flights, if it is known
 };
 
 /// The highest autocorrelation of neighbours that is looked at: noise that lasts a fifth of the phase, from 0.9 (9.5

@@ -1,5 +1,6 @@
 #include "mechanical/fit/frequency_scan.h"
 
+#include "base/parallel.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/projected_fit.h"
 
@@ -45,9 +46,8 @@ struct Candidate {
 
 double own_square_sum(std::span<const ScaledSamples> flights) {
     double sum = 0.0;
-    for (const auto& [tau, value, name] : flights) {
-        sum = std::inner_product(value.begin(), value.end(), value.begin(), sum);
-    }
+    for (const auto& flight : flights)
+        sum = std::inner_product(flight.value.begin(), flight.value.end(), flight.value.begin(), sum);
     return sum;
 }
 
@@ -73,31 +73,59 @@ std::vector<Candidate> minima(const FrequencyScan& scan) {
     return found;
 }
 
+/// The thetas of a scan, in steps.
+struct ScanGrid {
+    double step_rad = 0.0;
+    std::size_t first = 0;
+    std::size_t last = 0;
+};
+
+ScanGrid grid_of(const FrequencyRange& range, int order) {
+    const double step_rad = frequency_scan_step(range, order);
+    return {step_rad, static_cast<std::size_t>(std::ceil(range.low_rad / step_rad)),
+            static_cast<std::size_t>(std::round(range.high_rad / step_rad))};
+}
+
 }  // namespace
 
 double frequency_scan_step(const FrequencyRange& range, int order) {
     return range.high_rad / std::ceil(range.high_rad * order / turn_between_rad);
 }
 
-FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range) {
-    FrequencyScan scan;
-    scan.step_rad = frequency_scan_step(range, order);
-    const auto last = static_cast<std::size_t>(std::round(range.high_rad / scan.step_rad));
-    const auto first = static_cast<std::size_t>(std::ceil(range.low_rad / scan.step_rad));
-    for (auto i = first; i <= last; ++i) scan.theta_rad.push_back(static_cast<double>(i) * scan.step_rad);
+FlightScan scan_flight(const ScaledSamples& samples, int order, const FrequencyRange& range) {
+    const auto [step_rad, first, last] = grid_of(range, order);
+    if (const auto* known = samples.scan.get(); known && known->order == order && known->step_rad == step_rad &&
+                                                known->first == first && known->square_sum.size() == last - first + 1) {
+        auto scan = *known;
+        for (double& sum : scan.square_sum) sum *= samples.scan_unit * samples.scan_unit;
+        return scan;
+    }
+    FlightScan scan{order, step_rad, first, {}};
+    scan.square_sum.assign(last - first + 1, own_square_sum(std::span(&samples, 1)));
+    const auto sums = sum_by_fft(samples, step_rad, 2 * static_cast<std::size_t>(order) * last + 1);
+    for (std::size_t i = 0; i < scan.square_sum.size(); ++i)
+        scan.square_sum[i] -= explained_square_sum(sums, first + i, order);
+    return scan;
+}
 
-    scan.square_sum.assign(scan.theta_rad.size(), own_square_sum(flights));
-    for (const auto& flight : flights) {
-        const auto sums = sum_by_fft(flight, scan.step_rad, 2 * static_cast<std::size_t>(order) * last + 1);
-        for (std::size_t i = 0; i < scan.square_sum.size(); ++i) {
-            scan.square_sum[i] -= explained_square_sum(sums, first + i, order);
-        }
+FrequencyScan scan_frequencies(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range) {
+    const auto [step_rad, first, last] = grid_of(range, order);
+    FrequencyScan scan{{}, std::vector<double>(last - first + 1, 0.0), step_rad};
+    for (auto i = first; i <= last; ++i) scan.theta_rad.push_back(static_cast<double>(i) * step_rad);
+    // A block at a time, because those of thousands of flights would fill the memory.
+    constexpr std::size_t block = 64;
+    for (std::size_t begin = 0; begin < flights.size(); begin += block) {
+        const auto some = flights.subspan(begin, std::min(block, flights.size() - begin));
+        std::vector<FlightScan> made(some.size());
+        for_each_in_parallel(some.size(), [&](std::size_t i) { made[i] = scan_flight(some[i], order, range); });
+        for (const auto& flight : made)
+            for (std::size_t i = 0; i < scan.square_sum.size(); ++i) scan.square_sum[i] += flight.square_sum[i];
     }
     return scan;
 }
 
-double find_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range) {
-    const auto scan = scan_frequencies(flights, order, range);
+double find_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
+                      const FrequencyScan& scan) {
     auto candidates = minima(scan);
     candidates.resize(std::min(candidates.size(), refined_minima));
     const double total = own_square_sum(flights);

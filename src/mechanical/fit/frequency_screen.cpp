@@ -47,15 +47,13 @@ struct ScreenGrid {
     int order = 0;
 };
 
-ScreenedFlight screened(const ScaledSamples& samples, const ScreenGrid& grid, double found_rad,
-                        const std::vector<double>& autocorrelations) {
+ScreenedFlight screened(const ScaledSamples& samples, const ScreenGrid& grid, const FrequencyRange& range,
+                        double found_rad, const std::vector<double>& autocorrelations) {
     ScreenedFlight flight;
     const auto count = 2 * static_cast<std::size_t>(grid.order) * grid.last + 1;
-    const auto of_values = sum_by_fft(samples, grid.step_rad, count);
+    for (const double sum : scan_flight(samples, grid.order, range).square_sum)
+        flight.projected.push_back(std::max(0.0, sum));
     const double total = as_vector(samples.value).squaredNorm();
-    for (auto i = grid.first; i <= grid.last; ++i) {
-        flight.projected.push_back(std::max(0.0, total - explained_square_sum(of_values, i, grid.order)));
-    }
     auto residuals = samples;
     if (const auto at = flight_at(samples, grid.order, found_rad)) {
         const auto last_column = at->columns.rightCols(1);
@@ -144,8 +142,8 @@ std::optional<double> correlation_that_counts(std::span<const ScaledSamples> fli
 
 }  // namespace
 
-bool is_one_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range,
-                      double found_rad) {
+bool is_one_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range, double found_rad,
+                      const FrequencyScan* known) {
     constexpr double least_log_ratio = 25.0;
     const double beside_rad = 0.5 / order;
     if (found_rad - beside_rad <= range.low_rad || found_rad + beside_rad >= range.high_rad) return false;
@@ -161,7 +159,7 @@ bool is_one_frequency(std::span<const ScaledSamples> flights, int order, const F
         const auto beside = square_sum_at(flights, order, theta_rad);
         if (!beside || beside->sum < least_worse) return false;
     }
-    const auto scan = scan_frequencies(flights, order, range);
+    const auto scan = known ? *known : scan_frequencies(flights, order, range);
     for (std::size_t i = 0; i < scan.theta_rad.size(); ++i)
         if (std::abs(scan.theta_rad[i] - found_rad) > beside_rad && scan.square_sum[i] < least_worse) return false;
     return true;
@@ -182,7 +180,7 @@ std::vector<double> promising_frequencies(std::span<const ScaledSamples> flights
     grid.last = static_cast<std::size_t>(std::round(range.high_rad / scan_step));
     const auto autocorrelations = coarse_autocorrelations(highest);
     std::vector<ScreenedFlight> known;
-    for (const auto& samples : flights) known.push_back(screened(samples, grid, found_rad, autocorrelations));
+    for (const auto& samples : flights) known.push_back(screened(samples, grid, range, found_rad, autocorrelations));
 
     std::vector<std::pair<double, double>> found;  // likelihood, frequency
     double best = -std::numeric_limits<double>::infinity();

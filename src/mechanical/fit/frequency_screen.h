@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mechanical/fit/frequency_scan.h"
 #include "mechanical/fit/phase_samples.h"
 #include "mechanical/mechanical_model.h"
 
@@ -23,7 +24,8 @@ std::vector<double> promising_frequencies(std::span<const ScaledSamples> flights
 /// flights and more; residuals of neighbours are correlated by at most 0.5 (in 30 flights together 0.8); and the
 /// likelihood, the samples counted as so many independent ones, is less by e^-25 wherever the highest harmonic turns by
 /// more than 0.5 rad from that at `found_rad`, which lies inside the range. Quick, and rarely so of few real flights;
-/// false says nothing. `flights` rise in time.
-bool is_one_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range, double found_rad);
+/// false says nothing. `flights` rise in time; `scan` is theirs, if it is known.
+bool is_one_frequency(std::span<const ScaledSamples> flights, int order, const FrequencyRange& range, double found_rad,
+                      const FrequencyScan* scan = nullptr);
 
 }  // namespace flightwatt::mechanical

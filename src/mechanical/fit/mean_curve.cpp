@@ -325,7 +325,7 @@ void settle_curves(std::span<const PhaseSamples> flights, PhaseFit& fit) {
     std::vector<ScaledSamples> values;
     for (std::size_t i = 0; i < flights.size(); ++i)
         values.push_back(in_order_of_time(fitted_values(flights[i], fit.flights[i], fit)));
-    const bool is_settled = is_one_frequency(values, order, fit.range, fit.theta_rad);
+    const bool is_settled = is_one_frequency(values, order, fit.range, fit.theta_rad, fit.scan.get());
     if (is_settled && stays_above(flights, fit)) return;
     NearSeries near{fit.theta_rad, Eigen::MatrixXd(coefficient_count(order), std::ssize(flights))};
     for (Eigen::Index i = 0; i < near.coefficients.cols(); ++i) {
@@ -337,7 +337,7 @@ void settle_curves(std::span<const PhaseSamples> flights, PhaseFit& fit) {
         take_series(fit, flights, near);
         return;
     }
-    auto posterior = frequency_posterior(values, {order, fit.range, fit.theta_rad});
+    auto posterior = frequency_posterior(values, {order, fit.range, fit.theta_rad, fit.scan.get()});
     auto grid = curve_grid(flights, fit, std::max(fit.theta_rad, posterior.nodes.back().theta_rad));
     add_mean(grid, posterior, order);
     fit.mean_curve = is_open(posterior, order, fit.theta_rad) &&

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/fit/frequency_scan.h"
 #include "mechanical/fit/mean_curve.h"
 
 #include <algorithm>
@@ -85,6 +84,11 @@ Scaling scaled(std::span<const PhaseSamples> flights) {
     if (varies) scaling.unit_w = deviation_w;
     for (auto& flight : scaling.flights)
         for (double& value : flight.value) value = varies ? value / deviation_w : 0.0;
+    if (!varies) return scaling;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        scaling.flights[i].scan = flights[i].scan;
+        scaling.flights[i].scan_unit = 1.0 / deviation_w;
+    }
     return scaling;
 }
 
@@ -95,12 +99,14 @@ FrequencyBound bound_reached(const FrequencyRange& range, double theta_rad) {
     return FrequencyBound::none;
 }
 
-JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range) {
-    if (order > 0) return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range));
+JointFit least_squares(const Scaling& scaling, int order, const FrequencyRange& range, const FrequencyScan* scan) {
+    if (scan)
+        return refine_jointly(scaling.flights, order, range, find_frequency(scaling.flights, order, range, *scan));
     // The values less their means are 0 but for noise, whatever the frequency.
     JointFit joint;
     joint.theta_rad = std::clamp(units::rad_per_turn, range.low_rad, range.high_rad);
-    for (const auto& [tau, value, name] : scaling.flights) {
+    for (const auto& flight : scaling.flights) {
+        const auto& value = flight.value;
         joint.coefficients.emplace_back(Eigen::VectorXd::Zero(1));
         joint.square_sum.push_back(std::inner_product(value.begin(), value.end(), value.begin(), 0.0));
     }
@@ -174,8 +180,9 @@ FrequencyRange admissible_range(std::span<const PhaseSamples> flights, const Pha
 }
 
 ScaledSamples fitted_values(const PhaseSamples& samples, const FlightCurve& curve, const PhaseFit& fit) {
-    ScaledSamples values{samples.tau, samples.power_w, samples.flight};
+    ScaledSamples values{samples.tau, samples.power_w, samples.flight, samples.scan};
     if (fit.loss == Loss::none || fit.loss_scale_w <= 0.0) return values;
+    values.scan = nullptr;
     double slope = 0.0;
     std::vector<double> residuals;
     for (std::size_t j = 0; j < values.tau.size(); ++j) {
@@ -205,10 +212,16 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
     const auto scaling = scaled(flights);
     try {
         const auto range = admissible_range(flights, options);
-        auto joint = least_squares(scaling, options.order, range);
+        std::optional<FrequencyScan> scan;
+        if (options.order > 0) scan = scan_frequencies(scaling.flights, options.order, range);
+        auto joint = least_squares(scaling, options.order, range, scan ? &*scan : nullptr);
         if (options.loss != Loss::none) joint = refine_robustly(scaling.flights, range, std::move(joint));
         auto fit = result_of(flights, scaling, joint, range);
         fit.loss = options.loss;
+        if (scan && options.loss == Loss::none) {
+            for (double& sum : scan->square_sum) sum *= scaling.unit_w * scaling.unit_w;
+            fit.scan = std::make_shared<const FrequencyScan>(*std::move(scan));
+        }
         if (options.curve == Curve::mean) settle_curves(flights, fit);
         return fit;
     } catch (const NoAnswerError& error) {

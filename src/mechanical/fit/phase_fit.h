@@ -2,6 +2,7 @@
 
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/frequency_posterior.h"
+#include "mechanical/fit/frequency_scan.h"
 #include "mechanical/fit/refinement.h"
 
 #include <memory>
@@ -62,6 +63,7 @@ struct PhaseFit {
     bool mean_curve = false;    ///< the curves are means over frequencies (settle_curves)
     bool not_negative = false;  ///< curves were kept from falling below 0, or below negative power that was measured
     std::shared_ptr<const FrequencyPosterior> posterior = {};  ///< if it was needed
+    std::shared_ptr<const FrequencyScan> scan = {};  ///< of the samples [W^2]; none with a loss, or of order 0
 };
 
 /// So many samples a flight needs at least: one more than its coefficients.

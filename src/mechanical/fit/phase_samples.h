@@ -3,6 +3,7 @@
 #include "flight/flight_phases.h"
 #include "mechanical/covariates.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,8 @@ namespace flightwatt::mechanical {
 
 /// In how many parts of a cruise the airspeed is known, so that a flight in the air knows how others went on.
 inline constexpr std::size_t airspeed_parts = 10;
+
+struct FlightScan;
 
 /// Power over one phase of one flight, on that flight's own normalised time.
 struct PhaseSamples {
@@ -27,6 +30,8 @@ struct PhaseSamples {
     Covariates covariates = {};  ///< of the cruise, for a level that follows one
     /// Samples at the phase's ends that are not among these: their power is the neighbouring phase's (edge_samples.h).
     std::size_t edge_samples = 0;
+    std::shared_ptr<const FlightScan> scan =
+        {};  ///< of these samples, if it is kept for several fits (frequency_scan.h)
 };
 
 /// Mean power [W] of a phase over time: trapezoids between the samples, the first and last value up to the
@@ -50,7 +55,9 @@ struct FlightSamples {
 struct ScaledSamples {
     std::vector<double> tau;
     std::vector<double> value;
-    std::string flight = {};  ///< for messages
+    std::string flight = {};                      ///< for messages
+    std::shared_ptr<const FlightScan> scan = {};  ///< of these values, if it is known,
+    double scan_unit = 1.0;                       ///< whose values are to be multiplied by this
 };
 
 /// Of all flights together.

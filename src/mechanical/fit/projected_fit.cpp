@@ -97,7 +97,8 @@ TrigonometricSums sum_by_fft(const ScaledSamples& samples, double step_rad, std:
     const SpreadGrid grid = spread(samples, step_rad, count);
     const std::size_t cells = grid.cells.size();
     std::vector<Complex> modes;
-    Eigen::FFT<double>().fwd(modes, grid.cells);
+    thread_local Eigen::FFT<double> fft;  // which remembers its factors
+    fft.fwd(modes, grid.cells);
 
     TrigonometricSums sums{std::vector<Complex>(count), std::vector<Complex>(count)};
     const double scale = std::sqrt(std::numbers::pi / grid.width) / static_cast<double>(cells);

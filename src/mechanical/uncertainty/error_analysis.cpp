@@ -139,7 +139,8 @@ std::shared_ptr<const FrequencyPosterior> posterior_of_fit(std::span<const Phase
     std::vector<ScaledSamples> values;
     for (std::size_t i = 0; i < flights.size(); ++i) values.push_back(fitted_values(flights[i], fit.flights[i], fit));
     const int order = constant ? 0 : static_cast<int>(fit.flights.front().fourier.cos_w.size());
-    return std::make_shared<const FrequencyPosterior>(frequency_posterior(values, {order, fit.range, fit.theta_rad}));
+    return std::make_shared<const FrequencyPosterior>(
+        frequency_posterior(values, {order, fit.range, fit.theta_rad, fit.scan.get()}));
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ TEST(FrequencyPosterior, OfManyFlightsIsThatOfAFineGrid) {
         const auto flights = many_flights(autocorrelation);
         ASSERT_GT(sample_count(flights), 5000U);
         const FrequencyRange range{3.142, 24.0};  // below half of the sampling
-        const auto found = find_frequency(flights, 3, range);
+        const auto found = find_frequency(flights, 3, range, scan_frequencies(flights, 3, range));
         const auto posterior = frequency_posterior(flights, {3, range, found});
         ASSERT_LE(posterior.theta_rad.size(), 11U) << "not told by the normal peak";
         const auto [mean_rad, sd_rad] = moments(posterior.theta_rad, posterior.density);
