@@ -152,10 +152,11 @@ void warn_of_gaps(const FlownPower& flown, Warnings& warnings) {
     const bool is_counted = report.energy_closure_percent || report.charge_closure_percent;
     GapSum all;
     GapSum large;
-    for (const auto& sortie : flown.evidence.phases.sorties) {
-        for (std::size_t i = 1; i < time_s.size(); ++i) {
-            const double interval_s = time_s[i] - time_s[i - 1];
-            if (interval_s <= gap_s || time_s[i] <= sortie.start_s() || time_s[i - 1] >= sortie.end_s()) continue;
+    for (std::size_t i = 1; i < time_s.size(); ++i) {
+        const double interval_s = time_s[i] - time_s[i - 1];
+        if (interval_s <= gap_s) continue;
+        for (const auto& sortie : flown.evidence.phases.sorties) {
+            if (time_s[i] <= sortie.start_s() || time_s[i - 1] >= sortie.end_s()) continue;
             const bool inside = time_s[i - 1] >= sortie.start_s() && time_s[i] <= sortie.end_s();
             if (inside && is_counted) continue;  // the closure tells
             const double mean_w = std::abs(record.power_w[i - 1] + record.power_w[i]) / 2.0;

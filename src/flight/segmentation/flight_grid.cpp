@@ -166,7 +166,10 @@ FlightGrid make_grid(const ChosenTracks& tracks) {
     grid.motor_sign = motor.sign;
     grid.motor_evidence = std::move(motor.evidence);
     grid.warnings.insert(grid.warnings.end(), motor.warnings.begin(), motor.warnings.end());
-    if (!motor.percent.empty()) grid.motor_percent = resample(motor.percent, time_s);
+    if (!motor.percent.empty()) {
+        grid.motor_percent = resample(motor.percent, time_s);
+        grid.least_motor_percent = *std::ranges::min_element(grid.motor_percent);
+    }
     if (motor.sign == MotorSign::throttle) grid.throttle_percent = grid.motor_percent;
     const auto& speed = tracks["ground_speed_m_per_s"];
     if (!speed.empty()) grid.ground_speed_m_per_s = without_spikes<5>(resample(speed, time_s));
@@ -178,8 +181,7 @@ FlightGrid make_grid(const ChosenTracks& tracks) {
 double idle_motor_percent(const FlightGrid& grid, const SegmentationOptions& options) {
     if (grid.motor_sign == MotorSign::power) return idle_power_percent;
     if (grid.motor_percent.empty() || grid.ground_speed_m_per_s.empty()) return options.idle_throttle_percent;
-    const double least = *std::min_element(grid.motor_percent.begin(), grid.motor_percent.end());
-    return std::max(least, 0.0) + options.idle_throttle_percent;
+    return std::max(grid.least_motor_percent, 0.0) + options.idle_throttle_percent;
 }
 
 double flight_motor_percent(const FlightGrid& grid, const SegmentationOptions& options) {
