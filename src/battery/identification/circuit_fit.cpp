@@ -86,9 +86,22 @@ class WithoutRests {
         }
     }
 
-    /// Reflects a column of the samples that is 0 in what is believed. Returns those rows, one a record.
-    Eigen::VectorXd reflect(Eigen::Ref<Eigen::VectorXd> samples) const {
-        return reflect(samples, Eigen::VectorXd::Zero(std::ssize(rests_)));
+    /// Reflects a column of the samples that is `believed` in what is believed, a row a record. Returns those rows.
+    Eigen::VectorXd reflect(Eigen::Ref<Eigen::VectorXd> samples, Eigen::VectorXd believed) const {
+        for (Eigen::Index f = 0; f < believed.size(); ++f) {
+            const auto& rest = at(f);
+            const double last = rest.believed + rest.length;  // of the reflection's vector, whose others are 1
+            auto part = samples.segment(rest.first, rest.rows);
+            const double along =
+                2.0 * (part.sum() + last * believed[f]) / (static_cast<double>(rest.rows) + last * last);
+            part.array() -= along;
+            believed[f] -= along * last;
+        }
+        return believed;
+    }
+
+    Eigen::VectorXd reflect_samples(Eigen::Ref<Eigen::VectorXd> samples) const {
+        return reflect(std::move(samples), Eigen::VectorXd::Zero(std::ssize(rests_)));
     }
 
     /// The column of the common rest: 0 in the samples before it is reflected.
@@ -96,7 +109,7 @@ class WithoutRests {
         Eigen::VectorXd believed(std::ssize(rests_));
         for (Eigen::Index f = 0; f < believed.size(); ++f) believed[f] = -at(f).believed;
         samples.setZero();
-        return reflect(samples, believed);
+        return reflect(std::move(samples), std::move(believed));
     }
 
     /// The record's rest of what its row, reflected, leaves for it.
@@ -115,19 +128,6 @@ class WithoutRests {
     };
 
     const Rest& at(Eigen::Index f) const { return rests_[static_cast<std::size_t>(f)]; }
-
-    Eigen::VectorXd reflect(Eigen::Ref<Eigen::VectorXd> samples, Eigen::VectorXd believed) const {
-        for (Eigen::Index f = 0; f < believed.size(); ++f) {
-            const auto& rest = at(f);
-            const double last = rest.believed + rest.length;  // of the reflection's vector, whose others are 1
-            auto part = samples.segment(rest.first, rest.rows);
-            const double along =
-                2.0 * (part.sum() + last * believed[f]) / (static_cast<double>(rest.rows) + last * last);
-            part.array() -= along;
-            believed[f] -= along * last;
-        }
-        return believed;
-    }
 
     std::vector<Rest> rests_;
 };
@@ -181,12 +181,12 @@ Reduced reduced(const WithoutRests& without, const Eigen::MatrixXd& curve, const
                     {}};
     problem.rows.topLeftCorner(samples, knots + 1) = curve;
     for (Eigen::Index c = 0; c <= knots; ++c)
-        problem.of_rests.col(c) = without.reflect(problem.rows.col(c).head(samples));
+        problem.of_rests.col(c) = without.reflect_samples(problem.rows.col(c).head(samples));
     problem.of_rests.col(knots + 1) = without.reflect_common(problem.rows.col(knots + 1).head(samples));
     problem.rows(samples, knots + 1) = common_rest_weight(weights);
     problem.rows.bottomRows(bends.rows()) = bends;
     problem.target.head(samples) = voltage_v;
-    problem.rest_target = without.reflect(problem.target.head(samples));
+    problem.rest_target = without.reflect_samples(problem.target.head(samples));
     return problem;
 }
 
@@ -196,7 +196,7 @@ void add_rc(Reduced& problem, const WithoutRests& without, const Eigen::VectorXd
     problem.of_rests.conservativeResize(Eigen::NoChange, width + 1);
     problem.rows.col(width).setZero();
     problem.rows.col(width).head(settled_a.size()) = -settled_a;
-    problem.of_rests.col(width) = without.reflect(problem.rows.col(width).head(settled_a.size()));
+    problem.of_rests.col(width) = without.reflect_samples(problem.rows.col(width).head(settled_a.size()));
 }
 
 /// Least squares once the linear columns are projected out, through their normal equations.
@@ -214,7 +214,7 @@ class Projection {
     double explained(double log_time_constant) const {
         auto x = settled(records_, std::exp(log_time_constant));
         const double own = x.squaredNorm();
-        const auto of_rests = without_.reflect(x);
+        const auto of_rests = without_.reflect_samples(x);
         const Eigen::VectorXd along = rows_.topRows(x.size()).transpose() * x;
         const double norm = own - of_rests.squaredNorm() - along.dot(normal_.solve(along));
         const double product = -x.dot(rest_v_.head(x.size()));

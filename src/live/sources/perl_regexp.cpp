@@ -29,7 +29,7 @@ std::optional<std::vector<std::string_view>> PerlRegexp::groups_in(std::string_v
     ::pcre2_pattern_info(code, PCRE2_INFO_CAPTURECOUNT, &groups);
     const auto* bounds = ::pcre2_get_ovector_pointer(match.get());
     std::vector<std::string_view> parts;
-    for (std::uint32_t i = 1; i <= groups; ++i) {
+    for (std::size_t i = 1; i <= groups; ++i) {
         const auto begin = bounds[2 * i], end = bounds[2 * i + 1];
         parts.push_back(begin == PCRE2_UNSET || end < begin ? std::string_view() : text.substr(begin, end - begin));
     }
