@@ -5,6 +5,7 @@
 #include "cli/numeric_options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/folds_option.h"
 #include "cli/output/json_text.h"
 #include "cli/progress.h"
 #include "cli/screen_table.h"
@@ -99,23 +100,27 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
 
 /// On all records, and on all but each in turn: that is long work.
 std::pair<battery::BatteryIdentification, std::vector<battery::LeftOutCheck>> identify_and_check(
-    const std::vector<battery::DischargeRecord>& records, const battery::IdentificationOptions& options) {
+    const std::vector<battery::DischargeRecord>& records, const battery::IdentificationOptions& options,
+    std::size_t folds) {
     cli::TerminalProgress identifying("identifications");
     auto identified = identify_battery(records, options);
-    return {std::move(identified), leave_each_out(records, options, [&](std::size_t done, std::size_t all) {
-                identifying.show(done + 1, all + 1);
-            })};
+    const auto show = [&](std::size_t done, std::size_t all) { identifying.show(done + 1, all + 1); };
+    return {std::move(identified), leave_each_out(records, options, show, folds)};
 }
 
 int identify(const cli::StageCall& call) {
     const auto options = read_options(call);
+    const auto folds = cli::count_option(call, "folds", 2);
     const auto records = read_records(call);
-    const auto [identified, left_out] = identify_and_check(records, options);
+    cli::note_folds(call, records.size(), folds);
+    const auto [identified, left_out] = identify_and_check(records, options, folds);
     note_what_it_rests_on(call, identified);
     if (left_out.empty()) cli::note(call, "a single flight: there is no other one to check the battery with");
     cli::write_result(call, cli::provenance(identified) + to_toml(identified.battery));
     if (call.json) {
-        cli::print(cli::json_text(cli::to_json(identified, left_out)));
+        auto json = cli::to_json(identified, left_out);
+        if (!left_out.empty()) json["folds"] = std::min(records.size(), folds);
+        cli::print(cli::json_text(json));
     } else if (call.output) {
         const auto screen = screen_of(call);
         const cli::ScreenTable flights{
@@ -145,6 +150,7 @@ the pack's state of health. Flights whose current was computed from throttle are
         "the pack's capacity; without it, what a flight drew from full to empty, or "
         "else a guess after the usual chart of LiPo cells");
     add("cells", cli::value("N"), "cells in series; default: by the highest resting voltage");
+    cli::add_folds_option(stage.options, battery::most_battery_folds);
     add("no-chain", "take no flight for one on the pack of the flight before it");
     add("name", cli::value("NAME"), "the battery's name; default: FILE's");
     cli::add_mix_option(stage.options);

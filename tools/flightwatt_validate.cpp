@@ -4,6 +4,7 @@
 #include "cli/numeric_options.h"
 #include "cli/output/fit_options.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/folds_option.h"
 #include "cli/output/json_text.h"
 #include "cli/output/validation_output.h"
 #include "cli/progress.h"
@@ -80,20 +81,27 @@ std::vector<mechanical::Covariate> read_covariates(const cli::StageCall& call) {
 
 std::vector<mechanical::ValidatedFlight> validate(const std::vector<mechanical::MeasuredFlight>& flights,
                                                   const mechanical::ModelFitOptions& options,
-                                                  const std::vector<mechanical::Covariate>& covariates) {
+                                                  const std::vector<mechanical::Covariate>& covariates,
+                                                  std::size_t folds) {
     cli::TerminalProgress fitting("fits");
-    return leave_one_out(flights, options, covariates, fitting.shown());
+    return leave_one_out(flights, options, covariates, fitting.shown(), folds);
 }
 
 int validate_flights(const cli::StageCall& call) {
     const auto options = read_fit_options(call);
     const auto until_s = cli::positive_option(call, "until", "s since lift-off");
     const auto covariates = read_covariates(call);
+    const auto folds = cli::count_option(call, "folds", 2);
     const auto flights = read_flights(call, mechanical::samples_needed(options.phases.order));
-    const auto validated = validate(flights, options, covariates);
+    cli::note_folds(call, flights.size(), folds);
+    const auto validated = validate(flights, options, covariates, folds);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     cli::write_result(call, cli::validation_text(validated, covariates, until_s.has_value(), screen));
-    if (call.json) cli::print(cli::json_text(cli::scores_json(validated)));
+    if (call.json) {
+        auto json = cli::scores_json(validated);
+        json["folds"] = std::min(flights.size(), folds);
+        cli::print(cli::json_text(json));
+    }
     return cli::ok;
 }
 
@@ -129,6 +137,7 @@ whose power is near zero. Bias is predicted less measured.)"};
         "also predict the cruise by what is known before the flight (height_m, initial_voltage_v, "
         "time_to_cruise_s) or in the first 60 s of the cruise (wind_m_per_s, airspeed_m_per_s, "
         "ground_speed_m_per_s, airspeed_cubed_m3_per_s3), or all: one further model by_NAME each");
+    cli::add_folds_option(stage.options, mechanical::most_validation_folds);
     cli::add_mix_option(stage.options);
     cli::add_flight_options(stage.options);
     return cli::run_stage(argc, argv, stage, validate_flights);

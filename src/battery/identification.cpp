@@ -1,6 +1,7 @@
 #include "battery/identification.h"
 
 #include "base/error.h"
+#include "base/folds.h"
 #include "base/parallel.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
@@ -333,24 +334,27 @@ PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& 
 }
 
 std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records, const IdentificationOptions& options,
-                                         const std::function<void(std::size_t, std::size_t)>& progress) {
+                                         const std::function<void(std::size_t, std::size_t)>& progress,
+                                         std::size_t most_folds) {
     if (records.size() < 2) return {};
+    const auto folds = folds_of(records.size(), std::max<std::size_t>(2, most_folds));
     const auto all = told_by(records, options).chained.aligned;
     std::vector<LeftOutCheck> checks(records.size());
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
-    for_each_in_parallel(records.size(), [&](std::size_t k) {
+    for_each_in_parallel(folds.size(), [&](std::size_t fold) {
         std::vector<DischargeRecord> others;
         std::vector<double> begin_ah;
         for (std::size_t f = 0; f < records.size(); ++f) {
-            if (f == k) continue;
+            if (std::ranges::binary_search(folds[fold], f)) continue;
             others.push_back(records[f]);
             begin_ah.push_back(all.records[f].initial_charge_ah);
         }
-        checks[k] = checked(told_by(others, options, begin_ah), records[k], options.chain);
+        const auto told = told_by(others, options, begin_ah);
+        for (const auto k : folds[fold]) checks[k] = checked(told, records[k], options.chain);
         if (!progress) return;
         const std::lock_guard lock(mutex);
-        progress(++done, records.size());
+        progress(++done, folds.size());
     });
     return checks;
 }

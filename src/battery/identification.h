@@ -82,10 +82,14 @@ struct PredictedVoltage {
 /// Predicts a record with a Thévenin battery, from its current and the charge that was missing when it began.
 PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah);
 
-/// Identifies the battery without each record in turn and predicts that record from its current, and from what is known
+/// Of more records than this, groups are left out together (folds_of).
+inline constexpr std::size_t most_battery_folds = 20;
+
+/// Identifies the battery without each record in turn (or each of `most_folds` groups) and predicts that record from its current, and from what is known
 /// before take-off: whose pack it is, or else its resting voltage; and with its initial charge free, to tell how much of
-/// the error is that charge's. Empty for a single record. `progress` is told how many of how many records are done.
+/// the error is that charge's. Empty for a single record. `progress` is told how many of how many folds are done.
 std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> records, const IdentificationOptions& options,
-                                         const std::function<void(std::size_t, std::size_t)>& progress = {});
+                                         const std::function<void(std::size_t, std::size_t)>& progress = {},
+                                         std::size_t most_folds = most_battery_folds);
 
 }  // namespace flightwatt::battery

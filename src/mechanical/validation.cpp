@@ -1,6 +1,7 @@
 #include "mechanical/validation.h"
 
 #include "base/error.h"
+#include "base/folds.h"
 #include "base/parallel.h"
 #include "base/units.h"
 #include "mechanical/physical_fit.h"
@@ -17,19 +18,32 @@
 namespace flightwatt::mechanical {
 namespace {
 
+/// The flights without those that are left out together.
+struct Others {
+    std::vector<FlightSamples> samples;
+    flight::PerPhase<std::vector<PhaseSamples>> phases;
+    std::optional<PhysicalModel> physical;
+    flight::PerPhase<std::optional<PhaseForecast>> forecasts;  ///< made where one is asked for
+};
+
 /// One phase of the excluded flight, and the others that have this phase.
 struct Fold {
     flight::Phase phase;
     const PhaseSamples& flown;
-    std::vector<PhaseSamples> others;
-    std::size_t nearest;                           ///< among `others`
-    const std::optional<PhysicalModel>& physical;  ///< of the others
+    const std::vector<PhaseSamples>& others;
+    std::size_t nearest;  ///< among `others`
+    Others& all;
+    const ModelFitOptions& options;
 };
 
-PhaseForecast forecast_of_others(const Fold& fold, const ModelFitOptions& options) {
-    const auto fitted = fit_phase_model(fold.phase, fold.others, options);
-    return {fitted.model,
-            std::inner_product(fitted.weights.begin(), fitted.weights.end(), fitted.weights.begin(), 0.0)};
+const PhaseForecast& forecast_of_others(const Fold& fold) {
+    auto& forecast = fold.all.forecasts[fold.phase];
+    if (!forecast) {
+        const auto fitted = fit_phase_model(fold.phase, fold.others, fold.options);
+        forecast = {fitted.model,
+                    std::inner_product(fitted.weights.begin(), fitted.weights.end(), fitted.weights.begin(), 0.0)};
+    }
+    return *forecast;
 }
 
 using Estimates = std::vector<std::pair<std::string, EnergyEstimate>>;
@@ -51,18 +65,18 @@ void add_covariates(Estimates& estimates, const Fold& fold, std::span<const Cova
 
 /// By the motion that was flown.
 std::optional<EnergyEstimate> physical_estimate(const MeasuredFlight& flight, const Fold& fold) {
-    if (!fold.physical || flight.motion.bins.empty()) return std::nullopt;
+    if (!fold.all.physical || flight.motion.bins.empty()) return std::nullopt;
     std::vector<MotionBin> bins;
     for (const auto& bin : flight.motion.bins)
         if (bin.phase == fold.phase) bins.push_back(bin);
     if (bins.empty()) return energy_of(constant_mean(fold.others), fold.flown.duration_s);
-    return predict_by_motion(*fold.physical, mean_values(bins), fold.flown.duration_s);
+    return predict_by_motion(*fold.all.physical, mean_values(bins), fold.flown.duration_s);
 }
 
-Estimates predict_phase(const Fold& fold, const ModelFitOptions& options) {
+Estimates predict_phase(const Fold& fold) {
     const double duration_s = fold.flown.duration_s;
     const auto mean = constant_mean(fold.others);
-    Estimates estimates{{"fourier", predict_before_flight(forecast_of_others(fold, options), duration_s)},
+    Estimates estimates{{"fourier", predict_before_flight(forecast_of_others(fold), duration_s)},
                         {"constant_mean", energy_of(mean, duration_s)},
                         {"nearest_flight", energy_of(power_of_flight(fold.others, fold.nearest), duration_s)}};
     if (fold.phase != flight::Phase::cruise) {
@@ -75,8 +89,8 @@ Estimates predict_phase(const Fold& fold, const ModelFitOptions& options) {
 }
 
 /// The landing of a flight in the air: all models that look at the cruise say what the Fourier series says.
-Estimates predict_landing_in_flight(const Fold& fold, const ModelFitOptions& options) {
-    auto estimates = predict_phase(fold, options);
+Estimates predict_landing_in_flight(const Fold& fold) {
+    auto estimates = predict_phase(fold);
     std::erase_if(estimates, [](const auto& entry) { return entry.first == "airspeed_cubed"; });
     const auto fourier = estimates.front().second;
     estimates.emplace_back("in_flight", fourier);
@@ -86,11 +100,10 @@ Estimates predict_landing_in_flight(const Fold& fold, const ModelFitOptions& opt
     return estimates;
 }
 
-Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& excluded, double remaining_s,
-                                   const ModelFitOptions& options) {
+Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& excluded, double remaining_s) {
     const auto& flown = *excluded.flown;
     const auto& ahead = excluded.cruise_ahead;
-    const auto forecast = forecast_of_others(fold, options);
+    const auto& forecast = forecast_of_others(fold);
     const double known_wh = flown.cruise_energy_wh;
     Estimates estimates{
         {"fourier", after(known_wh, predict_rest_before_flight(forecast, flown.cruise_s(), remaining_s))},
@@ -105,26 +118,25 @@ Estimates predict_cruise_in_flight(const Fold& fold, const MeasuredFlight& exclu
     if (forecast.model.airspeed_law && flown.airspeed_cubed_m3_per_s3) {
         update("in_flight_airspeed", LevelSource::airspeed);
     }
-    if (fold.physical && fold.physical->level_sd && !ahead.empty()) {
-        const auto rest = predict_rest_by_motion(*fold.physical, flown, mean_values(ahead), remaining_s);
+    if (fold.all.physical && fold.all.physical->level_sd && !ahead.empty()) {
+        const auto rest = predict_rest_by_motion(*fold.all.physical, flown, mean_values(ahead), remaining_s);
         estimates.emplace_back("in_flight_path", after(known_wh, rest.energy));
     }
     return estimates;
 }
 
-Estimates estimates_of(const MeasuredFlight& excluded, const Fold& fold, const ModelFitOptions& options,
-                       std::span<const Covariate> covariates) {
+Estimates estimates_of(const MeasuredFlight& excluded, const Fold& fold, std::span<const Covariate> covariates) {
     if (!excluded.flown) {
-        auto estimates = predict_phase(fold, options);
+        auto estimates = predict_phase(fold);
         if (const auto physical = physical_estimate(excluded, fold)) estimates.emplace_back("physical", *physical);
         add_covariates(estimates, fold, covariates);
         return estimates;
     }
     if (fold.phase == flight::Phase::takeoff) return {};
-    if (fold.phase == flight::Phase::landing) return predict_landing_in_flight(fold, options);
+    if (fold.phase == flight::Phase::landing) return predict_landing_in_flight(fold);
     const double remaining_s = fold.flown.duration_s - excluded.flown->cruise_s();
     if (remaining_s <= 0.0) return {};
-    return predict_cruise_in_flight(fold, excluded, remaining_s, options);
+    return predict_cruise_in_flight(fold, excluded, remaining_s);
 }
 
 FlightPrediction& prediction_of(ValidatedFlight& flight, const std::string& model) {
@@ -142,22 +154,31 @@ std::optional<PhysicalModel> physical_model_of(std::span<const FlightMotion> fli
     }
 }
 
-/// The flights without one of them.
-struct Others {
-    std::vector<FlightSamples> samples;
-    std::optional<PhysicalModel> physical;
-};
+/// `samples` are the flights', with their scans. `excluded` rise.
+Others others_of(std::span<const MeasuredFlight> flights, std::span<const FlightSamples> samples,
+                 const std::vector<std::size_t>& excluded) {
+    Others others;
+    std::vector<FlightMotion> motions;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        if (std::ranges::binary_search(excluded, i)) continue;
+        others.samples.push_back(samples[i]);
+        motions.push_back(flights[i].motion);
+    }
+    for (const auto phase : flight::all_phases) others.phases[phase] = samples_of_phase(others.samples, phase);
+    const auto was_measured = [&](std::size_t i) { return !flights[i].motion.bins.empty(); };
+    if (std::ranges::any_of(excluded, was_measured)) others.physical = physical_model_of(motions);
+    return others;
+}
 
-ValidatedFlight validate_flight(const MeasuredFlight& excluded, const Others& others, const ModelFitOptions& options,
+ValidatedFlight validate_flight(const MeasuredFlight& excluded, Others& others, const ModelFitOptions& options,
                                 std::span<const Covariate> covariates) {
     ValidatedFlight flight{excluded.samples.flight, {}, {}, {}};
     for (const auto phase : flight::all_phases) {
         if (!excluded.samples.phases[phase]) continue;
         const auto nearest = nearest_flight(others.samples, phase, excluded.samples);
         if (!nearest) continue;
-        const Fold fold{phase, *excluded.samples.phases[phase], samples_of_phase(others.samples, phase), *nearest,
-                        others.physical};
-        for (const auto& [model, estimate] : estimates_of(excluded, fold, options, covariates)) {
+        const Fold fold{phase, *excluded.samples.phases[phase], others.phases[phase], *nearest, others, options};
+        for (const auto& [model, estimate] : estimates_of(excluded, fold, covariates)) {
             prediction_of(flight, model).phases[phase] = estimate;
             flight.measured_wh[phase] = excluded.energy_wh[phase];
             flight.counter_wh[phase] = excluded.counter_energy_wh[phase];
@@ -181,7 +202,8 @@ bool was_predicted(const ValidatedFlight& flight, std::optional<flight::Phase> p
 
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                                            std::span<const Covariate> covariates,
-                                           const std::function<void(std::size_t, std::size_t)>& progress) {
+                                           const std::function<void(std::size_t, std::size_t)>& progress,
+                                           std::size_t most_folds) {
     if (flights.size() < 2) {
         throw NoAnswerError(fmt::format("{} flight{}: leaving one out needs 2 or more, and 3 for an interval",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
@@ -194,23 +216,16 @@ std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> fligh
     std::vector<FlightSamples> samples(flights.size());
     std::ranges::transform(flights, samples.begin(), &MeasuredFlight::samples);
     keep_scans(samples, options);
+    const auto folds = folds_of(flights.size(), std::max<std::size_t>(2, most_folds));
     std::vector<ValidatedFlight> validated(flights.size());
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
-    for_each_in_parallel(flights.size(), [&](std::size_t i) {
-        const auto& excluded = flights[i];
-        Others others;
-        std::vector<FlightMotion> motions;
-        for (std::size_t other = 0; other < flights.size(); ++other) {
-            if (other == i) continue;
-            others.samples.push_back(samples[other]);
-            motions.push_back(flights[other].motion);
-        }
-        if (!excluded.motion.bins.empty()) others.physical = physical_model_of(motions);
-        validated[i] = validate_flight(excluded, others, options, covariates);
+    for_each_in_parallel(folds.size(), [&](std::size_t fold) {
+        auto others = others_of(flights, samples, folds[fold]);
+        for (const auto i : folds[fold]) validated[i] = validate_flight(flights[i], others, options, covariates);
         if (!progress) return;
         const std::lock_guard lock(mutex);
-        progress(++done, flights.size());
+        progress(++done, folds.size());
     });
     return validated;
 }

@@ -45,8 +45,11 @@ struct ValidatedFlight {
     std::vector<FlightPrediction> predictions;
 };
 
-/// Excludes each flight in turn, fits the others and predicts the energy of its phases from their durations
-/// alone. A phase that no other flight has is not predicted. Models:
+/// Of more flights than this, groups are left out together (folds_of).
+inline constexpr std::size_t most_validation_folds = 100;
+
+/// Excludes each flight in turn (or each of `most_folds` groups), fits the others and predicts the energy of its phases
+/// from their durations alone. A phase that no other flight has is not predicted. Models:
 ///   fourier          the model of this project (fit_phase_model)
 ///   constant_mean    the mean power of the other flights
 ///   nearest_flight   the mean power of the flight with the nearest durations
@@ -61,11 +64,12 @@ struct ValidatedFlight {
 ///   in_flight_constant   predict_rest by the curve's mean
 ///   in_flight_airspeed   predict_rest by the airspeed so far and the others' later airspeed
 ///   in_flight_path       predict_path: the rest's airspeed and climb as flown, as if they had been known
-/// `progress` is told how many of how many flights are done, by one thread at a time.
+/// `progress` is told how many of how many folds are done, by one thread at a time.
 /// Throws NoAnswerError for fewer than 2 flights, and what fit_phase_model throws.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
                                            std::span<const Covariate> covariates = {},
-                                           const std::function<void(std::size_t, std::size_t)>& progress = {});
+                                           const std::function<void(std::size_t, std::size_t)>& progress = {},
+                                           std::size_t most_folds = most_validation_folds);
 
 /// How one model did over the flights, in one phase or in the whole.
 struct ModelScore {

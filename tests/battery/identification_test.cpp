@@ -255,6 +255,15 @@ TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
                          (found.fit.knots_ah.back() - found.fit.knots_ah.front());
     EXPECT_NEAR(slope, 1.4 / 3.2, 0.01 * 1.4 / 3.2);
     for (const auto& check : leave_each_out(records, {3.2, {}, ""})) EXPECT_LT(check.voltage_rms_v, 0.001);
+    std::vector<std::size_t> done;
+    const auto in_groups = leave_each_out(
+        records, {3.2, {}, ""}, [&](std::size_t so_many, std::size_t) { done.push_back(so_many); }, 3);
+    EXPECT_EQ(done, (std::vector<std::size_t>{1, 2, 3}));
+    ASSERT_EQ(in_groups.size(), records.size());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        EXPECT_EQ(in_groups[i].flight, records[i].flight);
+        EXPECT_LT(in_groups[i].voltage_rms_v, 0.001);
+    }
 }
 
 TEST(Identification, ForetellsRealFlights) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,6 +54,46 @@ TEST(Validation, LeavesTheFlightOut) {
     for (const auto* model : {"fourier", "constant_mean", "nearest_flight"}) {
         const auto energy = predicted_energy(validated[2], model, flight::Phase::cruise).value();
         EXPECT_NEAR(energy.estimate.energy_wh - energy.measured_wh, -10.0 * 600.0 / 3600.0, 0.05) << model;
+    }
+}
+
+/// In groups neither it nor the other strays of its group are among those that predict it.
+TEST(Validation, LeavesGroupsOut) {
+    std::mt19937 random(1);
+    auto stray = published_model().phases;
+    for (const auto phase : flight::all_phases) stray[phase].fourier.a0_w += 10.0;
+    std::vector<MeasuredFlight> flights;
+    for (int i = 0; i < 6; ++i)
+        flights.push_back(measured(fmt::format("{}", i), i % 3 == 2 ? stray : published_model().phases, random));
+    std::vector<std::size_t> done;
+    const auto validated = leave_one_out(
+        flights, {}, {}, [&](std::size_t so_many, std::size_t) { done.push_back(so_many); }, 3);
+    EXPECT_THAT(done, ElementsAre(1U, 2U, 3U));
+    for (const auto i : {2U, 5U}) {
+        EXPECT_EQ(validated[i].flight, fmt::format("{}", i));
+        const auto energy = predicted_energy(validated[i], "fourier", flight::Phase::cruise).value();
+        EXPECT_NEAR(energy.estimate.energy_wh - energy.measured_wh, -10.0 * 600.0 / 3600.0, 0.05);
+    }
+}
+
+/// The scans for the frequency are shared: of all flights one each, whatever is left out.
+TEST(Validation, SaysOfSharedScansWhatFitsWithoutThemSay) {
+    std::mt19937 random(3);
+    std::vector<FlightSamples> flights;
+    for (const auto* name : {"a", "b", "c", "d"})
+        flights.push_back(measured(name, published_model().phases, random).samples);
+    auto sharing = flights;
+    keep_scans(sharing, {});
+    for (const auto phase : flight::all_phases) {
+        auto some = samples_of_phase(flights, phase);
+        auto some_sharing = samples_of_phase(sharing, phase);
+        for (const auto& samples : some_sharing) EXPECT_NE(samples.scan, nullptr) << to_string(phase);
+        some.pop_back();
+        some_sharing.pop_back();
+        const auto alone = fit_phase_model(phase, some, {});
+        const auto shared = fit_phase_model(phase, some_sharing, {});
+        EXPECT_NEAR(shared.fit.theta_rad, alone.fit.theta_rad, 1e-9 * alone.fit.theta_rad);
+        EXPECT_NEAR(shared.model.fourier.a0_w, alone.model.fourier.a0_w, 1e-9 * alone.model.fourier.a0_w);
     }
 }
 

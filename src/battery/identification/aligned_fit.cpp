@@ -5,6 +5,7 @@
 #include "battery/identification/segment_choice.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -152,7 +153,8 @@ std::vector<double> laid_one_by_one(std::span<const DischargeRecord> records, in
             initial_ah[at] = best_place_ah(records[at], growing.fit);
         }
         growing.records.push_back({&records[at], initial_ah[at]});
-        if (at != order.back()) refit(growing, first_segments, false);
+        // The time constant is searched for anew with every doubling: it is known about from then on.
+        if (at != order.back()) refit(growing, first_segments, !std::has_single_bit(growing.records.size()));
     }
     return initial_ah;
 }

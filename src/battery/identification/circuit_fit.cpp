@@ -100,16 +100,14 @@ class WithoutRests {
         return believed;
     }
 
-    Eigen::VectorXd reflect_samples(Eigen::Ref<Eigen::VectorXd> samples) const {
-        return reflect(std::move(samples), Eigen::VectorXd::Zero(std::ssize(rests_)));
-    }
+    /// What is believed of all columns but one: nothing.
+    Eigen::VectorXd nothing() const { return Eigen::VectorXd::Zero(std::ssize(rests_)); }
 
-    /// The column of the common rest: 0 in the samples before it is reflected.
-    Eigen::VectorXd reflect_common(Eigen::Ref<Eigen::VectorXd> samples) const {
+    /// Of the common rest, which stands in no sample.
+    Eigen::VectorXd of_common_rest() const {
         Eigen::VectorXd believed(std::ssize(rests_));
         for (Eigen::Index f = 0; f < believed.size(); ++f) believed[f] = -at(f).believed;
-        samples.setZero();
-        return reflect(std::move(samples), std::move(believed));
+        return believed;
     }
 
     /// The record's rest of what its row, reflected, leaves for it.
@@ -181,12 +179,13 @@ Reduced reduced(const WithoutRests& without, const Eigen::MatrixXd& curve, const
                     {}};
     problem.rows.topLeftCorner(samples, knots + 1) = curve;
     for (Eigen::Index c = 0; c <= knots; ++c)
-        problem.of_rests.col(c) = without.reflect_samples(problem.rows.col(c).head(samples));
-    problem.of_rests.col(knots + 1) = without.reflect_common(problem.rows.col(knots + 1).head(samples));
+        problem.of_rests.col(c) = without.reflect(problem.rows.col(c).head(samples), without.nothing());
+    problem.of_rests.col(knots + 1) =
+        without.reflect(problem.rows.col(knots + 1).head(samples), without.of_common_rest());
     problem.rows(samples, knots + 1) = common_rest_weight(weights);
     problem.rows.bottomRows(bends.rows()) = bends;
     problem.target.head(samples) = voltage_v;
-    problem.rest_target = without.reflect_samples(problem.target.head(samples));
+    problem.rest_target = without.reflect(problem.target.head(samples), without.nothing());
     return problem;
 }
 
@@ -196,7 +195,7 @@ void add_rc(Reduced& problem, const WithoutRests& without, const Eigen::VectorXd
     problem.of_rests.conservativeResize(Eigen::NoChange, width + 1);
     problem.rows.col(width).setZero();
     problem.rows.col(width).head(settled_a.size()) = -settled_a;
-    problem.of_rests.col(width) = without.reflect_samples(problem.rows.col(width).head(settled_a.size()));
+    problem.of_rests.col(width) = without.reflect(problem.rows.col(width).head(settled_a.size()), without.nothing());
 }
 
 /// Least squares once the linear columns are projected out, through their normal equations.
@@ -214,7 +213,7 @@ class Projection {
     double explained(double log_time_constant) const {
         auto x = settled(records_, std::exp(log_time_constant));
         const double own = x.squaredNorm();
-        const auto of_rests = without_.reflect_samples(x);
+        const auto of_rests = without_.reflect(x, without_.nothing());
         const Eigen::VectorXd along = rows_.topRows(x.size()).transpose() * x;
         const double norm = own - of_rests.squaredNorm() - along.dot(normal_.solve(along));
         const double product = -x.dot(rest_v_.head(x.size()));
