@@ -46,7 +46,7 @@ struct ValidatedFlight {
 };
 
 /// Of more flights than this, groups are left out together (folds_of).
-inline constexpr std::size_t most_validation_folds = 100;
+inline constexpr std::size_t most_validation_folds = 40;
 
 /// Excludes each flight in turn (or each of `most_folds` groups), fits the others and predicts the energy of its phases
 /// from their durations alone. A phase that no other flight has is not predicted. Models:

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 
 namespace flightwatt::battery {
 namespace {
@@ -251,7 +252,8 @@ JointBelief joint_belief(const AlignedFit& aligned) {
 }
 
 Eigen::MatrixXd joint_normal(std::span<const RecordDerivatives> records, const JointBelief& belief) {
-    Eigen::MatrixXd normal = belief.rows.transpose() * belief.rows;
+    const Eigen::SparseMatrix<double> believed = belief.rows.sparseView();
+    Eigen::MatrixXd normal = believed.transpose() * believed;
     for (const auto& record : records)
         normal(record.places, record.places) += record.columns.transpose() * record.columns;
     return normal;

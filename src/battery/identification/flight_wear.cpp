@@ -10,6 +10,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/SparseCore>
 
 namespace flightwatt::battery {
 namespace {
@@ -166,7 +167,8 @@ WornProblem problem_of(const WornFit& worn, const Places& places, const std::vec
                        double fitted_ohm) {
     const auto belief = worn_belief(worn, places, fitted_ohm);
     WornProblem problem;
-    problem.normal = belief.rows.transpose() * belief.rows;
+    const Eigen::SparseMatrix<double> believed = belief.rows.sparseView();
+    problem.normal = believed.transpose() * believed;
     problem.pull = belief.rows.transpose() * belief.residual;
     problem.objective = belief.residual.squaredNorm();
     for (std::size_t f = 0; f < worn.aligned.records.size(); ++f) {
@@ -187,14 +189,13 @@ WornProblem problem_of(const WornFit& worn, const Places& places, const std::vec
     return problem;
 }
 
-/// Of the normal matrix, each parameter scaled to length 1 first: what nothing tells moves nothing.
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& normal) {
+/// The inverse of the normal matrix times this, each parameter scaled to length 1 first: what nothing tells moves nothing.
+Eigen::MatrixXd solved(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& right) {
     const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-12).cwiseInverse();
     Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
     constexpr double ridge = 1e-10;
     scaled.diagonal().array() += ridge;
-    const Eigen::MatrixXd inverse = scaled.ldlt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
-    return scale.asDiagonal() * inverse * scale.asDiagonal();
+    return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * right);
 }
 
 WornFit moved(WornFit worn, const Places& places, const Eigen::VectorXd& step) {
@@ -218,7 +219,7 @@ std::pair<WornFit, WornProblem> fitted_wear(WornFit worn, const Places& places,
     const double fitted_ohm = worn.resistance_ohm.front();
     auto problem = problem_of(worn, places, settled_a, fitted_ohm);
     for (int i = 0; i < most_wear_steps; ++i) {
-        Eigen::VectorXd step = inverse_of(problem.normal) * problem.pull;
+        Eigen::VectorXd step = solved(problem.normal, problem.pull);
         bool helps = false;
         double gained = 0.0;
         for (int halved = 0; halved < 4 && !helps; ++halved, step /= 2.0) {
@@ -238,7 +239,7 @@ std::pair<WornFit, WornProblem> fitted_wear(WornFit worn, const Places& places,
 
 /// Standard errors of all parameters by the jackknife over the parts, but not less than those of independent samples.
 Eigen::VectorXd standard_errors(const WornProblem& problem, const Places& places, double sample_error_v) {
-    const auto inverse = inverse_of(problem.normal);
+    const Eigen::MatrixXd inverse = solved(problem.normal, Eigen::MatrixXd::Identity(places.width(), places.width()));
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(places.width());
     for (const auto& part : problem.parts) {
         const auto columns = places.columns(static_cast<Eigen::Index>(part.flight));
