@@ -5,7 +5,6 @@
 #include "cli/numeric_options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/folds_option.h"
 #include "cli/output/json_text.h"
 #include "cli/progress.h"
 #include "cli/screen_table.h"

@@ -4,7 +4,6 @@
 #include "cli/numeric_options.h"
 #include "cli/output/fit_options.h"
 #include "cli/output/flight_options.h"
-#include "cli/output/folds_option.h"
 #include "cli/output/json_text.h"
 #include "cli/output/validation_output.h"
 #include "cli/progress.h"

@@ -51,4 +51,10 @@ double student_t_half_width(double degrees_of_freedom) {
     return boost::math::quantile(distribution, upper_tail);
 }
 
+std::vector<std::vector<std::size_t>> folds_of(std::size_t count, std::size_t most) {
+    std::vector<std::vector<std::size_t>> folds(std::min(count, most));
+    for (std::size_t i = 0; i < count && !folds.empty(); ++i) folds[i % folds.size()].push_back(i);
+    return folds;
+}
+
 }  // namespace flightwatt

@@ -1,9 +1,9 @@
 #include "battery/identification.h"
 
 #include "base/error.h"
-#include "base/folds.h"
 #include "base/parallel.h"
 #include "base/piecewise_linear.h"
+#include "base/statistics.h"
 #include "base/units.h"
 #include "battery/identification/aligned_fit.h"
 #include "battery/identification/chart_match.h"

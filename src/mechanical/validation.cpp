@@ -1,8 +1,8 @@
 #include "mechanical/validation.h"
 
 #include "base/error.h"
-#include "base/folds.h"
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/physical_fit.h"
 #include "mechanical/validation/baselines.h"

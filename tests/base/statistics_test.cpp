@@ -1,9 +1,12 @@
 #include "base/statistics.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt {
 namespace {
+
+using testing::ElementsAre;
 
 TEST(Statistics, MomentsOfASample) {
     const std::vector<double> values{2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0};
@@ -37,6 +40,16 @@ TEST(Statistics, HalfWidthsAsInAnyTable) {
     EXPECT_NEAR(student_t_half_width(5.0), 2.5706, 1e-4);
     EXPECT_NEAR(student_t_half_width(1e6), normal_half_width(), 1e-4);
     EXPECT_EQ(student_t_half_width(0.3), student_t_half_width(1.0));
+}
+
+TEST(Folds, AreOfOneEachAsLongAsTheyMayBe) {
+    EXPECT_THAT(folds_of(3, 3), ElementsAre(ElementsAre(0U), ElementsAre(1U), ElementsAre(2U)));
+    EXPECT_THAT(folds_of(2, 20), ElementsAre(ElementsAre(0U), ElementsAre(1U)));
+    EXPECT_TRUE(folds_of(0, 20).empty());
+}
+
+TEST(Folds, OfMoreAreGroupsWithoutNeighbours) {
+    EXPECT_THAT(folds_of(7, 3), ElementsAre(ElementsAre(0U, 3U, 6U), ElementsAre(1U, 4U), ElementsAre(2U, 5U)));
 }
 
 }  // namespace

@@ -71,4 +71,10 @@ std::set<std::string> with_matching(const std::set<std::string>& names, const st
 /// Throws UsageError for --exclude and --keep of a flight that is none of `flights`.
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights);
 
+/// --folds N: into how many groups flights are parted that are left out together.
+void add_folds_option(boost::program_options::options_description& options, std::size_t usual);
+
+/// Says so where flights are not left out alone.
+void note_folds(const StageCall& call, std::size_t flights, std::size_t folds);
+
 }  // namespace flightwatt::cli
