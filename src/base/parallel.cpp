@@ -52,7 +52,7 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
     {
         const std::size_t most = is_at_work ? 1 : most_threads > 0 ? most_threads : cores();
         const std::size_t threads = std::min(most, count);
-        const bool is_shared = threads > 1;
+        const bool is_shared = threads > 1 || most == 1;
         std::vector<std::jthread> workers;
         try {
             for (std::size_t k = 1; k < threads; ++k) workers.emplace_back(work_on, is_shared);

@@ -7,7 +7,8 @@ namespace flightwatt {
 
 /// Calls `work` with every number below `count`, on `most_threads` at most, or on as many as the machine has cores (0).
 /// Where calls throw, it throws the exception of the lowest number, on any number of threads; further numbers may then
-/// be left out. Within a loop that several threads share, another one has the thread that calls it alone.
+/// be left out. Within a loop that several threads share, or that may have but one, another one has the thread that
+/// calls it alone.
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work,
                           std::size_t most_threads = 0);
 

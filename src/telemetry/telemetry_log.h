@@ -62,9 +62,11 @@ struct TelemetryLog {
 TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
 
-/// The same for any text, which need not hold telemetry. Throws InputError for more than 300 senders alone.
+/// The same for any text, which need not hold telemetry. Throws InputError for more than 300 senders alone. A long text
+/// is cut at line ends and read on all cores; `parts` says in how many pieces (0: as suits it): the result is the same.
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
+                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted,
+                             std::size_t parts = 0);
 
 /// Names of the messages in a .data text, with their counts, most frequent first: for explaining what a log
 /// holds when it lacks what is wanted. Of more than a thousand names, the first thousand.
