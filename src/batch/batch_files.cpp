@@ -38,18 +38,77 @@ std::vector<ManifestFlight> stored_flights(const std::filesystem::path& out) {
     return flights;
 }
 
-/// Its record; damaged where its log is gone too.
-StoredFlight read_recorded(const std::filesystem::path& out, const ManifestFlight& listed) {
+/// What a batch wrote of an accepted log beside its record.
+struct Results {
+    std::string series_csv;
+    std::string fingerprint;  ///< of it and the phases; empty if one is missing
+};
+
+Results read_results(const std::filesystem::path& out, const std::string& flight) {
+    Results results;
+    Fingerprint fingerprint;
+    for (const auto* ending : {series_ending, phases_ending}) {
+        const auto path = out / "flights" / (flight + ending);
+        std::error_code none;
+        if (!std::filesystem::is_regular_file(path, none)) return {};
+        auto text = read_file(path);
+        fingerprint.add(text);
+        if (ending == series_ending) results.series_csv = std::move(text);
+    }
+    results.fingerprint = fingerprint.hex();
+    return results;
+}
+
+struct IntactFlight {
+    FlightRecord record;
+    std::string series_csv;  ///< of an accepted log
+};
+
+/// Throws InputError for files that are not as the batch wrote them.
+IntactFlight read_intact(const std::filesystem::path& out, const std::string& flight) {
+    const auto file = out / "flights" / (flight + record_ending);
+    const std::string hint = "run flightwatt batch again";
+    auto record = record_from_json(read_file(file));
+    if (!record) {
+        throw InputError({file.string()},
+                         "this is no record of a flight as this version wrote it: it was changed, or damaged", hint);
+    }
+    if (record->flight != in_record(flight)) {
+        throw InputError({file.string()}, fmt::format("this is the record of {}: it was renamed", record->flight),
+                         hint);
+    }
+    record->flight = flight;
+    IntactFlight intact{*std::move(record), {}};
+    if (!intact.record.accepted) return intact;
+    auto results = read_results(out, flight);
+    if (intact.record.results.empty() || intact.record.results != results.fingerprint) {
+        throw InputError({(out / "flights" / (flight + series_ending)).string()},
+                         "it or the phases beside it are not as the batch wrote them", hint);
+    }
+    intact.series_csv = std::move(results.series_csv);
+    return intact;
+}
+
+/// Its record, and if they are asked for its series and phases; damaged where its log is gone too.
+StoredFlight read_recorded(const std::filesystem::path& out, const ManifestFlight& listed, bool with_series) {
     const auto& name = listed.flight;
     // No result is to replace the log either, of which all this was made.
     note_input(listed.place);
     if (const auto configuration = telemetry::find_log_file(listed.place)) note_input(*configuration);
     StoredFlight flight;
     try {
-        flight.record = read_intact_record(out, name);
+        auto [record, series_csv] = read_intact(out, name);
+        flight.record = std::move(record);
+        if (with_series && flight.record.accepted) {
+            const auto folder = out / "flights";
+            flight.series = flight::parse_series_csv(series_csv, folder / (name + series_ending));
+            flight.series.flight = name;
+            flight.phases = flight::read_phases_csv(folder / (name + phases_ending));
+        }
     } catch (const InputError& error) {
         std::error_code none;
         if (std::filesystem::exists(listed.place, none)) throw;
+        flight = {};
         flight.record.flight = name;
         flight.record.log = listed.log.string();
         flight.damage = fmt::format("{}: {}, and its log is gone", to_string(error.where()), error.what());
@@ -57,13 +116,25 @@ StoredFlight read_recorded(const std::filesystem::path& out, const ManifestFligh
     return flight;
 }
 
-void read_series(const std::filesystem::path& out, StoredFlight& flight) {
-    if (!flight.record.accepted || !flight.damage.empty()) return;
-    const auto& name = flight.record.flight;
+std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool with_series) {
     const auto folder = out / "flights";
-    flight.series = flight::read_series_csv(folder / (name + series_ending));
-    flight.series.flight = name;
-    flight.phases = flight::read_phases_csv(folder / (name + phases_ending));
+    std::error_code none;
+    if (!std::filesystem::is_directory(folder, none)) {
+        throw InputError({out.string()}, "this is no folder of flightwatt batch: there is no flights/ in it",
+                         fmt::format("make it with: flightwatt batch LOGS -o {}", out.string()));
+    }
+    note_input(out / manifest_name);
+    note_input(out / catalogue_name);
+    for (const auto* name : model_names) note_input(out / name);
+    const auto listed = stored_flights(out);
+    std::vector<StoredFlight> flights(listed.size());
+    for_each_in_parallel(listed.size(),
+                         [&](std::size_t i) { flights[i] = read_recorded(out, listed[i], with_series); });
+    if (flights.empty()) {
+        throw InputError({folder.string()}, "there is no record of a flight in it",
+                         fmt::format("make them with: flightwatt batch LOGS -o {}", out.string()));
+    }
+    return flights;
 }
 
 }  // namespace
@@ -84,60 +155,15 @@ void remove_results(const std::filesystem::path& out, const std::string& flight)
 }
 
 std::string results_fingerprint(const std::filesystem::path& out, const std::string& flight) {
-    Fingerprint fingerprint;
-    for (const auto* ending : {series_ending, phases_ending}) {
-        const auto path = out / "flights" / (flight + ending);
-        std::error_code none;
-        if (!std::filesystem::is_regular_file(path, none)) return "";
-        fingerprint.add(read_file(path));
-    }
-    return fingerprint.hex();
+    return read_results(out, flight).fingerprint;
 }
 
 FlightRecord read_intact_record(const std::filesystem::path& out, const std::string& flight) {
-    const auto file = out / "flights" / (flight + record_ending);
-    const std::string hint = "run flightwatt batch again";
-    auto record = record_from_json(read_file(file));
-    if (!record) {
-        throw InputError({file.string()},
-                         "this is no record of a flight as this version wrote it: it was changed, or damaged", hint);
-    }
-    if (record->flight != in_record(flight)) {
-        throw InputError({file.string()}, fmt::format("this is the record of {}: it was renamed", record->flight),
-                         hint);
-    }
-    record->flight = flight;
-    if (record->accepted && (record->results.empty() || record->results != results_fingerprint(out, flight))) {
-        throw InputError({(out / "flights" / (flight + series_ending)).string()},
-                         "it or the phases beside it are not as the batch wrote them", hint);
-    }
-    return std::move(*record);
+    return read_intact(out, flight).record;
 }
 
-std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out) {
-    auto flights = read_stored_records(out);
-    for_each_in_parallel(flights.size(), [&](std::size_t i) { read_series(out, flights[i]); });
-    return flights;
-}
+std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out) { return read_stored(out, true); }
 
-std::vector<StoredFlight> read_stored_records(const std::filesystem::path& out) {
-    const auto folder = out / "flights";
-    std::error_code none;
-    if (!std::filesystem::is_directory(folder, none)) {
-        throw InputError({out.string()}, "this is no folder of flightwatt batch: there is no flights/ in it",
-                         fmt::format("make it with: flightwatt batch LOGS -o {}", out.string()));
-    }
-    note_input(out / manifest_name);
-    note_input(out / catalogue_name);
-    for (const auto* name : model_names) note_input(out / name);
-    const auto listed = stored_flights(out);
-    std::vector<StoredFlight> flights(listed.size());
-    for_each_in_parallel(listed.size(), [&](std::size_t i) { flights[i] = read_recorded(out, listed[i]); });
-    if (flights.empty()) {
-        throw InputError({folder.string()}, "there is no record of a flight in it",
-                         fmt::format("make them with: flightwatt batch LOGS -o {}", out.string()));
-    }
-    return flights;
-}
+std::vector<StoredFlight> read_stored_records(const std::filesystem::path& out) { return read_stored(out, false); }
 
 }  // namespace flightwatt::batch

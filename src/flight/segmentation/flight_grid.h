@@ -23,8 +23,8 @@ struct FlightGrid {
     double start_s = 0.0;
     double step_s = segmentation_step_s;
     std::vector<double> altitude_m;
-    std::vector<double> throttle_percent;      ///< empty if unknown
-    std::vector<double> motor_percent;         ///< see MotorRecord; empty if unknown
+    std::vector<double> throttle_percent;  ///< empty if unknown
+    std::vector<double> motor_percent;     ///< see MotorRecord; empty if unknown
     double least_motor_percent = 0.0;
     std::vector<double> ground_speed_m_per_s;  ///< empty if unknown
     std::vector<GridSpan> pieces;              ///< between jumps of the altitude; together the whole grid
