@@ -94,8 +94,9 @@ TextTable predictions_table(const std::map<std::string, PredictedFlight>& flight
                     {}};
     for (const auto& [name, flight] : flights) {
         const auto& moments = flight.moments;
-        const auto held = std::ranges::count_if(
-            moments, [&](const auto& moment) { return moment.interval.contains(flight.measured_wh); });
+        const auto held = std::ranges::count_if(moments, [measured_wh = flight.measured_wh](const auto& moment) {
+            return moment.interval.contains(measured_wh);
+        });
         std::vector<std::string> row{name, fixed(flight.measured_wh, 2)};
         for (const auto* moment : {&moments.front(), &moments[moments.size() / 2], &moments.back()}) {
             row.push_back(fixed(moment->energy_wh, 2));

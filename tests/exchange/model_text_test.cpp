@@ -82,9 +82,9 @@ TEST(CHeader, IsThePhysicalModelToAMillionth) {
                                     "p(synthetic_wing_motion_power_w(5.0 + i, 0.5 * k - 5.0, 1.0 + 0.05 * k));\n");
     ASSERT_EQ(numbers.size(), 630U);
     std::size_t zeros = 0;
+    std::size_t number = 0;
     for (int i = 0; i < 30; ++i) {
-        for (int k = 0; k < 21; ++k) {
-            const auto number = static_cast<std::size_t>(21 * i + k);
+        for (int k = 0; k < 21; ++k, ++number) {
             const double expected = power_w(*model.physical, {5.0 + i, 0.5 * k - 5.0, 1.0 + 0.05 * k});
             EXPECT_NEAR(numbers[number], expected, 1e-6);
             zeros += expected == 0.0 ? 1 : 0;

@@ -30,7 +30,7 @@ using testing::ElementsAre;
 const auto never = [] { return false; };
 
 std::filesystem::path write_log(const std::string& text) {
-    const auto path = test::scratch_dir() / "a.data";
+    auto path = test::scratch_dir() / "a.data";
     write_file_atomically(path, text);
     return path;
 }
@@ -83,7 +83,7 @@ TEST(Playback, TakesAsLongAsItShouldAndEndsWhenItIsStopped) {
 
 /// A card's log of messages with their own times.
 std::filesystem::path write_card_log(const std::vector<std::string>& lines) {
-    const auto path = test::scratch_dir() / "a.LOG";
+    auto path = test::scratch_dir() / "a.LOG";
     write_file_atomically(
         path, test::card_log(log_of(lines), test::small_dictionary(), test::LinkVersion::v2) + "damage at its end");
     return path;
