@@ -208,8 +208,8 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
     const bool is_known = !call.has("no-fit") && !cli::is_physical(call) && batch::is_fit_of(options.out, made_from);
     std::optional<FittedBatch> known;
     if (is_known) known = known_fit(options.out);
-    const auto repeated = known ? known->fit.repeated : find_repeated(flights, options.out);
-    const auto copies = exclude_repeated(flights, repeated);
+    auto repeated = known ? std::move(known->fit.repeated) : find_repeated(flights, options.out);
+    auto copies = exclude_repeated(flights, repeated);
     report_notes(call, flights);
     {
         const batch::WriteGate::Pass pass(*options.gate);
@@ -247,8 +247,8 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         }
         refuse_mix(call, flights, options.out);
         auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options);
-        fit.copies = copies;
-        fit.repeated = repeated;
+        fit.copies = std::move(copies);
+        fit.repeated = std::move(repeated);
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
         fit.made_from = made_from;

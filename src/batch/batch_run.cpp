@@ -224,7 +224,7 @@ std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const Batch
     std::size_t done = 0;
     const auto work = [&](std::size_t i) {
         flights[i] = do_log(logs[i], options);
-        flights[i].record.verdicts = {};  // in its file; of thousands of flights nobody asks here
+        flights[i].record.verdicts = std::vector<RecordedVerdict>();  // nobody asks here, and thousands take room
         const std::lock_guard lock(mutex);
         progress(++done, logs.size(), flights[i]);
     };

@@ -134,7 +134,7 @@ class FlightMerger {
             take_over_as(name, from, flight, merged.record);
         }
         merged.selection = selection_of(select_for_fit(merged.record, options_.needed_samples, {}));
-        merged.record.verdicts = {};
+        merged.record.verdicts = std::vector<RecordedVerdict>();
         return merged;
     }
 
