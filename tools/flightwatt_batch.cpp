@@ -105,21 +105,15 @@ struct FittedBatch {
     std::optional<mechanical::PhysicalFit> physical;
 };
 
-/// Fits what the batch accepted. Takes the samples out of `flights`: of thousands, two copies are too many.
-FittedBatch fit_batch(const cli::StageCall& call, std::vector<batch::BatchFlight>& flights,
+/// Fits what the batch accepted.
+FittedBatch fit_batch(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights,
                       const batch::BatchOptions& batch) {
     auto options = read_fit_options(call);
     options.name = call.get<std::string>("name");
-    std::vector<mechanical::MeasuredFlight> measured;
+    auto measured = read_samples(flights, batch);
     std::vector<mechanical::FlightSamples> samples;
-    read_samples(flights, batch);
-    for (auto& flight : flights) {
-        for (auto& taken : flight.selection.flights) {
-            samples.push_back(std::move(taken.samples));
-            measured.push_back(std::move(taken));
-        }
-        flight.selection.flights.clear();
-    }
+    for (auto& flight : measured)
+        samples.push_back(std::move(flight.samples));  // of thousands, two copies are too many
     try {
         FittedBatch fitted{batch::fit_flights(samples, options), std::nullopt};
         if (cli::is_physical(call)) fitted.physical = cli::fit_motion(call, measured, fitted.fit.model);
@@ -214,8 +208,8 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
     const bool is_known = !call.has("no-fit") && !cli::is_physical(call) && batch::is_fit_of(options.out, made_from);
     std::optional<FittedBatch> known;
     if (is_known) known = known_fit(options.out);
-    const auto repeated = known ? known->fit.repeated : find_repeated(flights, options.out);
-    const auto copies = exclude_repeated(flights, repeated);
+    auto repeated = known ? std::move(known->fit.repeated) : find_repeated(flights, options.out);
+    auto copies = exclude_repeated(flights, repeated);
     report_notes(call, flights);
     {
         const batch::WriteGate::Pass pass(*options.gate);
@@ -253,8 +247,8 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         }
         refuse_mix(call, flights, options.out);
         auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options);
-        fit.copies = copies;
-        fit.repeated = repeated;
+        fit.copies = std::move(copies);
+        fit.repeated = std::move(repeated);
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
         fit.made_from = made_from;
@@ -357,11 +351,12 @@ int run_over_logs(const cli::StageCall& call) {
     std::optional<batch::FolderLock> lock;
     std::error_code none;
     if (std::filesystem::is_directory(options.out, none)) lock.emplace(options.out);
-    const auto plan = make_plan(call, options);
+    auto plan = make_plan(call, options);
     tell_plan(call, plan);
     make_directories(options.out);
     if (!lock) lock.emplace(options.out);
     prepare_folder(plan, options.out);
+    plan.earlier = plan.manifest = {};
     const EmptyAtEnd unfinished{options.out / batch::unfinished_folder};
     batch::WriteGate gate;
     options.gate = &gate;
@@ -370,6 +365,7 @@ int run_over_logs(const cli::StageCall& call) {
     if (::isatty(STDERR_FILENO) != 0) state.bar.emplace(stderr, "logs");
     const batch::Interruption interruption(gate, on_signal(call, state));
     auto flights = run_batch(plan.logs, options, progress_of(call, state));
+    plan = {};
     if (state.bar) state.bar->clear();
     return finish(call, std::move(flights), options, published);
 }

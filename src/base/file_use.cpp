@@ -35,7 +35,7 @@ struct FileUse {
     std::map<FileId, std::string> inputs;
     std::map<FileId, std::string> declared;  ///< files that exist, with their option
     std::map<FileId, std::string> written;
-    std::map<std::filesystem::path, std::string> declared_paths;
+    std::map<std::string, std::string> declared_paths;
 };
 
 std::atomic<bool> watched = false;
@@ -95,7 +95,7 @@ void declare_output(const std::filesystem::path& path, const std::string& option
         if (!is_new) refuse_second(other->second, name);
     }
     if (unknown || place.empty()) return;
-    const auto [other, is_new] = use.declared_paths.emplace(place, name);
+    const auto [other, is_new] = use.declared_paths.emplace(place.string(), name);
     if (!is_new) refuse_second(other->second, name);
 }
 

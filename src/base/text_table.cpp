@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <iterator>
 #include <string_view>
+#include <utility>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
@@ -117,8 +118,8 @@ std::string fixed(const std::optional<double>& number, int decimals) {
     return number ? fmt::format("{:.{}f}", *number, decimals) : "-";
 }
 
-std::string to_text(const TextTable& raw) {
-    const auto table = without_controls(raw);
+std::string to_text(TextTable raw) {
+    const auto table = without_controls(std::move(raw));
     std::vector<std::size_t> widths;
     std::vector<bool> right;
     for (std::size_t column = 0; column < table.header.size(); ++column) {
@@ -142,8 +143,8 @@ std::string to_text(const TextTable& raw) {
     return text;
 }
 
-std::string to_markdown(const TextTable& raw) {
-    const auto table = without_controls(raw);
+std::string to_markdown(TextTable raw) {
+    const auto table = without_controls(std::move(raw));
     std::string text;
     const auto add_row = [&](const std::vector<std::string>& row) {
         text += '|';

@@ -25,8 +25,8 @@ std::string fixed(const std::optional<double>& number, int decimals);
 
 /// Columns padded to their widest cell (counted in code points) and two blanks apart; a column whose cells
 /// are all numbers, or '-', stands to the right.
-std::string to_text(const TextTable& table);
-std::string to_markdown(const TextTable& table);
+std::string to_text(TextTable table);
+std::string to_markdown(TextTable table);
 std::string to_csv(const TextTable& table);
 
 /// Text in which TeX's own characters stand for themselves. What is neither ASCII nor Latin becomes '?'.

@@ -150,9 +150,9 @@ std::string fingerprint_of_fit(const std::vector<BatchFlight>& flights, const me
         add(record.flight);
         add(record.results);
         add(record.fingerprint);
-        for (const auto& measured : selection.flights) {
-            add(measured.samples.flight);
-            for (const auto phase : flight::all_phases) add(measured.samples.phases[phase] ? "+" : "-");
+        for (const auto& sortie : selection.flights) {
+            add(sortie.flight);
+            for (const auto phase : flight::all_phases) add(sortie.phases[phase] ? "+" : "-");
         }
     }
     return fingerprint.hex();

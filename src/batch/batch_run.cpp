@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <mutex>
 #include <new>
 #include <system_error>
@@ -123,7 +124,7 @@ BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::st
         }
         conclude(done, log, fingerprint, options);
     }
-    done.selection = select_for_fit(done.record, options.needed_samples, options.load);
+    done.selection = selection_of(select_for_fit(done.record, options.needed_samples, options.load));
     return done;
 }
 
@@ -133,7 +134,7 @@ BatchFlight do_gone(const LogFile& log, const BatchOptions& options) {
     BatchFlight kept;
     kept.was_up_to_date = kept.is_kept = true;
     kept.record = read_intact_record(options.out, log.flight);
-    kept.selection = select_for_fit(kept.record, options.needed_samples, options.load);
+    kept.selection = selection_of(select_for_fit(kept.record, options.needed_samples, options.load));
     return kept;
 }
 
@@ -203,14 +204,15 @@ FlightMarks marks_of(const FlightRecord& record, const std::filesystem::path& ou
 
 }  // namespace
 
-void drop_samples(mechanical::MeasuredFlights& selection) {
-    for (auto& flight : selection.flights) {
-        for (const auto phase : flight::all_phases)
-            if (auto& samples = flight.samples.phases[phase]) samples.emplace();
-        flight.power = {};
-        flight.motion = {};
-        flight.cruise_ahead = {};
+Selection selection_of(mechanical::MeasuredFlights measured) {
+    Selection selection;
+    for (auto& flight : measured.flights) {
+        SelectedSortie sortie{std::move(flight.samples.flight), {}};
+        for (const auto phase : flight::all_phases) sortie.phases[phase] = flight.samples.phases[phase].has_value();
+        selection.flights.push_back(std::move(sortie));
     }
+    selection.exclusions = std::move(measured.exclusions);
+    return selection;
 }
 
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
@@ -222,7 +224,7 @@ std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const Batch
     std::size_t done = 0;
     const auto work = [&](std::size_t i) {
         flights[i] = do_log(logs[i], options);
-        drop_samples(flights[i].selection);
+        flights[i].record.verdicts = std::vector<RecordedVerdict>();  // nobody asks here, and thousands take room
         const std::lock_guard lock(mutex);
         progress(++done, logs.size(), flights[i]);
     };
@@ -230,17 +232,21 @@ std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const Batch
     return flights;
 }
 
-void read_samples(std::vector<BatchFlight>& flights, const BatchOptions& options) {
+std::vector<mechanical::MeasuredFlight> read_samples(const std::vector<BatchFlight>& flights,
+                                                     const BatchOptions& options) {
+    std::vector<std::vector<mechanical::MeasuredFlight>> of_logs(flights.size());
     for_each_in_parallel(flights.size(), [&](std::size_t i) {
-        auto& selection = flights[i].selection;
-        if (selection.flights.empty()) return;
+        if (flights[i].selection.flights.empty()) return;
         const OwnFiles own;
         const auto file = result_path(options, flights[i].record.flight, record_ending);
         auto record = record_from_json(read_file(file));
         if (!record) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
         record->flight = flights[i].record.flight;  // of a name that is no UTF-8, too
-        selection.flights = select_for_fit(*record, options.needed_samples, options.load).flights;
+        of_logs[i] = select_for_fit(*record, options.needed_samples, options.load).flights;
     });
+    std::vector<mechanical::MeasuredFlight> measured;
+    for (auto& of_log : of_logs) std::ranges::move(of_log, std::back_inserter(measured));
+    return measured;
 }
 
 std::string reason_of_copy(const std::string& other) {
@@ -298,7 +304,6 @@ std::map<std::string, std::string> exclude_repeated(std::vector<BatchFlight>& fl
         const bool has_power = flight.record.lacks_power.empty();
         if (has_power) copies[name] = other;
         flight.selection.flights.clear();
-        flight.selection.sorties.clear();
         flight.selection.exclusions.push_back(
             {name, std::nullopt,
              has_power ? reason_of_copy(other) : fmt::format("it is the same flight as {}", other)});

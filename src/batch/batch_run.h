@@ -24,13 +24,25 @@ struct BatchOptions {
     WriteGate* gate = nullptr;  ///< passed to write a file, if there is one
 };
 
+/// A sortie that a fit takes, and which of its phases.
+struct SelectedSortie {
+    std::string flight;  ///< see flight_name_of_sortie
+    flight::PerPhase<bool> phases;
+};
+
+/// What a fit takes from a log. Its samples stay in the record until they are needed (read_samples).
+struct Selection {
+    std::vector<SelectedSortie> flights;  ///< none if the log was rejected
+    std::vector<mechanical::Exclusion> exclusions;
+};
+
 /// One log of a batch, done or found up to date.
 struct BatchFlight {
     FlightRecord record;
     bool was_up_to_date = false;
-    bool is_of_this_run = true;             ///< see LogFile
-    bool is_kept = false;                   ///< its log is gone: it is as an earlier run left it
-    mechanical::MeasuredFlights selection;  ///< what a fit takes from it, without samples; empty if it was rejected
+    bool is_of_this_run = true;  ///< see LogFile
+    bool is_kept = false;        ///< its log is gone: it is as an earlier run left it
+    Selection selection;
 };
 
 /// Called as logs finish, from one thread at a time: how many are done, of how many, and which it was.
@@ -45,12 +57,12 @@ using BatchProgress = std::function<void(std::size_t done, std::size_t all, cons
 std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
                                    const BatchProgress& progress);
 
-/// The selection of each flight with its samples, of which thousands would fill the memory while copies are still among
-/// them. Throws InputError where a record is no longer as it was.
-void read_samples(std::vector<BatchFlight>& flights, const BatchOptions& options);
+/// Every flight that is selected, with its samples. Throws InputError where a record is no longer as it was.
+std::vector<mechanical::MeasuredFlight> read_samples(const std::vector<BatchFlight>& flights,
+                                                     const BatchOptions& options);
 
-/// Leaves what tells which phases would be fitted.
-void drop_samples(mechanical::MeasuredFlights& selection);
+/// What select_for_fit selected, without its samples.
+Selection selection_of(mechanical::MeasuredFlights measured);
 
 /// Flights that are there more than once.
 struct RepeatedFlights {

@@ -11,10 +11,9 @@ namespace {
 
 bool is_used(const BatchFlight& flight, const RecordedPhase& phase) {
     const auto name = mechanical::flight_name_of_sortie(flight.record.flight, phase.sortie);
-    return std::any_of(flight.selection.flights.begin(), flight.selection.flights.end(),
-                       [&](const mechanical::MeasuredFlight& measured) {
-                           return measured.samples.flight == name && measured.samples.phases[phase.phase].has_value();
-                       });
+    return std::ranges::any_of(flight.selection.flights, [&](const SelectedSortie& sortie) {
+        return sortie.flight == name && sortie.phases[phase.phase];
+    });
 }
 
 /// What a sortie's phases add up to.

@@ -133,8 +133,8 @@ class FlightMerger {
             merged.record.content.marks = marks_from_json(text).value();  // sealed with the rest
             take_over_as(name, from, flight, merged.record);
         }
-        merged.selection = select_for_fit(merged.record, options_.needed_samples, {});
-        drop_samples(merged.selection);
+        merged.selection = selection_of(select_for_fit(merged.record, options_.needed_samples, {}));
+        merged.record.verdicts = std::vector<RecordedVerdict>();
         return merged;
     }
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/join.hpp>
@@ -353,9 +354,9 @@ void add_wide_option(boost::program_options::options_description& options) {
     options.add_options()("wide", "on a terminal: all columns, also beyond its width");
 }
 
-std::string screen_text(const TextTable& whole, const Screen& screen, const ScreenTable& options) {
-    if (!screen.is_terminal) return to_text(whole);
-    const auto table = with_minutes(whole);
+std::string screen_text(TextTable whole, const Screen& screen, const ScreenTable& options) {
+    if (!screen.is_terminal) return to_text(std::move(whole));
+    const auto table = with_minutes(std::move(whole));
     const auto columns = columns_that_fit(table, screen, options);
     std::string text;
     if (!options.title.empty()) {

@@ -38,7 +38,7 @@ struct ScreenTable {
 /// The table in the width of the screen: heads of several lines with the unit of a column (from the suffix of its
 /// name) below, long texts on several lines, and below it the names of columns for which there was no room. Phases and
 /// the best row are coloured where the screen has colours. Elsewhere than on a terminal: to_text(table).
-std::string screen_text(const TextTable& table, const Screen& screen, const ScreenTable& options = {});
+std::string screen_text(TextTable table, const Screen& screen, const ScreenTable& options = {});
 
 /// A CSV text with the decimals that people read, by the units of its columns: 28.3 of 28.261000000000003 s. Columns
 /// without a known unit get four digits. Comments are left out; their places are counted in `csv`. Throws InputError

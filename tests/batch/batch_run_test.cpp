@@ -20,6 +20,7 @@ using test::batch;
 using test::contents;
 using test::copy_sample;
 using test::done_anew;
+using test::samples_of;
 using test::write_text;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -78,13 +79,13 @@ TEST_F(BatchOfTwo, WritesThreeFilesAFlight) {
 TEST_F(BatchOfTwo, DoesNothingTwice) { expect_redone({}); }
 
 TEST_F(BatchOfTwo, RemembersWhatAFitTakes) {
-    const auto anew = batch(in, folder / "other");
-    const auto remembered = batch(in, out);
+    const auto anew = samples_of(batch(in, folder / "other"), folder / "other");
+    const auto remembered = samples_of(batch(in, out), out);
+    ASSERT_EQ(anew.size(), 2U);
     ASSERT_EQ(remembered.size(), 2U);
     for (std::size_t i = 0; i < remembered.size(); ++i) {
-        ASSERT_EQ(remembered[i].selection.flights.size(), 1U);
-        const auto& a = anew[i].selection.flights[0].samples;
-        const auto& b = remembered[i].selection.flights[0].samples;
+        const auto& a = anew[i].samples;
+        const auto& b = remembered[i].samples;
         EXPECT_EQ(a.flight, b.flight);
         for (const auto phase : flight::all_phases) {
             EXPECT_EQ(a.phases[phase]->duration_s, b.phases[phase]->duration_s);
@@ -177,13 +178,13 @@ TEST_F(BatchOfTwo, AddsToEarlierRuns) {
 }
 
 TEST_F(BatchOfTwo, KeepsTheResultsOfALogThatIsGone) {
-    const auto before = batch(in, out)[0];
+    const auto before = samples_of(batch(in, out), out).at(0);
     std::filesystem::remove(in / "opterra_synthetic_01.data");
     const auto kept = batch(in, out);
     ASSERT_EQ(kept.size(), 2U);
     EXPECT_TRUE(kept[0].is_kept);
-    EXPECT_EQ(kept[0].selection.flights.at(0).samples.phases[flight::Phase::cruise]->power_w,
-              before.selection.flights.at(0).samples.phases[flight::Phase::cruise]->power_w);
+    EXPECT_EQ(samples_of(kept, out).at(0).samples.phases[flight::Phase::cruise]->power_w,
+              before.samples.phases[flight::Phase::cruise]->power_w);
     EXPECT_EQ(contents(out), whole);
     // What was changed since is not believed, and not thrown away either.
     auto changed = whole.at("flights/opterra_synthetic_01.record.json");
@@ -304,8 +305,8 @@ TEST(Batch, KeepsFlightsOfOneNameApart) {
     copy_sample(2, folder / "in" / "tuesday", "flight");
     const auto flights = batch(folder / "in", folder / "out");
     ASSERT_EQ(flights.size(), 2U);
-    EXPECT_EQ(flights[0].selection.flights.at(0).samples.flight, "flight");
-    EXPECT_EQ(flights[1].selection.flights.at(0).samples.flight, "flight_2");
+    EXPECT_EQ(flights[0].selection.flights.at(0).flight, "flight");
+    EXPECT_EQ(flights[1].selection.flights.at(0).flight, "flight_2");
     const auto written = folder / "out" / "flights";
     EXPECT_NE(read_file(written / "flight.series.csv"), read_file(written / "flight_2.series.csv"));
     EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), IsEmpty());

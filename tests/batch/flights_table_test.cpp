@@ -30,12 +30,10 @@ BatchFlight two_sorties() {
                             phase(2, flight::Phase::landing, 400, 450)};
     flight.record.phases[2].complete = false;
     flight.record.phases[2].statistics.counter_energy_wh.reset();
-    mechanical::MeasuredFlight first;
-    first.samples.flight = flight.record.flight;
-    first.samples.phases[flight::Phase::takeoff] = mechanical::PhaseSamples{};
-    mechanical::MeasuredFlight second;
-    second.samples.flight = flight.record.flight + "#2";
-    second.samples.phases[flight::Phase::cruise] = mechanical::PhaseSamples{};
+    SelectedSortie first{flight.record.flight, {}};
+    first.phases[flight::Phase::takeoff] = true;
+    SelectedSortie second{flight.record.flight + "#2", {}};
+    second.phases[flight::Phase::cruise] = true;
     flight.selection.flights = {first, second};
     return flight;
 }

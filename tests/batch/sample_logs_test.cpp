@@ -32,11 +32,9 @@ namespace {
 
 namespace io = boost::iostreams;
 
-mechanical::MechanicalModel fit_of(const std::vector<BatchFlight>& flights) {
+mechanical::MechanicalModel fit_of(const std::vector<BatchFlight>& flights, const std::filesystem::path& out) {
     std::vector<mechanical::FlightSamples> samples;
-    for (const auto& flight : flights) {
-        for (const auto& measured : flight.selection.flights) samples.push_back(measured.samples);
-    }
+    for (auto& measured : test::samples_of(flights, out)) samples.push_back(std::move(measured.samples));
     return fit_model(samples).model;
 }
 
@@ -56,9 +54,10 @@ void expect_weights_that_sum_to_one(const mechanical::MechanicalModel& model) {
 TEST(SampleLogs, GiveTableOneBack) {
     const auto published =
         mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
-    const auto flights = test::batch(test::source_dir() / "logs", test::scratch_dir() / "out");
+    const auto out = test::scratch_dir() / "out";
+    const auto flights = test::batch(test::source_dir() / "logs", out);
     ASSERT_EQ(flights.size(), 6U);
-    const auto model = fit_of(flights);
+    const auto model = fit_of(flights, out);
     const flight::PerPhase<double> largest_rms_w{{0.10, 0.10, 0.30}};
     for (const auto phase : flight::all_phases) {
         const auto& is = model.phases[phase];
@@ -75,17 +74,17 @@ TEST(RealLogs, GiveTheSameModelRememberedAsAnew) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto folder = test::scratch_dir();
     const auto flights = test::shared_dir() / "flights";
-    const auto anew = to_toml(fit_of(test::batch(flights, folder)));
+    const auto anew = to_toml(fit_of(test::batch(flights, folder), folder));
     EXPECT_THAT(anew, testing::HasSubstr("airspeed_law = {"));
-    EXPECT_EQ(to_toml(fit_of(test::batch(flights, folder))), anew);
+    EXPECT_EQ(to_toml(fit_of(test::batch(flights, folder), folder)), anew);
 }
 
 TEST(SampleLogs, GiveTheSameModelWithAnyNumberOfJobs) {
     const auto folder = test::scratch_dir();
     const auto logs = test::source_dir() / "logs";
-    const auto model = to_toml(fit_of(test::batch(logs, folder / "1", 1)));
-    EXPECT_EQ(to_toml(fit_of(test::batch(logs, folder / "5", 5))), model);
-    EXPECT_EQ(to_toml(fit_of(test::batch(logs, folder / "1", 5))), model);  // remembered
+    const auto model = to_toml(fit_of(test::batch(logs, folder / "1", 1), folder / "1"));
+    EXPECT_EQ(to_toml(fit_of(test::batch(logs, folder / "5", 5), folder / "5")), model);
+    EXPECT_EQ(to_toml(fit_of(test::batch(logs, folder / "1", 5), folder / "1")), model);  // remembered
 }
 
 template <typename Compressor>
@@ -203,8 +202,9 @@ double weight_of(const mechanical::MechanicalModel& model, const std::string& fl
 
 TEST(RealFlights, ConvergeToAModel) {
     FLIGHTWATT_NEEDS_SHARED();
-    const auto flights = test::batch(test::shared_dir() / "flights", test::scratch_dir() / "out");
-    const auto model = fit_of(flights);
+    const auto out = test::scratch_dir() / "out";
+    const auto flights = test::batch(test::shared_dir() / "flights", out);
+    const auto model = fit_of(flights, out);
     ASSERT_EQ(model.flights.size(), 3U);
     expect_weights_that_sum_to_one(model);
     for (const auto phase : flight::all_phases) {

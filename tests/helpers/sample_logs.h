@@ -37,7 +37,7 @@ inline std::map<std::string, std::string> contents(const std::filesystem::path& 
     return files;
 }
 
-/// A batch over `input` into `out`, with the catalogue that flightwatt batch writes, and with samples.
+/// A batch over `input` into `out`, with the catalogue that flightwatt batch writes.
 inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input, const std::filesystem::path& out,
                                              unsigned jobs = 2, bool prune = false) {
     batch::BatchOptions options;
@@ -46,10 +46,17 @@ inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input,
     const auto plan = batch::plan_batch(batch::find_logs({input.string()}), out, prune);
     refuse_files_of_others(plan, out);
     prepare_folder(plan, out);
-    auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const batch::BatchFlight&) {});
+    const auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const batch::BatchFlight&) {});
     write_file_atomically(out / "flights.csv", batch::catalogue_csv(flights));
-    read_samples(flights, options);
     return flights;
+}
+
+/// What a fit takes of the batch in `out`.
+inline std::vector<mechanical::MeasuredFlight> samples_of(const std::vector<batch::BatchFlight>& flights,
+                                                          const std::filesystem::path& out) {
+    batch::BatchOptions options;
+    options.out = out;
+    return read_samples(flights, options);
 }
 
 /// The flights that were done anew.
