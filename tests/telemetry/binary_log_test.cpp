@@ -111,7 +111,7 @@ TEST(BinaryLog, ReadToATimeIsTheLogThatEndsThere) {
     const auto log = card_log(made_data(300), binary_dictionary(), LinkVersion::v2);
     const auto whole = binary(log);
     const auto& all = *whole.senders.at(0).table("ENERGY");
-    const auto frame_end = log.find("\x99", log.size() / 2);
+    const auto frame_end = log.find('\x99', log.size() / 2);
     const auto cut = binary(log.substr(0, frame_end));
     const auto& some = *cut.senders.at(0).table("ENERGY");
     ASSERT_GT(some.time_s.size(), 100u);

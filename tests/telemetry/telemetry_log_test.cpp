@@ -175,7 +175,7 @@ std::string made_up_lines(unsigned seed) {
                                         " ENERGY 69 11.5 3. 34.5 0.1 0.2\r\n",
                                         "\n",
                                         "garbage\n",
-                                        "\n\n\0 \n"};
+                                        std::string("\n\n\0 \n", 5)};
     std::mt19937 random(seed);
     std::string text;
     for (unsigned i = 0; i < 400; ++i) {

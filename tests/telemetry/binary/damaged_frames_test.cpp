@@ -215,7 +215,7 @@ std::vector<std::string> texts_of(const std::string& bytes, Framing framing) {
 std::string energy_with(Framing framing, const std::function<bool(const std::string&)>& is_asked_for) {
     const auto dictionary = test::binary_dictionary();
     for (std::size_t i = 0; i < 100'000; ++i) {
-        const auto text = fmt::format("7 ENERGY {} {}.25 1.64 19.1 0.08 {}.", i % 100, i, i);
+        auto text = fmt::format("7 ENERGY {} {}.25 1.64 19.1 0.08 {}.", i % 100, i, i);
         if (is_asked_for(framed(framing, test::binary_message(text, dictionary, LinkVersion::v1).value(), 1)))
             return text;
     }
