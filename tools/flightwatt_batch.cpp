@@ -112,6 +112,7 @@ FittedBatch fit_batch(const cli::StageCall& call, const std::vector<batch::Batch
     options.name = call.get<std::string>("name");
     auto measured = read_samples(flights, batch);
     std::vector<mechanical::FlightSamples> samples;
+    samples.reserve(measured.size());
     for (auto& flight : measured)
         samples.push_back(std::move(flight.samples));  // of thousands, two copies are too many
     try {

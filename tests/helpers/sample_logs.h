@@ -46,7 +46,7 @@ inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input,
     const auto plan = batch::plan_batch(batch::find_logs({input.string()}), out, prune);
     refuse_files_of_others(plan, out);
     prepare_folder(plan, out);
-    const auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const batch::BatchFlight&) {});
+    auto flights = run_batch(plan.logs, options, [](std::size_t, std::size_t, const batch::BatchFlight&) {});
     write_file_atomically(out / "flights.csv", batch::catalogue_csv(flights));
     return flights;
 }
