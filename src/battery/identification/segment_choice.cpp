@@ -125,6 +125,13 @@ Excess excess_of(const std::vector<std::optional<double>>& some_v2,
     return {mean(more_v2), n > 1.0 ? std::sqrt(sample_variance(more_v2) / n) : 0.0};
 }
 
+double mean_of(const std::vector<std::optional<double>>& errors_v2) {
+    std::vector<double> known_v2;
+    for (const auto& error_v2 : errors_v2)
+        if (error_v2) known_v2.push_back(*error_v2);
+    return known_v2.empty() ? 0.0 : mean(known_v2);
+}
+
 }  // namespace
 
 std::vector<int> segments_by_prediction(std::span<const AlignedRecord> records, const CircuitFit& fit) {
@@ -136,10 +143,14 @@ std::vector<int> segments_by_prediction(std::span<const AlignedRecord> records, 
         errors_v2.push_back(prediction_errors_v2(load_rows(records, fit, segments), parts));
         if (excess_of(errors_v2.back(), errors_v2[best]).mean_v2 < 0.0) best = errors_v2.size() - 1;
     }
+    // Of two records, where one does not tell more segments from fewer, the mean is the standard error but for rounding:
+    // which one is larger must not depend on the processor.
+    constexpr double no_difference = 1e-6;
+    const double same_v2 = no_difference * mean_of(errors_v2[best]);
     std::size_t fewest = 0;
     for (; fewest < best; ++fewest) {
         const auto excess = excess_of(errors_v2[fewest], errors_v2[best]);
-        if (excess.mean_v2 <= excess.standard_error_v2) break;
+        if (excess.mean_v2 <= excess.standard_error_v2 + same_v2) break;
     }
     std::vector<int> in_turn;
     for (std::size_t s = fewest; s < errors_v2.size(); ++s) in_turn.push_back(static_cast<int>(s) + 1);
