@@ -17,7 +17,8 @@ using namespace flightwatt;
 
 using Json = nlohmann::ordered_json;
 
-Json summary(const flight::FlightSeries& series, const flight::Track& power, const std::vector<std::string>& warnings) {
+Json summary(const flight::LoadedFlight& loaded, const flight::Track& power) {
+    const auto& series = loaded.series;
     return {{"flight", series.flight},
             {"aircraft_id", series.aircraft_id},
             {"aircraft_name", series.aircraft_name},
@@ -26,8 +27,8 @@ Json summary(const flight::FlightSeries& series, const flight::Track& power, con
             {"start_s", power.empty() ? Json() : Json(power.time_s.front())},
             {"end_s", power.empty() ? Json() : Json(power.time_s.back())},
             {"usual_interval_s", power.empty() ? Json() : Json(flight::usual_interval_s(power.time_s))},
-            {"sources", sources_of(series)},
-            {"warnings", warnings}};
+            {"sources", loaded.sources},
+            {"warnings", loaded.warnings}};
 }
 
 int parse(const cli::StageCall& call) {
@@ -46,7 +47,7 @@ int parse(const cli::StageCall& call) {
                       rows});
     const auto power = power_track(series);
     if (call.json) {
-        cli::print(cli::json_text(summary(series, power, loaded.warnings)));
+        cli::print(cli::json_text(summary(loaded, power)));
         return cli::ok;
     }
     const auto samples =
@@ -55,7 +56,7 @@ int parse(const cli::StageCall& call) {
                                     power.time_s.front(), power.time_s.back(), flight::usual_interval_s(power.time_s));
     cli::note(call,
               fmt::format("{}: aircraft {} {}, {}", series.flight, series.aircraft_id, series.aircraft_name, samples));
-    for (const auto& [name, source] : sources_of(series)) {
+    for (const auto& [name, source] : loaded.sources) {
         cli::note(call, fmt::format("  {:<20} from {}", name, source));
     }
     return cli::ok;

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -72,6 +73,8 @@ class CsvWriter {
         add_row({cell(cells)...});
     }
     const std::string& text() const { return text_; }
+    /// What was written since the last call, for texts too large to hold.
+    std::string take() { return std::exchange(text_, {}); }
 
   private:
     std::string cell(double number) const;

@@ -48,7 +48,10 @@ inline double number_or_nan(std::string_view text) {
     return negative ? -magnitude : magnitude;
 }
 
-inline constexpr std::size_t longest_number = 32;
+/// How many characters a number's text has at most: "-1.7976931348623157e+308".
+inline constexpr std::size_t longest_number_text = 24;
+/// Room for it: whole words of memory are written, of which not all count.
+inline constexpr std::size_t longest_number = 48;
 
 /// Writes a finite number as fmt's "{}" does, in the shortest way that reads back as the same, and returns where it
 /// ends. `to` has room for `longest_number` characters. Quick for short decimals, as logs are made of.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -10,12 +11,23 @@
 #include <utility>
 #include <vector>
 
+#include <sched.h>
+
 namespace flightwatt {
 namespace {
 
-/// Counted once: the system is asked by reading a file.
+/// Those that the process may use: of a machine's cores a container, or taskset, may leave it one.
+std::size_t count_cores() {
+#if defined(__linux__)
+    cpu_set_t usable;
+    if (::sched_getaffinity(0, sizeof usable, &usable) == 0) return std::max(1, CPU_COUNT(&usable));
+#endif
+    return std::max(1U, std::thread::hardware_concurrency());
+}
+
+/// Counted once: the system is asked.
 std::size_t cores() {
-    static const std::size_t count = std::max(1U, std::thread::hardware_concurrency());
+    static const std::size_t count = count_cores();
     return count;
 }
 
@@ -62,6 +74,48 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
         work_on(is_shared);
     }
     if (failure) std::rethrow_exception(failure);
+}
+
+void for_each_in_order(std::size_t count, const std::function<void(std::size_t, std::size_t)>& make,
+                       const std::function<void(std::size_t, std::size_t)>& take, std::size_t most_threads) {
+    const auto threads = threads_for(count, most_threads);
+    std::atomic<std::size_t> next = 0;
+    std::mutex mutex;  // guards what follows, and is held by the one that takes
+    std::condition_variable taken;
+    std::size_t turn = 0;
+    bool has_failed = false;
+    const auto work_at = [&](std::size_t place) {
+        for (std::size_t i = next++; i < count; i = next++) {
+            std::exception_ptr failure;
+            try {
+                make(i, place);
+            } catch (...) {
+                failure = std::current_exception();  // it counts when its turn comes: the lowest one does
+            }
+            std::unique_lock lock(mutex);
+            taken.wait(lock, [&] { return turn == i || has_failed; });
+            if (has_failed) return;
+            has_failed = true;
+            if (failure) {
+                taken.notify_all();
+                std::rethrow_exception(failure);
+            }
+            try {
+                take(i, place);
+            } catch (...) {
+                taken.notify_all();
+                throw;
+            }
+            has_failed = false;
+            ++turn;
+            taken.notify_all();
+        }
+    };
+    for_each_in_parallel(threads, work_at, threads);
+}
+
+std::size_t threads_for(std::size_t count, std::size_t most_threads) {
+    return std::min(count, most_threads > 0 ? most_threads : cores());
 }
 
 }  // namespace flightwatt

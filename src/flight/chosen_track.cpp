@@ -1,6 +1,7 @@
 #include "flight/chosen_track.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/sources/device_check.h"
@@ -22,21 +23,26 @@ constexpr std::string_view power_device = "POWER_DEVICE";
 constexpr auto units_in_log = "units in the .log";
 constexpr auto any_source = [](const Track&) { return true; };
 
-/// A track as it is taken, and what of the log is not: samples that are left out, sources passed over.
-struct Choice {
-    Track track = {};
-    std::vector<std::string> said = {};
-};
+using Choice = TrackChoice;
+
+/// A copy of its own, where it had none.
+Track& to_change(Choice& choice) {
+    if (choice.logged != nullptr) choice.made = *std::exchange(choice.logged, nullptr);
+    return choice.made;
+}
 
 /// Leaves out what cannot be.
 Choice sound_choice(const FlightSeries& series, const Track& candidate) {
     const bool is_current = candidate.name == "current_a";
     auto sound = sound_track(candidate, {}, is_current ? dropout_throttle(series, candidate) : Track{});
-    Choice choice{std::move(sound.track), {}};
+    Choice choice;
+    if (sound.is_whole) choice.logged = &candidate;
+    choice.made = std::move(sound.track);
     if (!sound.left_out.empty()) choice.said.push_back(std::move(sound.left_out));
+    if (candidate.name != "voltage_v" && !is_current) return choice;
     // Where the message contradicts itself is said of its power.
-    if (candidate.name == "voltage_v" || is_current)
-        choice.track = without_times(std::move(choice.track), contradicted_times(series, candidate.source));
+    const auto contradicted_s = contradicted_times(series, candidate.source);
+    if (!contradicted_s.empty()) to_change(choice) = without_times(choice.track(), contradicted_s);
     return choice;
 }
 
@@ -45,16 +51,16 @@ Choice first_that_varies(const FlightSeries& series, std::string_view name, cons
     Choice constant;
     for (const auto& track : series.tracks) {
         if (track.name != name || track.empty() || !track.device.empty() || !accept(track)) continue;
-        if (is_constant(track) && !constant.track.empty()) continue;
+        if (is_constant(track) && !constant.track().empty()) continue;
         auto sound = sound_choice(series, track);
-        if (sound.track.empty()) {
+        if (sound.track().empty()) {
             constant.said.insert(constant.said.end(), sound.said.begin(), sound.said.end());
-        } else if (!is_constant(sound.track)) {
+        } else if (!is_constant(sound.track())) {
             sound.said.insert(sound.said.begin(), constant.said.begin(), constant.said.end());
             return sound;
-        } else if (constant.track.empty()) {
-            constant.track = std::move(sound.track);
-            constant.said.insert(constant.said.end(), sound.said.begin(), sound.said.end());
+        } else if (constant.track().empty()) {
+            sound.said.insert(sound.said.begin(), constant.said.begin(), constant.said.end());
+            constant = std::move(sound);
         }
     }
     return constant;
@@ -91,8 +97,8 @@ bool is_fraction(const Track& throttle, const FlightSeries& series) {
 
 /// In percent.
 void scale_fraction(const FlightSeries& series, Choice& throttle) {
-    auto& track = throttle.track;
-    if (track.empty() || !is_fraction(track, series)) return;
+    if (throttle.track().empty() || !is_fraction(throttle.track(), series)) return;
+    auto& track = to_change(throttle);
     const auto [least, most] = std::ranges::minmax(track.value);
     throttle.said.push_back(
         fmt::format("the throttle ({}) runs from {:.3g} to {:.3g}: it is taken for a fraction, "
@@ -104,10 +110,10 @@ void scale_fraction(const FlightSeries& series, Choice& throttle) {
 Choice throttle(const FlightSeries& series) {
     const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
     auto found = first_that_varies(series, "throttle_percent", [&](const Track& track) { return !is_thrust(track); });
-    if (found.track.empty()) {
+    if (found.track().empty()) {
         auto thrust = first_that_varies(series, "throttle_percent", is_thrust);
-        found.track = std::move(thrust.track);
-        std::ranges::move(thrust.said, std::back_inserter(found.said));
+        thrust.said.insert(thrust.said.begin(), found.said.begin(), found.said.end());
+        found = std::move(thrust);
     }
     scale_fraction(series, found);
     return found;
@@ -117,9 +123,10 @@ Choice throttle(const FlightSeries& series) {
 Choice current(const FlightSeries& series) {
     auto found = first_that_varies(series, "current_a");
     for (const std::string_view message : {std::string_view("ESC"), power_device}) {
-        if (!found.track.empty()) break;
+        if (!found.track().empty()) break;
         if (message == power_device && !own_voltages(series).empty()) continue;
-        found.track = sum_over_devices(series, "current_a", message).track;
+        found.logged = nullptr;
+        found.made = sum_over_devices(series, "current_a", message).track;
     }
     return found;
 }
@@ -127,10 +134,10 @@ Choice current(const FlightSeries& series) {
 /// Of circuits with voltages of their own none.
 Choice voltage(const FlightSeries& series) {
     auto found = first_that_varies(series, "voltage_v");
-    if (!found.track.source.starts_with(power_device)) return found;
+    if (!found.track().source.starts_with(power_device)) return found;
     auto reason = own_voltages(series);
     if (reason.empty()) return found;
-    return {{}, {std::move(reason)}};
+    return {.said = {std::move(reason)}};
 }
 
 Choice charge(const FlightSeries& series) {
@@ -138,31 +145,52 @@ Choice charge(const FlightSeries& series) {
     auto found = first_that_varies(series, "charge_ah", [&](const Track& track) {
         return exchanged ? track.source != "ENERGY.energy" : track.source != power_read_as_energy;
     });
-    if (found.track.source == power_read_as_energy) found.track.source = "ENERGY.energy";
+    if (found.track().source == power_read_as_energy) to_change(found).source = "ENERGY.energy";
     return found;
 }
 
-/// Any track but power, which has reasons of its own.
+Choice power(const FlightSeries& series) {
+    auto choice = choose_power(series);
+    return {.made = std::move(choice.power_w),
+            .said = std::move(choice.left_out),
+            .passed_over = std::move(choice.passed_over)};
+}
+
 Choice choose(const FlightSeries& series, std::string_view name) {
+    if (name == "power_w") return power(series);
     if (name == "current_a") return current(series);
     if (name == "voltage_v") return voltage(series);
     if (name == "charge_ah") return charge(series);
     if (name == "throttle_percent") return throttle(series);
     if (name == "ground_speed_m_per_s") return first_of(series, name);
     auto found = first_that_varies(series, name);
-    if (name == "airspeed_m_per_s" && is_constant(found.track)) found.track = {};
+    if (name == "airspeed_m_per_s" && is_constant(found.track())) return {.said = std::move(found.said)};
     return found;
 }
 
 }  // namespace
 
 Track chosen_track(const FlightSeries& series, std::string_view name) {
-    return name == "power_w" ? choose_power(series).power_w : choose(series, name).track;
+    auto choice = choose(series, name);
+    return std::move(to_change(choice));
 }
 
-const Track& ChosenTracks::operator[](std::string_view name) const {
+const TrackChoice& ChosenTracks::choice(std::string_view name) const {
     const auto made = made_.find(name);
-    return made != made_.end() ? made->second : made_.emplace(name, chosen_track(series_, name)).first->second;
+    return made != made_.end() ? made->second : made_.emplace(name, choose(series_, name)).first->second;
+}
+
+void ChosenTracks::make_all() const {
+    constexpr std::size_t few_samples = 100'000;  // are judged before another thread has begun
+    std::size_t samples = 0;
+    for (const auto& track : series_.tracks) samples += track.time_s.size();
+    std::vector<std::string> names;
+    std::ranges::copy_if(track_names(), std::back_inserter(names),
+                         [&](const std::string& name) { return !made_.contains(name); });
+    std::vector<TrackChoice> choices(names.size());
+    for_each_in_parallel(
+        names.size(), [&](std::size_t i) { choices[i] = choose(series_, names[i]); }, samples < few_samples ? 1 : 0);
+    for (std::size_t i = 0; i < names.size(); ++i) made_.emplace(names[i], std::move(choices[i]));
 }
 
 std::vector<double> chosen_at(const FlightSeries& series, std::string_view name, const std::vector<double>& time_s) {
@@ -170,11 +198,12 @@ std::vector<double> chosen_at(const FlightSeries& series, std::string_view name,
     return track.empty() ? std::vector<double>{} : resample(track, time_s);
 }
 
-std::map<std::string, std::string> sources_of(const FlightSeries& series) {
+std::map<std::string, std::string> sources_of(const FlightSeries& series) { return sources_of(ChosenTracks(series)); }
+
+std::map<std::string, std::string> sources_of(const ChosenTracks& tracks) {
     std::map<std::string, std::string> sources;
-    for (const auto& name : track_names()) {
-        if (const auto track = chosen_track(series, name); !track.empty()) sources[name] = track.source;
-    }
+    for (const auto& name : track_names())
+        if (const auto& track = tracks[name]; !track.empty()) sources[name] = track.source;
     return sources;
 }
 
@@ -185,7 +214,10 @@ std::optional<double> ground_altitude_m(const ChosenTracks& tracks) {
     return logged.empty() ? tracks.series().planned_ground_altitude_m : logged.value.back();
 }
 
-std::vector<std::string> warnings_of(const FlightSeries& series) {
+std::vector<std::string> warnings_of(const FlightSeries& series) { return warnings_of(ChosenTracks(series)); }
+
+std::vector<std::string> warnings_of(const ChosenTracks& tracks) {
+    const auto& series = tracks.series();
     std::vector<std::string> warnings;
     if (energy_and_power_are_exchanged(series)) {
         warnings.emplace_back("ENERGY holds its power before its energy: the two were exchanged");
@@ -202,19 +234,23 @@ std::vector<std::string> warnings_of(const FlightSeries& series) {
             "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: its current was computed "
             "from throttle, so a power model fitted to it is circular");
     }
-    const auto power = choose_power(series);
-    for (const auto& reason : power.passed_over) {
-        if (power.power_w.empty()) break;  // see why_no_power
-        warnings.push_back(fmt::format("{}: power is taken from {}", reason, power.power_w.source));
+    const auto& power_w = tracks["power_w"];
+    for (const auto& reason : tracks.choice("power_w").passed_over) {
+        if (power_w.empty()) break;  // see why_no_power
+        warnings.push_back(fmt::format("{}: power is taken from {}", reason, power_w.source));
     }
-    warnings.insert(warnings.end(), power.left_out.begin(), power.left_out.end());
+    const auto add_said = [&](const std::string& name) {
+        const auto& said = tracks.choice(name).said;
+        warnings.insert(warnings.end(), said.begin(), said.end());
+    };
+    add_said("power_w");
     for (const auto* message : {"ESC", "POWER_DEVICE"}) {
-        if (!power.power_w.source.starts_with(message)) continue;
+        if (!power_w.source.starts_with(message)) continue;
         for (auto& doubt : device_doubts(series, message)) warnings.push_back(std::move(doubt));
     }
     for (const auto& name : track_names()) {
         if (name == "power_w") continue;
-        for (auto& said : choose(series, name).said) warnings.push_back(std::move(said));
+        add_said(name);
     }
     for (const auto& skip : series.skipped) warnings.push_back(describe(skip));
     if (series.lacks_log && series.assumed_definitions.empty()) warnings.emplace_back("no .log beside it");

@@ -25,17 +25,30 @@ Track chosen_track(const FlightSeries& series, std::string_view name);
 /// Empty if the log has none.
 std::vector<double> chosen_at(const FlightSeries& series, std::string_view name, const std::vector<double>& time_s);
 
-/// The chosen tracks of a series, each made when it is first asked for. The series must outlive it.
+/// A track as it is chosen, and what of the log is not used for it.
+struct TrackChoice {
+    const Track* logged = nullptr;              ///< one of the series' own, where it is taken as it stands
+    Track made = {};                            ///< else
+    std::vector<std::string> said = {};         ///< samples that are left out, sources that cannot be
+    std::vector<std::string> passed_over = {};  ///< sources of power that are not taken, and why
+
+    const Track& track() const { return logged != nullptr ? *logged : made; }
+};
+
+/// The chosen tracks of a series, each made when it is first asked for. The series must outlive it, and stay as it is.
 class ChosenTracks {
   public:
     explicit ChosenTracks(const FlightSeries& series) : series_(series) {}
 
     const FlightSeries& series() const { return series_; }
-    const Track& operator[](std::string_view name) const;
+    const Track& operator[](std::string_view name) const { return choice(name).track(); }
+    const TrackChoice& choice(std::string_view name) const;
+    /// Makes all that are not made yet, of a long series on all cores: for who will ask for most of them.
+    void make_all() const;
 
   private:
     const FlightSeries& series_;
-    mutable std::map<std::string, Track, std::less<>> made_;
+    mutable std::map<std::string, TrackChoice, std::less<>> made_;
 };
 
 /// The power samples, whose clock most programs compute on.
@@ -43,12 +56,14 @@ inline Track power_track(const FlightSeries& series) { return chosen_track(serie
 
 /// Where each chosen track came from, by name.
 std::map<std::string, std::string> sources_of(const FlightSeries& series);
+std::map<std::string, std::string> sources_of(const ChosenTracks& tracks);
 
 /// Above sea level, from the log's NAVIGATION_REF, else as planned; 0 where altitudes are above the ground.
 std::optional<double> ground_altitude_m(const ChosenTracks& tracks);
 
 /// What a user should know: assumed layouts, sources passed over, samples left out, skipped lines.
 std::vector<std::string> warnings_of(const FlightSeries& series);
+std::vector<std::string> warnings_of(const ChosenTracks& tracks);
 
 /// Why no power was measured: what was looked at and what is wrong with it, "ENERGY.power is 0 throughout; ...". Empty
 /// if power was measured, or where nothing tells of it.

@@ -34,11 +34,11 @@ void cut_skipped(std::vector<telemetry::SkippedLines>& skipped, double until_s) 
 
 }  // namespace
 
-Track make_track(const std::vector<double>& time_s, const std::vector<double>& values, Merge merge) {
+Track make_track(const std::vector<double>& time_s, std::vector<double> values, Merge merge) {
     Track track;
     if (is_track(time_s, values)) {
         track.time_s = time_s;
-        track.value = values;
+        track.value = std::move(values);
         return track;
     }
     const auto finite =

@@ -32,7 +32,7 @@ enum class Merge {
 
 /// A track, without a name, from raw rows: values that are not finite are dropped, times sorted, equal times merged.
 /// `time_s` and `values` are equally long.
-Track make_track(const std::vector<double>& time_s, const std::vector<double>& values, Merge merge);
+Track make_track(const std::vector<double>& time_s, std::vector<double> values, Merge merge);
 
 /// Linear between the track's points, its first and last value outside. The track must not be empty.
 double value_at(const Track& track, double time_s);

@@ -59,7 +59,7 @@ void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidate
 /// has no altitude either.
 FlightSeries read_series(const FlightFile& file, const std::optional<std::string>& aircraft_id, bool power_required) {
     auto series = choose_aircraft(read_candidates(file, aircraft_id));
-    const bool needs_power = power_required || chosen_track(series, "altitude_m").time_s.size() < 2;
+    const bool needs_power = power_required || ChosenTracks(series)["altitude_m"].time_s.size() < least_altitudes;
     if (series.clock_restart || (needs_power && power_track(series).empty())) require_power(series, census(file));
     return series;
 }
@@ -71,8 +71,9 @@ struct Sighting {
 };
 
 Sighting look_at(const FlightSeries& series) {
-    if (chosen_track(series, "altitude_m").time_s.size() < 2) return {false, "no altitude"};
-    const auto phases = segment(series);
+    const ChosenTracks tracks(series);
+    if (tracks["altitude_m"].time_s.size() < 2) return {false, "no altitude"};
+    const auto phases = segment(tracks);
     if (!phases.sorties.empty()) return {true, ""};
     return {false, phases.ground_events.empty() ? "stood still" : phases.ground_events.front().what};
 }
@@ -88,17 +89,18 @@ void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::str
 std::string parenthesised(const std::string& text) { return text.empty() ? "" : fmt::format(" ({})", text); }
 
 /// Nobody flies so often in one log: a log of a day with twenty sorties at 10 Hz has 17 million samples.
-void refuse_endless_work(const FlightSeries& series, const FlightPhases& phases) {
+void refuse_endless_work(const ChosenTracks& tracks, const FlightPhases& phases) {
     constexpr std::size_t most_work = 100'000'000;
-    const auto samples = power_track(series).time_s.size();
+    const auto samples = tracks["power_w"].time_s.size();
     if (phases.sorties.size() * samples <= most_work) return;
-    throw InputError({series.file}, fmt::format("{} sorties in {} samples of power", phases.sorties.size(), samples),
+    throw InputError({tracks.series().file},
+                     fmt::format("{} sorties in {} samples of power", phases.sorties.size(), samples),
                      "is it the log of one flight? Split it, or choose one with --sortie N");
 }
 
-std::vector<std::string> all_warnings(const FlightSeries& series, const FlightPhases& phases,
+std::vector<std::string> all_warnings(const ChosenTracks& tracks, const FlightPhases& phases,
                                       const Judgement& judgement) {
-    auto warnings = warnings_of(series);
+    auto warnings = warnings_of(tracks);
     if (!judgement.lacks_power.empty())
         warnings.push_back(judgement.lacks_power + ": the energy of its phases is not known");
     for (const auto* more : {&phases.warnings, &judgement.power.warnings})
@@ -142,7 +144,7 @@ std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
     }
     std::vector<FlightSeries> candidates;
     for (const auto& sender : senders) {
-        candidates.push_back(flight_series(log, sender));
+        candidates.push_back(take_flight_series(log, sender));
         candidates.back().skipped = skipped;
     }
     return candidates;
@@ -176,7 +178,7 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
             return candidates;
         }
         if (std::find(ids.begin(), ids.end(), *aircraft_id) != ids.end()) {
-            candidates.push_back(flight_series(log, *aircraft_id));
+            candidates.push_back(take_flight_series(log, *aircraft_id));
             name_synthetic(file, candidates);
             return candidates;
         }
@@ -263,7 +265,7 @@ Judgement judge(const ChosenTracks& tracks, const FlightPhases& phases, const Se
     if (!has_power) judgement.lacks_power = "no measured power" + parenthesised(why_no_power(series));
     judgement.power.origin = series.current_origin;
     if (has_altitude && has_power) judgement.power = check_power_record(tracks, phases, options);
-    judgement.warnings = all_warnings(series, phases, judgement);
+    judgement.warnings = all_warnings(tracks, phases, judgement);
     return judgement;
 }
 
@@ -277,17 +279,21 @@ LoadedFlight examine_flight(FlightSeries series, const LoadOptions& options) {
     Judgement judgement;
     {
         const ChosenTracks tracks(series);
+        tracks.make_all();
         const bool has_altitude = tracks["altitude_m"].time_s.size() >= least_altitudes;
         if (options.power_required || !has_altitude || series.clock_restart) require_power(series);
         if (options.flight_required || has_altitude) loaded.phases = segment(tracks, options.segmentation);
         if (options.flight_required) require_sortie(series, loaded.phases, series.file);
         if (options.sortie) restrict_to_sortie(loaded.phases, *options.sortie, series.file);
-        if (options.flight_required) refuse_endless_work(series, loaded.phases);
+        if (options.flight_required) refuse_endless_work(tracks, loaded.phases);
         judgement = judge(tracks, loaded.phases, options.segmentation);
+        loaded.sources = sources_of(tracks);
     }
     if (options.correct_idle_offset && judgement.lacks_power.empty()) {
         correct_idle_offset(series, judgement.power.idle);
-        judgement.warnings = all_warnings(series, loaded.phases, judgement);
+        const ChosenTracks tracks(series);
+        judgement.warnings = all_warnings(tracks, loaded.phases, judgement);
+        loaded.sources = sources_of(tracks);
     }
     loaded.exclusion = exclusion_of(series.flight, judgement, options);
     loaded.power = std::move(judgement.power);

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -36,10 +37,11 @@ struct LoadOptions {
 struct LoadedFlight {
     FlightSeries series;  ///< its idle offset is corrected if that was asked for
     FlightPhases phases;
-    PowerReport power;                  ///< as measured, before any correction
-    std::string lacks_power = {};       ///< why no power was measured; empty if it was
-    std::string exclusion = {};         ///< why the flight is not to be used; empty if it is
-    std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
+    PowerReport power;                                ///< as measured, before any correction
+    std::string lacks_power = {};                     ///< why no power was measured; empty if it was
+    std::string exclusion = {};                       ///< why the flight is not to be used; empty if it is
+    std::vector<std::string> warnings;                ///< of the series, the segmentation and the power
+    std::map<std::string, std::string> sources = {};  ///< where each chosen track came from, by name
 };
 
 /// A log, of text or binary, with its .log, or a series CSV, in memory: mapped once for all who read it. A log that has

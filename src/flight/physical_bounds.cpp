@@ -26,6 +26,8 @@ constexpr std::array bounds_by_name{NamedBounds{"altitude_m", {-500.0, 2e4}},
                                     NamedBounds{"climb_m_per_s", {-300.0, 300.0}},
                                     NamedBounds{"air_temperature_c", {-80.0, 100.0}}};
 
+bool is_within(const PhysicalBounds& bounds, double value) { return value >= bounds.low && value <= bounds.high; }
+
 }  // namespace
 
 std::optional<PhysicalBounds> physical_bounds(std::string_view track_name) {
@@ -33,16 +35,21 @@ std::optional<PhysicalBounds> physical_bounds(std::string_view track_name) {
     return found == bounds_by_name.end() ? std::nullopt : std::optional(found->bounds);
 }
 
-Track within_bounds(const Track& track) {
+bool is_within_bounds(const Track& track) {
     const auto bounds = physical_bounds(track.name);
-    const auto is_within = [&](double value) { return value >= bounds->low && value <= bounds->high; };
-    if (!bounds || std::ranges::all_of(track.value, is_within)) return track;
+    return !bounds || std::ranges::all_of(track.value, [&](double value) { return is_within(*bounds, value); });
+}
+
+Track within_bounds(const Track& track) {
+    if (is_within_bounds(track)) return track;
+    const auto bounds = physical_bounds(track.name).value();
+    const auto is_possible = [&](double value) { return is_within(bounds, value); };
     Track kept{track.name, track.source, track.device, track.since_s, {}, {}};
     constexpr double most_beyond = 0.1;
-    const auto beyond = track.value.size() - static_cast<std::size_t>(std::ranges::count_if(track.value, is_within));
+    const auto beyond = track.value.size() - static_cast<std::size_t>(std::ranges::count_if(track.value, is_possible));
     if (static_cast<double>(beyond) > most_beyond * static_cast<double>(track.value.size())) return kept;
     for (std::size_t i = 0; i < track.value.size(); ++i) {
-        if (!is_within(track.value[i])) continue;
+        if (!is_possible(track.value[i])) continue;
         kept.time_s.push_back(track.time_s[i]);
         kept.value.push_back(track.value[i]);
     }

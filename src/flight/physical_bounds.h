@@ -22,4 +22,7 @@ std::optional<PhysicalBounds> physical_bounds(std::string_view track_name);
 /// layout is another one, and nothing of the track is to be believed.
 Track within_bounds(const Track& track);
 
+/// Whether that leaves all of it.
+bool is_within_bounds(const Track& track);
+
 }  // namespace flightwatt::flight

@@ -1,11 +1,15 @@
 #include "flight/telemetry_series.h"
 
+#include "base/parallel.h"
 #include "base/units.h"
 #include "flight/sources/clock_check.h"
 #include "flight/sources/made_tracks.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
+#include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -86,16 +90,55 @@ std::size_t place_of(const Track& track) {
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), track.name) - names.begin());
 }
 
-/// Every candidate of every track that the sender's messages tell, in the order of track_names() and of preference.
-std::vector<Track> logged_tracks(const telemetry::SenderLog& sender, bool definitions_assumed) {
-    std::vector<Track> tracks;
-    for (const auto& [name, message, field, quantity, merge] : field_tracks()) {
-        const auto* table = sender.table(message);
-        const auto* column = table == nullptr ? nullptr : table->column(field);
-        if (column == nullptr || (quantity && column->quantity != quantity)) continue;
-        tracks.push_back(as_track(name, fmt::format("{}.{}", message, field), *table, column->values, merge));
+/// A short log is read before another thread has begun.
+std::size_t threads_worth(const telemetry::SenderLog& sender) {
+    constexpr std::size_t few_rows = 100'000;
+    std::size_t rows = 0;
+    for (const auto& table : sender.tables) rows += table.time_s.size();
+    return rows < few_rows ? 1 : 0;
+}
+
+/// A field that the sender's log has, for a track.
+template <typename Table, typename Column>
+struct LoggedField {
+    const FieldTrack* wanted;
+    Table* table;
+    Column* column;
+};
+
+template <typename Sender>
+auto logged_fields(Sender& sender) {
+    using Table = std::remove_reference_t<decltype(sender.tables.front())>;
+    using Column = std::remove_reference_t<decltype(sender.tables.front().columns.front())>;
+    std::vector<LoggedField<Table, Column>> found;
+    for (const auto& wanted : field_tracks()) {
+        const auto table = std::ranges::find(sender.tables, wanted.message, &telemetry::MessageTable::message);
+        if (table == sender.tables.end()) continue;
+        const auto column = std::ranges::find(table->columns, wanted.field, &telemetry::Column::field);
+        if (column == table->columns.end() || (wanted.quantity && column->quantity != wanted.quantity)) continue;
+        found.push_back({&wanted, &*table, &*column});
     }
-    add_made_tracks(tracks, sender, definitions_assumed);
+    return found;
+}
+
+/// Every candidate of every track that the sender's messages tell, in the order of track_names() and of preference. The
+/// columns of a sender that is not const go into the tracks: a field is at most one of them as it stands, since its
+/// quantity says which.
+template <typename Sender>
+std::vector<Track> logged_tracks(Sender& sender, bool definitions_assumed) {
+    std::vector<Track> made;
+    add_made_tracks(made, sender, definitions_assumed);
+    const auto fields = logged_fields(sender);
+    std::vector<Track> tracks(fields.size());
+    for_each_in_parallel(
+        fields.size(),
+        [&](std::size_t i) {
+            const auto& [wanted, table, column] = fields[i];
+            tracks[i] = as_track(wanted->name, fmt::format("{}.{}", wanted->message, wanted->field), *table,
+                                 std::move(column->values), wanted->merge);
+        },
+        threads_worth(sender));
+    std::ranges::move(made, std::back_inserter(tracks));
     std::ranges::stable_sort(tracks, {}, place_of);
     return tracks;
 }
@@ -114,6 +157,21 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
     series.block_names = aircraft.block_names;
     series.planned_ground_altitude_m = aircraft.ground_altitude_m;
     series.current_origin = aircraft.current_origin;
+}
+
+FlightSeries series_without_tracks(const telemetry::TelemetryLog& log, const std::string& aircraft_id) {
+    FlightSeries series;
+    series.file = log.data_file.string();
+    series.flight = log.flight;
+    series.aircraft_id = aircraft_id;
+    add_configuration(series, log);
+    return series;
+}
+
+template <typename Sender>
+void add_tracks(FlightSeries& series, Sender& sender) {
+    series.clock_restart = clock_restart_in(sender);
+    series.tracks = logged_tracks(sender, series.lacks_log);
 }
 
 }  // namespace
@@ -153,16 +211,16 @@ std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log) {
 }
 
 FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id) {
-    FlightSeries series;
-    series.file = log.data_file.string();
-    series.flight = log.flight;
-    series.aircraft_id = aircraft_id;
-    add_configuration(series, log);
-    const auto sender = std::find_if(log.senders.begin(), log.senders.end(),
-                                     [&](const telemetry::SenderLog& s) { return s.id == aircraft_id; });
-    if (sender == log.senders.end()) return series;
-    series.tracks = logged_tracks(*sender, !log.configuration);
-    series.clock_restart = clock_restart_in(*sender);
+    auto series = series_without_tracks(log, aircraft_id);
+    const auto sender = std::ranges::find(log.senders, aircraft_id, &telemetry::SenderLog::id);
+    if (sender != log.senders.end()) add_tracks(series, *sender);
+    return series;
+}
+
+FlightSeries take_flight_series(telemetry::TelemetryLog& log, const std::string& aircraft_id) {
+    auto series = series_without_tracks(log, aircraft_id);
+    const auto sender = std::ranges::find(log.senders, aircraft_id, &telemetry::SenderLog::id);
+    if (sender != log.senders.end()) add_tracks(series, *sender);
     return series;
 }
 

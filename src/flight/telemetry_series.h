@@ -17,4 +17,7 @@ std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log);
 /// What the log tells of one aircraft; of one that sent nothing, no tracks. Judges nothing: see require_power.
 FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id);
 
+/// The same without a copy: the columns that it can use are empty in the log afterwards.
+FlightSeries take_flight_series(telemetry::TelemetryLog& log, const std::string& aircraft_id);
+
 }  // namespace flightwatt::flight

@@ -91,6 +91,15 @@ TEST(WriteNumber, WritesWhatFmtWritesOfDecimalsAndTheirNeighbours) {
     }
 }
 
+TEST(WriteNumber, WritesWhatFmtWritesOfAnyDigits) {
+    std::mt19937_64 random(11);
+    for (int i = 0; i < 200'000; ++i) {
+        const double value = std::ldexp(static_cast<double>(random() >> 11), static_cast<int>(random() % 72) - 68);
+        for (const double near : {value, -value, value * 57.29577951308232, std::floor(value)})
+            ASSERT_EQ(written(near), fmt::format("{}", near));
+    }
+}
+
 TEST(ParseUnsigned, ReadsWholeIntegersOnly) {
     EXPECT_EQ(parse_unsigned("42"), 42u);
     EXPECT_FALSE(parse_unsigned("-1").has_value());

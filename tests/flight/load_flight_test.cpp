@@ -1,9 +1,12 @@
 #include "flight/load_flight.h"
 
 #include "base/atomic_file.h"
+#include "base/number.h"
+#include "base/parallel.h"
 #include "flight/chosen_track.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"
+#include "flight/telemetry_series.h"
 #include "helpers/binary_frames.h"
 #include "helpers/flown_points.h"
 #include "helpers/rejected.h"
@@ -12,6 +15,8 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -195,6 +200,46 @@ TEST(FlightFile, TakesNamedDefinitionsForADamagedLog) {
     }
     write_file_atomically(made.card.parent_path() / "x.log", definitions);
     EXPECT_EQ(load_flight(made.card, options).warnings, load_flight(made.card).warnings);
+}
+
+/// The sample flight again and again, its clock going on.
+std::string many_flights(std::size_t count) {
+    const telemetry::DataFile data(test::source_dir() / "logs" / "opterra_synthetic_01.data");
+    std::string text;
+    for (std::size_t k = 0; k < count; ++k) {
+        for (std::string_view rest = data.text(); !rest.empty();) {
+            const auto line = rest.substr(0, rest.find('\n') + 1);
+            const auto blank = line.find(' ');
+            text += fmt::format("{:.3f}", number_or_nan(line.substr(0, blank)) + 1000.0 * static_cast<double>(k));
+            text += line.substr(blank);
+            rest.remove_prefix(line.size());
+        }
+    }
+    return text;
+}
+
+TEST(LoadFlight, OfManyFlightsIsTheSameOnOneThread) {
+    constexpr std::size_t flights = 14;  // more rows than are left to one thread
+    const auto text = many_flights(flights);
+    const auto load = [&] {
+        auto log = telemetry::parse_telemetry(text, "x.data", std::nullopt, flight_messages());
+        const auto copied = flight_series(log, "7");
+        auto series = take_flight_series(log, "7");
+        EXPECT_TRUE(series == copied);
+        return examine_flight(std::move(series), {});
+    };
+    const auto on_all = load();
+    LoadedFlight on_one;
+    for_each_in_parallel(
+        1, [&](std::size_t) { on_one = load(); }, 1);
+    EXPECT_EQ(on_all.phases.sorties.size(), flights);
+    EXPECT_TRUE(on_all.series == on_one.series);
+    EXPECT_EQ(on_all.warnings, on_one.warnings);
+    EXPECT_EQ(on_all.sources, on_one.sources);
+    EXPECT_EQ(on_all.sources, sources_of(on_all.series));
+    const ChosenTracks tracks(on_all.series);
+    tracks.make_all();
+    for (const auto& name : track_names()) EXPECT_TRUE(tracks[name] == chosen_track(on_all.series, name)) << name;
 }
 
 }  // namespace

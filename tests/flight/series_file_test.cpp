@@ -7,6 +7,12 @@
 #include "helpers/cut_logs.h"
 #include "helpers/rejected.h"
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,6 +58,57 @@ TEST(SeriesFile, KeepsEveryTrackOnItsOwnClock) {
     EXPECT_THAT(text, HasSubstr("\n1.5,100,20,,"));
     EXPECT_TRUE(parse_series_csv(text, "x.data") == series);
     EXPECT_EQ(parse_series_csv(text, "renamed.csv").flight, "x");
+}
+
+/// Tracks on clocks of their own that meet now and then, with values that come again, of few digits and of many.
+FlightSeries long_series() {
+    FlightSeries series;
+    series.flight = "x";
+    std::mt19937 random(3);
+    for (std::size_t t = 0; t < 40; ++t) {
+        Track track{.name = track_names().at(t % 20), .source = "series CSV"};
+        if (t % 3 == 1) track.time_s = series.tracks.back().time_s;
+        const bool has_clock = !track.time_s.empty();
+        const auto samples = has_clock ? track.time_s.size() : 200 + 1500 * (t % 7);
+        double time_s = 100.0 * static_cast<double>(t % 5);
+        for (std::size_t i = 0; i < samples; ++i) {
+            time_s += 0.1 * static_cast<double>(1 + random() % 9);
+            if (!has_clock) track.time_s.push_back(std::round(time_s * 10.0) / 10.0);
+            const auto value = static_cast<double>(random() % 3 == 0 ? 7 : random() % 1'000'000);
+            track.value.push_back(t % 2 == 0 ? value / 1000.0 : -value / 77.0);
+        }
+        series.tracks.push_back(std::move(track));
+    }
+    return series;
+}
+
+/// One row after the other, one cell after the other.
+std::string rows_of(const std::vector<Track>& tracks) {
+    std::set<double> times_s;
+    for (const auto& track : tracks) times_s.insert(track.time_s.begin(), track.time_s.end());
+    std::string text;
+    for (const double time_s : times_s) {
+        text += fmt::format("{}", time_s);
+        for (const auto& track : tracks) {
+            const auto at = std::ranges::lower_bound(track.time_s, time_s) - track.time_s.begin();
+            const auto i = static_cast<std::size_t>(at);
+            const bool has_value = i < track.time_s.size() && track.time_s[i] == time_s;
+            text += has_value ? fmt::format(",{}", track.value[i]) : ",";
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+TEST(SeriesFile, HasTheSameRowsOnAnyNumberOfThreads) {
+    const auto series = long_series();
+    const auto expected = rows_of(series.tracks);
+    for (const std::size_t threads : {1U, 2U, 3U, 8U}) {
+        std::string text;
+        write_csv(
+            series, [&](std::string_view piece) { text += piece; }, threads);
+        EXPECT_TRUE(text.ends_with("\n" + expected)) << threads << " threads";
+    }
 }
 
 TEST(SeriesFile, KeepsDevicesApart) {

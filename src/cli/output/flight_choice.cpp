@@ -96,8 +96,8 @@ std::string why_left_out(const FlightChoice& choice, const std::string& flight) 
 std::string why_batch_left_out(const std::optional<batch::BatchFit>& fit, const std::string& flight) {
     if (!fit) return "";
     if (fit->excluded.contains(flight)) return "its batch was told to --exclude it";
-    const auto copy = fit->copies.find(flight);
-    return copy == fit->copies.end() ? "" : "its batch found that it is " + copy->second + " under another name";
+    const auto* copy = batch::used_instead_of(flight, fit->repeated);
+    return copy == nullptr ? "" : "its batch found that it is " + *copy + " under another name";
 }
 
 /// A flight of a batch.

@@ -1,5 +1,6 @@
 #include "flight/sources/made_tracks.h"
 
+#include "base/parallel.h"
 #include "base/units.h"
 #include "flight/sources/device_sum.h"
 #include "flight/sources/power_source.h"
@@ -123,7 +124,7 @@ void add_made(std::vector<Track>& tracks, const SenderLog& sender, const MadeTra
         for (std::size_t c = 0; c < columns.size(); ++c) row[c] = columns[c]->values[i];
         values[i] = made.make(row);
     }
-    tracks.push_back(as_track(made.name, made.source, *table, values, Merge::mean));
+    tracks.push_back(as_track(made.name, made.source, *table, std::move(values), Merge::mean));
 }
 
 /// Latitude and longitude from the same series, which takes long.
@@ -134,15 +135,21 @@ void add_utm_position(std::vector<Track>& tracks, const SenderLog& sender) {
     const auto* north = table->column("utm_north");
     const auto* zone = table->column("utm_zone");
     if (east == nullptr || north == nullptr || zone == nullptr) return;
-    std::vector<double> latitude_deg(table->time_s.size());
-    std::vector<double> longitude_deg(table->time_s.size());
-    for (std::size_t i = 0; i < latitude_deg.size(); ++i) {
-        const auto position = position_of_utm(east->values[i], north->values[i], zone->values[i]);
-        latitude_deg[i] = position.latitude_deg;
-        longitude_deg[i] = position.longitude_deg;
-    }
-    tracks.push_back(as_track("latitude_deg", "GPS.utm", *table, latitude_deg, Merge::mean));
-    tracks.push_back(as_track("longitude_deg", "GPS.utm", *table, longitude_deg, Merge::mean));
+    const auto rows = table->time_s.size();
+    std::vector<double> latitude_deg(rows);
+    std::vector<double> longitude_deg(rows);
+    constexpr std::size_t rows_at_once = 10'000;
+    const auto convert = [&](std::size_t part) {
+        const auto end = std::min((part + 1) * rows_at_once, rows);
+        for (auto i = part * rows_at_once; i < end; ++i) {
+            const auto position = position_of_utm(east->values[i], north->values[i], zone->values[i]);
+            latitude_deg[i] = position.latitude_deg;
+            longitude_deg[i] = position.longitude_deg;
+        }
+    };
+    for_each_in_parallel((rows + rows_at_once - 1) / rows_at_once, convert);
+    tracks.push_back(as_track("latitude_deg", "GPS.utm", *table, std::move(latitude_deg), Merge::mean));
+    tracks.push_back(as_track("longitude_deg", "GPS.utm", *table, std::move(longitude_deg), Merge::mean));
 }
 
 /// The first of `fields` that the table has with the given quantity; nullptr if it has none.
@@ -194,8 +201,8 @@ void add_exchanged(std::vector<Track>& tracks, const SenderLog& sender) {
     for (auto& value : watts) value *= raw_per_ah;
     std::vector<double> ampere_hours = power->values;
     for (auto& value : ampere_hours) value /= raw_per_ah;
-    tracks.push_back(as_track("power_w", energy_read_as_power, *table, watts, Merge::mean));
-    tracks.push_back(as_track("charge_ah", power_read_as_energy, *table, ampere_hours, Merge::latest));
+    tracks.push_back(as_track("power_w", energy_read_as_power, *table, std::move(watts), Merge::mean));
+    tracks.push_back(as_track("charge_ah", power_read_as_energy, *table, std::move(ampere_hours), Merge::latest));
 }
 
 /// One message that several devices send, told apart by the values of the id fields that it has.
@@ -222,7 +229,7 @@ void add_device(std::vector<Track>& tracks, const std::string& id, const Track& 
         values[report].push_back(value);
     }
     for (std::size_t r = 0; r < reports.size(); ++r) {
-        tracks.push_back(as_track(as.name, as.source, reports[r], values[r], Merge::mean));
+        tracks.push_back(as_track(as.name, as.source, reports[r], std::move(values[r]), Merge::mean));
         tracks.back().device = r == 0 ? id : fmt::format("{}{}{}", id, report_mark, r + 1);
     }
 }
@@ -263,11 +270,12 @@ void add_device_message(std::vector<Track>& tracks, const MessageTable* table,
 }  // namespace
 
 Track as_track(const std::string& name, const std::string& source, const MessageTable& table,
-               const std::vector<double>& values, Merge merge) {
-    auto track = make_track(table.time_s, values, merge);
+               std::vector<double> values, Merge merge) {
+    auto track = make_track(table.time_s, std::move(values), merge);
     track.name = name;
     track.source = source;
-    track.since_s = *std::min_element(table.time_s.begin(), table.time_s.end());
+    const bool is_whole = track.time_s.size() == table.time_s.size();  // in the order of time
+    track.since_s = is_whole ? track.time_s.front() : *std::ranges::min_element(table.time_s);
     return track;
 }
 
@@ -277,8 +285,8 @@ void add_made_tracks(std::vector<Track>& tracks, const SenderLog& sender, bool d
     for (const auto& made : made_tracks()) add_made(tracks, sender, made);
     add_utm_position(tracks, sender);
     if (const auto* takeoff = sender.table("TAKEOFF"); takeoff != nullptr && !takeoff->empty()) {
-        const std::vector<double> ones(takeoff->time_s.size(), 1.0);
-        tracks.push_back(as_track("takeoff", "TAKEOFF", *takeoff, ones, Merge::latest));
+        std::vector<double> ones(takeoff->time_s.size(), 1.0);
+        tracks.push_back(as_track("takeoff", "TAKEOFF", *takeoff, std::move(ones), Merge::latest));
     }
     add_device_message(tracks, sender.table("ESC"), {"node_id", "motor_id"});
     add_device_message(tracks, sender.table("POWER_DEVICE"), {"node_id", "circuit"});

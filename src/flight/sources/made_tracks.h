@@ -10,7 +10,7 @@ namespace flightwatt::flight {
 
 /// A candidate of a track from raw values at the times of a table, which has rows.
 Track as_track(const std::string& name, const std::string& source, const telemetry::MessageTable& table,
-               const std::vector<double>& values, Merge merge);
+               std::vector<double> values, Merge merge);
 
 /// Adds the candidates that are made of several fields, or of a field's other reading: power as voltage times
 /// current, speed, wind and position of their components, a track each of every motor (ESC) and circuit

@@ -95,12 +95,12 @@ bool measures_something(const Track& power) {
 bool take(const FlightSeries& series, const Track& candidate, PowerChoice& choice,
           const std::vector<double>& contradicted_s = {}) {
     auto sound = sound_track(candidate, contradicted_s, dropout_throttle(series, candidate));
-    if (measures_something(sound.track)) {
-        choice.power_w = std::move(sound.track);
+    if (measures_something(sound.of(candidate))) {
+        choice.power_w = sound.take(candidate);
         if (!sound.left_out.empty()) choice.left_out.push_back(std::move(sound.left_out));
         return true;
     }
-    if (sound.track.empty() && !sound.left_out.empty()) {
+    if (sound.of(candidate).empty() && !sound.left_out.empty()) {
         choice.passed_over.push_back(std::move(sound.left_out));
         return false;
     }
@@ -154,7 +154,7 @@ PowerChoice choose_power(const FlightSeries& series) {
     if (const auto* plain = find_plain(series, "power_w")) {
         // Believed even where it is 0 throughout.
         auto sound = sound_track(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
-        choice.power_w = std::move(sound.track);
+        choice.power_w = sound.take(*plain);
         if (!sound.left_out.empty()) choice.left_out.push_back(std::move(sound.left_out));
         return choice;
     }

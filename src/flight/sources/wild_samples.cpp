@@ -167,9 +167,11 @@ Track without_times(Track track, const std::vector<double>& times_s) {
 }
 
 SoundTrack sound_track(const Track& candidate, const std::vector<double>& contradicted_s, const Track& throttle) {
-    SoundTrack sound{within_bounds(candidate), ""};
+    SoundTrack sound;
+    sound.is_whole = is_within_bounds(candidate);
+    if (!sound.is_whole) sound.track = within_bounds(candidate);
     const auto all = candidate.value.size();
-    if (sound.track.empty() && all > 0) {
+    if (sound.of(candidate).empty() && all > 0) {
         const auto bounds = physical_bounds(candidate.name).value();
         sound.left_out = fmt::format("{} of {} is mostly beyond {:g} to {:g}", candidate.name, candidate.source,
                                      bounds.low, bounds.high);
@@ -178,19 +180,21 @@ SoundTrack sound_track(const Track& candidate, const std::vector<double>& contra
     std::vector<std::string> reasons;
     std::size_t left = all;
     const auto note = [&](const char* reason) {
-        const auto now = sound.track.value.size();
+        const auto now = sound.of(candidate).value.size();
         if (now < left) reasons.push_back(fmt::format("{} {}", left - now, reason));
         left = now;
     };
+    const auto leave_out = [&](const std::vector<double>& times_s, const char* reason) {
+        if (times_s.empty()) return;
+        sound.track = without_times(sound.take(candidate), times_s);
+        sound.is_whole = false;
+        note(reason);
+    };
     note("beyond what can be");
-    sound.track = without_times(std::move(sound.track), contradicted_s);
-    note("where power is not voltage times current");
-    const auto dropouts_s = dropout_times(sound.track, throttle);
-    sound.track = without_times(std::move(sound.track), dropouts_s);
-    note("at 0 for up to three samples with the throttle open");
-    const auto spikes_s = spike_times(sound.track);
-    sound.track = without_times(std::move(sound.track), spikes_s);
-    note(is_counter(candidate) ? "out of the counter's order" : "far beyond the samples beside");
+    leave_out(contradicted_s, "where power is not voltage times current");
+    leave_out(dropout_times(sound.of(candidate), throttle), "at 0 for up to three samples with the throttle open");
+    leave_out(spike_times(sound.of(candidate)),
+              is_counter(candidate) ? "out of the counter's order" : "far beyond the samples beside");
     if (!reasons.empty()) {
         sound.left_out = fmt::format("{} of {} samples of {} ({}) are left out: {}", all - left, all, candidate.name,
                                      candidate.source, fmt::join(reasons, ", "));

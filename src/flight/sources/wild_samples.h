@@ -3,6 +3,7 @@
 #include "flight/flight_series.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flightwatt::flight {
@@ -28,8 +29,12 @@ Track without_times(Track track, const std::vector<double>& times_s);
 
 /// A candidate without what cannot be.
 struct SoundTrack {
-    Track track;           ///< empty if nothing of it is to be believed
-    std::string left_out;  ///< "3 of 628 samples of power_w (ENERGY.power) are left out: ..."; empty if none is
+    Track track = {};       ///< empty if nothing of it is to be believed
+    bool is_whole = false;  ///< nothing is left out: the candidate itself counts, of which there is no copy in `track`
+    std::string left_out = {};  ///< "3 of 628 samples of power_w (ENERGY.power) are left out: ..."; empty if none is
+
+    const Track& of(const Track& candidate) const { return is_whole ? candidate : track; }
+    Track take(const Track& candidate) { return is_whole ? Track(candidate) : std::move(track); }
 };
 
 /// Leaves out the samples beyond the physical bounds, those at `contradicted_s` (rising), dropouts as `throttle` (empty

@@ -13,7 +13,6 @@
 #include <limits>
 #include <optional>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -62,13 +61,14 @@ class LogReader {
                     return false;
             }
         }
-        for (auto& sender : later.log_.senders) {
+        for (const auto& sender : later.log_.senders) {
             const auto place = tables_.place_of(sender.id, lines_before);
-            for (auto& table : sender.tables) {
+            for (const auto& table : sender.tables) {
                 const auto plan = place_of(table.message);
-                append_rows(tables_.table_of(place, plan, plans_[plan]), table);
+                tables_.table_of(place, plan, plans_[plan]);
             }
         }
+        append_tables(later.log_);
         skips_.append(later.skips_, lines_before);
         return true;
     }
@@ -87,6 +87,17 @@ class LogReader {
 
   private:
     using Reason = SkipReason;
+
+    /// The rows of `later`, for all of which there are tables.
+    void append_tables(const TelemetryLog& later) {
+        std::vector<std::pair<MessageTable*, const MessageTable*>> joined;
+        for (const auto& sender : later.senders) {
+            auto& tables = std::ranges::find(log_.senders, sender.id, &SenderLog::id)->tables;
+            for (const auto& table : sender.tables)
+                joined.emplace_back(&*std::ranges::find(tables, table.message, &MessageTable::message), &table);
+        }
+        for_each_in_parallel(joined.size(), [&](std::size_t i) { append_rows(*joined[i].first, *joined[i].second); });
+    }
 
     void read_message(std::size_t index, const ScannedLine& line) {
         auto& plan = plans_[index];
@@ -235,7 +246,7 @@ TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path&
     log.data_file = data_file;
     log.flight = flight_name(data_file);
     log.configuration = std::move(configuration);
-    if (parts == 0) parts = std::min<std::size_t>(std::thread::hardware_concurrency(), text.size() / least_part_bytes);
+    if (parts == 0) parts = threads_for(text.size() / least_part_bytes);
     if (parts > 1) {
         if (auto joined = parse_in_parts(log, wanted, text, parts_of(text, parts))) return std::move(*joined);
     }
