@@ -31,6 +31,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <unistd.h>
 
 namespace {
@@ -67,13 +68,14 @@ std::function<void(int)> on_signal(const cli::StageCall& call, BatchProgressStat
     return [&](int signal) {
         constexpr std::chrono::milliseconds patience(100);  // with a standard error that nobody reads
         [[maybe_unused]] const bool others_are_silent = state.speaking.try_lock_for(patience);
+        const batch::EmptyAtEnd unfinished{std::filesystem::path(*call.output) / batch::unfinished_folder};
         if (state.bar) state.bar->clear();
         cli::note(call, fmt::format("stopped by {} after {} of {} logs; the same command goes on from there",
                                     signal_name(signal), state.done.load(), state.all));
     };
 }
 
-void report_notes(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights) {
+void report_notes(const cli::StageCall& call, const batch::BatchFlights& flights) {
     for (const auto& flight : flights) {
         for (const auto& warning : flight.record.warnings) {
             cli::warn(call, fmt::format("{}: {}", flight.record.flight, warning));
@@ -89,11 +91,7 @@ void report_notes(const cli::StageCall& call, const std::vector<batch::BatchFlig
 
 /// On failure no model of an earlier run stays behind to be taken for this one's.
 void remove_model(const cli::StageCall& call, const std::filesystem::path& out) {
-    std::vector<std::string> removed;
-    for (const auto* name : batch::model_names) {
-        std::error_code ignored;
-        if (std::filesystem::remove(out / name, ignored)) removed.emplace_back(name);
-    }
+    const auto removed = batch::remove_batch_fit(out);
     if (removed.empty()) return;
     cli::note(call, fmt::format("removed: {}: they are an earlier run's, and this one has no model for {}",
                                 fmt::join(removed, ", "), out.string()));
@@ -106,10 +104,11 @@ struct FittedBatch {
 };
 
 /// Fits what the batch accepted.
-FittedBatch fit_batch(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights,
+FittedBatch fit_batch(const cli::StageCall& call, const batch::BatchFlights& flights,
                       const batch::BatchOptions& batch) {
     auto options = read_fit_options(call);
     options.name = call.get<std::string>("name");
+    ::malloc_trim(0);  // what the search for copies needed
     auto measured = read_samples(flights, batch);
     std::vector<mechanical::FlightSamples> samples;
     samples.reserve(measured.size());
@@ -126,7 +125,7 @@ FittedBatch fit_batch(const cli::StageCall& call, const std::vector<batch::Batch
 }
 
 /// Of all that the model and its tables are made from.
-std::string fingerprint_of(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights,
+std::string fingerprint_of(const cli::StageCall& call, const batch::BatchFlights& flights,
                            const batch::BatchOptions& options,
                            const std::optional<mechanical::MechanicalModel>& published) {
     auto fit_options = read_fit_options(call);
@@ -145,8 +144,7 @@ FittedBatch known_fit(const std::filesystem::path& out) {
 }
 
 /// One model of several aircraft is a model of none.
-void refuse_mix(const cli::StageCall& call, const std::vector<batch::BatchFlight>& flights,
-                const std::filesystem::path& out) {
+void refuse_mix(const cli::StageCall& call, const batch::BatchFlights& flights, const std::filesystem::path& out) {
     const auto mix = call.has("mix-aircraft") ? "" : mix_of(flights);
     if (mix.empty()) return;
     remove_model(call, out);
@@ -157,7 +155,7 @@ void refuse_mix(const cli::StageCall& call, const std::vector<batch::BatchFlight
 }
 
 /// `json` of the model, if there is one, with what became of the logs.
-nlohmann::ordered_json with_logs(nlohmann::ordered_json json, const std::vector<batch::BatchFlight>& flights) {
+nlohmann::ordered_json with_logs(nlohmann::ordered_json json, const batch::BatchFlights& flights) {
     json["logs"] = nlohmann::ordered_json::array();
     for (const auto& flight : flights) {
         json["logs"].push_back({{"flight", flight.record.flight},
@@ -168,11 +166,20 @@ nlohmann::ordered_json with_logs(nlohmann::ordered_json json, const std::vector<
     return json;
 }
 
-/// Whether the batch did all that it can of logs whose power nobody measured: there is nothing to fit.
-bool lack_power(const std::vector<batch::BatchFlight>& flights) {
-    return std::ranges::all_of(flights, [](const batch::BatchFlight& flight) {
-        return !flight.record.accepted || !flight.record.lacks_power.empty();
-    });
+/// The table of the flights, or of the first of them: nobody reads a hundred thousand rows, and they would fill the
+/// memory.
+std::string flights_text(const cli::StageCall& call, const batch::BatchFlights& flights,
+                         const batch::BatchOptions& options) {
+    constexpr std::size_t most_logs = 1000;
+    const cli::ScreenTable shown_first{fmt::format("{}: {} logs", options.out.string(), flights.size()),
+                                       {"flight", "cruise s", "cruise W", "energy Wh", "phases fitted", "take-off s",
+                                        "landing s", "take-off W", "landing W", "warnings", "gaps", "longest s"}};
+    auto text = screen_text(flights_table(flights, most_logs), screen_of(call), shown_first);
+    if (flights.size() > most_logs) {
+        text += fmt::format("the first {} of {} logs; {} has all\n", most_logs, flights.size(),
+                            (options.out / batch::catalogue_name).string());
+    }
+    return text;
 }
 
 batch::BatchOptions read_batch_options(const cli::StageCall& call, const mechanical::ModelFitOptions& fit_options) {
@@ -195,60 +202,53 @@ void write_model(const batch::BatchFit& fit, const TextTable& table, const batch
 }
 
 /// 3 if a log of this run was rejected.
-int exit_code(const cli::StageCall& call, std::size_t rejected, std::size_t logs) {
-    if (rejected == 0) return cli::ok;
-    cli::note(call, fmt::format("{} of {} logs rejected; the others are done", rejected, logs));
+int exit_code(const cli::StageCall& call, const batch::Totals& totals) {
+    if (totals.rejected_of_this_run == 0) return cli::ok;
+    cli::note(call, fmt::format("{} of {} logs rejected; the others are done", totals.rejected_of_this_run,
+                                totals.of_this_run));
     return cli::input_rejected;
 }
 
 /// What follows the logs: the catalogue and the fit. Everything is written before anything is shown, so that a
 /// standard output that nobody reads loses nothing. Returns the exit code.
-int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, const batch::BatchOptions& options,
+int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch::BatchOptions& options,
            const std::optional<mechanical::MechanicalModel>& published) {
     const auto made_from = fingerprint_of(call, flights, options, published);
     const bool is_known = !call.has("no-fit") && !cli::is_physical(call) && batch::is_fit_of(options.out, made_from);
     std::optional<FittedBatch> known;
     if (is_known) known = known_fit(options.out);
     auto repeated = known ? std::move(known->fit.repeated) : find_repeated(flights, options.out);
-    auto copies = exclude_repeated(flights, repeated);
+    exclude_repeated(flights, repeated);
     report_notes(call, flights);
     {
         const batch::WriteGate::Pass pass(*options.gate);
         write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
                               options.out / batch::unfinished_folder);
     }
-    const auto screen = screen_of(call);
-    const cli::ScreenTable shown_first{fmt::format("{}: {} logs", options.out.string(), flights.size()),
-                                       {"flight", "cruise s", "cruise W", "energy Wh", "phases fitted", "take-off s",
-                                        "landing s", "take-off W", "landing W", "warnings", "gaps", "longest s"}};
-    const auto shown = screen_text(flights_table(flights), screen, shown_first);
-    const auto is_rejected = [](const auto& flight) { return !flight.record.accepted; };
-    const auto of_this_run = std::ranges::count_if(flights, &batch::BatchFlight::is_of_this_run);
-    const auto rejected = std::ranges::count_if(flights, [&](const auto& flight) {
-        return flight.is_of_this_run && is_rejected(flight) && !flight.record.is_of_other_aircraft;
-    });
+    const auto shown = flights_text(call, flights, options);
+    const auto totals = totals_of(flights);
     try {
-        if (std::ranges::all_of(flights, is_rejected)) {
+        if (totals.accepted == 0) {
             remove_model(call, options.out);
             throw InputError(
                 {}, fmt::format("all {} logs were rejected or left out, so there is nothing to fit", flights.size()));
         }
-        if (lack_power(flights)) {
+        if (totals.with_power == 0) {
             remove_model(call, options.out);
             cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
             cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
-            return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
+            return exit_code(call, totals);
         }
         if (call.has("no-fit")) {
             remove_model(call, options.out);
             cli::note(call, fmt::format("nothing was fitted; next: flightwatt fit {} -o MODEL.toml",
                                         cli::typed_in_shell(options.out.string())));
             cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
-            return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
+            return exit_code(call, totals);
         }
         refuse_mix(call, flights, options.out);
         auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options);
-        fit.copies = std::move(copies);
+        ::malloc_trim(0);  // the samples
         fit.repeated = std::move(repeated);
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
@@ -259,6 +259,7 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         warn_of_model(call, fit.model);
         auto json = cli::to_json(fit.model);
         if (physical) json["physical"] = cli::physical_json(*physical);
+        const auto screen = screen_of(call);
         cli::print(call.json ? cli::json_text(with_logs(std::move(json), flights))
                              : shown + "\n" + screen_text(table, screen, {"Table I", {}}) +
                                    (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
@@ -269,18 +270,16 @@ int finish(const cli::StageCall& call, std::vector<batch::BatchFlight> flights, 
         if (!call.json) cli::print(shown);
         throw;
     }
-    return exit_code(call, static_cast<std::size_t>(rejected), static_cast<std::size_t>(of_this_run));
+    return exit_code(call, totals);
 }
 
 std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, std::vector<batch::LogFile> logs) {
     std::vector<std::string> names(logs.size());
     std::ranges::transform(logs, names.begin(), &batch::LogFile::flight);
     const auto chosen = cli::chosen_flights(call, names);
-    std::vector<batch::LogFile> kept;
-    kept.reserve(logs.size());
-    for (std::size_t i = 0; i < logs.size(); ++i)
-        if (chosen[i]) kept.push_back(std::move(logs[i]));
-    return kept;
+    std::size_t number = 0;
+    std::erase_if(logs, [&](const batch::LogFile&) { return !chosen[number++]; });
+    return logs;
 }
 
 /// The paths of --files-from. Throws UsageError where neither it nor the command names a log.
@@ -288,11 +287,11 @@ std::vector<std::string> listed_logs(const cli::StageCall& call) {
     const auto list = call.maybe<std::string>("files-from");
     if (!list && call.inputs.empty()) throw UsageError("no log given: expected LOG, FOLDER or --files-from LIST");
     if (!list) return {};
+    const auto file = *list == "-" ? std::string("the standard input") : *list;
     const auto text = *list == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : read_file(*list);
-    auto paths = batch::listed_paths(text);
+    auto paths = batch::listed_paths(text, file);
     if (paths.empty()) {
-        throw InputError({*list == "-" ? "the standard input" : *list}, "names no log",
-                         "expected the path of a log in each line");
+        throw InputError({file}, "names no log", "expected the path of a log in each line");
     }
     return paths;
 }
@@ -306,8 +305,8 @@ batch::BatchPlan make_plan(const cli::StageCall& call, batch::BatchOptions& opti
     }
     auto plan = batch::plan_batch(std::move(logs), options.out, call.has("prune"));
     refuse_files_of_others(plan, options.out);
-    std::vector<std::string> names(plan.logs.size());
-    std::ranges::transform(plan.logs, names.begin(), &batch::LogFile::flight);
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < plan.logs.size(); ++i) names.emplace_back(plan.logs.flight(i));
     options.load.excluded = cli::with_matching(options.load.excluded, "exclude", names);
     cli::refuse_unknown_flights(options.load, names);
     return plan;
@@ -322,27 +321,20 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
     for (const auto& dropped : plan.dropped) {
         cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
     }
-    const auto earlier =
-        std::ranges::count_if(plan.logs, [](const batch::LogFile& log) { return !log.is_of_this_run; });
+    std::vector<batch::LogFile> gone;
+    std::size_t earlier = 0;
+    for (std::size_t i = 0; i < plan.logs.size(); ++i) {
+        const auto log = plan.logs[i];
+        if (!log.is_of_this_run) ++earlier;
+        if (log.is_gone) gone.push_back(log);
+    }
     if (earlier == 0) return;
     cli::note(call,
               fmt::format("{} flights of earlier runs stay in {}; --prune drops what is not among this run's logs",
                           earlier, *call.output));
-    for (const auto& log : plan.logs) {
-        if (!log.is_gone) continue;
-        cli::note(call, fmt::format("{}: its log {} is gone; its results are kept as they are", log.flight,
-                                    log.path.string()));
-    }
+    for (const auto& log : gone)
+        cli::note(call, fmt::format("{}: its log {} is gone; its results are kept as they are", log.flight, log.path));
 }
-
-/// A folder that is removed when all in it is gone.
-struct EmptyAtEnd {
-    std::filesystem::path folder;
-    ~EmptyAtEnd() {
-        std::error_code ignored;
-        std::filesystem::remove(folder, ignored);
-    }
-};
 
 int run_over_logs(const cli::StageCall& call) {
     const auto fit_options = read_fit_options(call);  // refuses bad options before the work
@@ -355,10 +347,14 @@ int run_over_logs(const cli::StageCall& call) {
     auto plan = make_plan(call, options);
     tell_plan(call, plan);
     make_directories(options.out);
-    if (!lock) lock.emplace(options.out);
+    if (!lock) {
+        lock.emplace(options.out);
+        batch::refuse_new_batch(options.out);
+    }
     prepare_folder(plan, options.out);
     plan.earlier = plan.manifest = {};
-    const EmptyAtEnd unfinished{options.out / batch::unfinished_folder};
+    ::malloc_trim(0);  // of a hundred thousand logs, the plan took more than the work is going to
+    const batch::EmptyAtEnd unfinished{options.out / batch::unfinished_folder};
     batch::WriteGate gate;
     options.gate = &gate;
     BatchProgressState state;

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "batch/batch_files.h"
+#include "batch/batch_fit.h"
 #include "batch/merge.h"
 #include "batch/write_guard.h"
 #include "cli/output/json_text.h"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,18 +34,19 @@ struct Summary {
     std::size_t renamed = 0;
 };
 
-Summary summary_of(const batch::MergePlan& plan, const std::vector<batch::BatchFlight>& flights) {
+Summary summary_of(const batch::MergePlan& plan, const batch::BatchFlights& flights) {
     Summary summary;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        ++(flights[i].record.accepted ? summary.accepted : summary.rejected);
-        if (flights[i].was_up_to_date) ++summary.already_there;
-        if (plan.sources[i].flight != flights[i].record.flight) ++summary.renamed;
+        const auto flight = flights[i];
+        ++(flight.record.accepted ? summary.accepted : summary.rejected);
+        if (flight.was_up_to_date) ++summary.already_there;
+        if (plan.sources[i].flight != flight.record.flight) ++summary.renamed;
     }
     return summary;
 }
 
-Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const std::vector<batch::BatchFlight>& flights,
-             const std::map<std::string, std::string>& copies) {
+Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights,
+             const batch::RepeatedFlights& repeated) {
     const auto summary = summary_of(plan, flights);
     Json json{
         {"folder", *call.output},       {"batches", Json::array()},       {"flights", flights.size()},
@@ -55,16 +56,15 @@ Json json_of(const cli::StageCall& call, const batch::MergePlan& plan, const std
         json["batches"].push_back({{"folder", call.inputs[i]}, {"flights", plan.given[i]}});
     for (std::size_t i = 0; i < flights.size(); ++i) {
         const auto& [from, before] = plan.sources[i];
-        if (before != flights[i].record.flight)
-            json["renamed"].push_back(
-                {{"folder", from.string()}, {"before", before}, {"flight", flights[i].record.flight}});
+        const auto name = plan.folder.logs.flight(i);
+        if (before != name) json["renamed"].push_back({{"folder", from}, {"before", before}, {"flight", name}});
     }
-    for (const auto& [flight, other] : copies) json["copies"].push_back({{"flight", flight}, {"same_as", other}});
+    for (const auto& [flight, same_as, has_power] : repeated.copies)
+        if (has_power) json["copies"].push_back({{"flight", flight}, {"same_as", same_as}});
     return json;
 }
 
-std::string text_of(const cli::StageCall& call, const batch::MergePlan& plan,
-                    const std::vector<batch::BatchFlight>& flights) {
+std::string text_of(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights) {
     const auto summary = summary_of(plan, flights);
     TextTable table{{"batch", "flights"}, {}};
     for (std::size_t i = 0; i < plan.given.size(); ++i)
@@ -79,11 +79,7 @@ std::string text_of(const cli::StageCall& call, const batch::MergePlan& plan,
 
 /// A model that stands in the folder was fitted to other flights.
 void remove_model(const cli::StageCall& call, const std::filesystem::path& out) {
-    std::vector<std::string> removed;
-    for (const auto* name : batch::model_names) {
-        std::error_code ignored;
-        if (std::filesystem::remove(out / name, ignored)) removed.emplace_back(name);
-    }
+    const auto removed = batch::remove_batch_fit(out);
     if (!removed.empty())
         cli::note(call, fmt::format("removed: {}: made from what the folder held before", fmt::join(removed, ", ")));
 }
@@ -100,28 +96,35 @@ int merge(const cli::StageCall& call) {
     for (const auto& dropped : plan.folder.dropped)
         cli::note(call, fmt::format("dropped: {}, {}", dropped.flight, dropped.reason));
     make_directories(out);
-    if (!lock) lock.emplace(out);
+    if (!lock) {
+        lock.emplace(out);
+        batch::refuse_new_batch(out);
+    }
+    const batch::EmptyAtEnd unfinished{out / batch::unfinished_folder};
     batch::prepare_folder(plan.folder, out);
     remove_model(call, out);
     batch::WriteGate gate;
     batch::MergeOptions options{out, mechanical::samples_needed(mechanical::ModelFitOptions{}.phases.order), gate};
     cli::TerminalProgress progress("flights");
-    const batch::Interruption interruption(
-        gate, [&](int) { cli::note(call, "stopped; the same command goes on from there"); });
+    const batch::Interruption interruption(gate, [&](int) {
+        const batch::EmptyAtEnd unfinished_folder{out / batch::unfinished_folder};
+        cli::note(call, "stopped; the same command goes on from there");
+    });
     auto flights = batch::merge_flights(
         plan, options, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
     progress.hide();
-    const auto copies = batch::exclude_repeated(flights, batch::find_repeated(flights, out));
-    if (!copies.empty()) {
-        const auto& [flight, other] = *copies.begin();
+    const auto repeated = batch::find_repeated(flights, out);
+    exclude_repeated(flights, repeated);
+    const auto copies = std::ranges::count_if(repeated.copies, &batch::CopiedFlight::has_power);
+    if (copies > 0) {
+        const auto& [flight, other, has_power] =
+            *std::ranges::find_if(repeated.copies, &batch::CopiedFlight::has_power);
         cli::warn(call, fmt::format("{} of the flights are others under a second name, and are not fitted: {} is the "
                                     "same flight as {}{}; --json names all",
-                                    copies.size(), flight, other, copies.size() > 1 ? ", ..." : ""));
+                                    copies, flight, other, copies > 1 ? ", ..." : ""));
     }
     write_file_atomically(out / batch::catalogue_name, batch::catalogue_csv(flights), out / batch::unfinished_folder);
-    std::error_code ignored;
-    std::filesystem::remove(out / batch::unfinished_folder, ignored);
-    cli::print(call.json ? cli::json_text(json_of(call, plan, flights, copies)) : text_of(call, plan, flights));
+    cli::print(call.json ? cli::json_text(json_of(call, plan, flights, repeated)) : text_of(call, plan, flights));
     cli::note(call, fmt::format("next: flightwatt fit {} -o MODEL.toml", cli::typed_in_shell(out.string())));
     return cli::ok;
 }

@@ -9,7 +9,9 @@
 #include <optional>
 #include <set>
 #include <tuple>
+#include <unordered_set>
 
+#include <boost/functional/hash.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -30,10 +32,19 @@ std::optional<FileId> id_of(const std::filesystem::path& path) {
                   has_birth ? found.stx_btime.tv_nsec : 0};
 }
 
+std::uint64_t fingerprint_of(const FileId& id) {
+    std::size_t seed = 0;
+    std::apply([&](const auto&... parts) { (boost::hash_combine(seed, parts), ...); }, id);
+    return seed;
+}
+
+constexpr std::size_t most_named_inputs = 1000;
+
 struct FileUse {
-    std::mutex mutex;  ///< guards what follows
-    std::map<FileId, std::string> inputs;
-    std::map<FileId, std::string> declared;  ///< files that exist, with their option
+    std::mutex mutex;                                 ///< guards what follows
+    std::map<FileId, std::string> inputs;             ///< the first ones, which an error names
+    std::unordered_set<std::uint64_t> more_inputs{};  ///< fingerprints of the others: of an archive, names take room
+    std::map<FileId, std::string> declared;           ///< files that exist, with their option
     std::map<FileId, std::string> written;
     std::map<std::string, std::string> declared_paths;
 };
@@ -61,6 +72,8 @@ std::string named(const std::filesystem::path& path, const std::string& option) 
 void refuse_if_read(const FileUse& use, const std::optional<FileId>& id, const std::string& output) {
     if (!id) return;
     if (const auto input = use.inputs.find(*id); input != use.inputs.end()) refuse_input(output, input->second);
+    if (use.more_inputs.contains(fingerprint_of(*id)))
+        throw UsageError(output + " is an input, which would be lost; name another file");
 }
 
 }  // namespace
@@ -76,7 +89,11 @@ void note_input(const std::filesystem::path& path) {
     if (const auto output = use.declared.find(*id); output != use.declared.end()) {
         refuse_input(output->second, path.string());
     }
-    use.inputs.emplace(*id, path.string());
+    if (use.inputs.size() < most_named_inputs) {
+        use.inputs.emplace(*id, path.string());
+    } else if (!use.inputs.contains(*id)) {
+        use.more_inputs.insert(fingerprint_of(*id));
+    }
 }
 
 void declare_output(const std::filesystem::path& path, const std::string& option) {
@@ -115,7 +132,7 @@ void refuse_to_lose(const std::filesystem::path& path) {
 void note_written(const std::filesystem::path& path) {
     if (!watched) return;
     const auto id = id_of(path);
-    if (!id) return;
+    if (!id || own_files > 0) return;
     auto& use = file_use();
     const std::lock_guard lock(use.mutex);
     use.written.insert_or_assign(*id, path.string());

@@ -23,8 +23,8 @@ void refuse_to_lose(const std::filesystem::path& path);
 /// After a file was written.
 void note_written(const std::filesystem::path& path);
 
-/// While it lives, what this thread reads is its program's own record of an earlier run, which is no input, and it may
-/// write again what it has written.
+/// While it lives, what this thread reads is its program's own record of an earlier run, which is no input, and what it
+/// writes may be written again, by whoever made sure that nothing else goes there.
 class OwnFiles {
   public:
     OwnFiles();

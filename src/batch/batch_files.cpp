@@ -29,12 +29,14 @@ std::vector<std::string> file_names(const std::filesystem::path& folder) {
 }
 
 /// The flights that the batch's manifest lists and that have a record.
-std::vector<ManifestFlight> stored_flights(const std::filesystem::path& out) {
-    auto flights = read_manifest(out).flights;
-    std::error_code none;
-    std::erase_if(flights, [&](const ManifestFlight& flight) {
-        return !std::filesystem::exists(out / "flights" / (flight.flight + record_ending), none);
-    });
+std::vector<LogFile> stored_flights(const std::filesystem::path& out) {
+    const auto listed = read_manifest(out).flights;
+    std::vector<LogFile> flights;
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+        std::error_code none;
+        const auto record = out / "flights" / (std::string(listed.flight(i)) + record_ending);
+        if (std::filesystem::exists(record, none)) flights.push_back(listed[i]);
+    }
     return flights;
 }
 
@@ -90,7 +92,7 @@ IntactFlight read_intact(const std::filesystem::path& out, const std::string& fl
 }
 
 /// Its record, and if they are asked for its series and phases; damaged where its log is gone too.
-StoredFlight read_recorded(const std::filesystem::path& out, const ManifestFlight& listed, bool with_series) {
+StoredFlight read_recorded(const std::filesystem::path& out, const LogFile& listed, bool with_series) {
     const auto& name = listed.flight;
     // No result is to replace the log either, of which all this was made.
     note_input(listed.place);
@@ -110,7 +112,7 @@ StoredFlight read_recorded(const std::filesystem::path& out, const ManifestFligh
         if (std::filesystem::exists(listed.place, none)) throw;
         flight = {};
         flight.record.flight = name;
-        flight.record.log = listed.log.string();
+        flight.record.log = listed.path;
         flight.damage = fmt::format("{}: {}, and its log is gone", to_string(error.where()), error.what());
     }
     return flight;

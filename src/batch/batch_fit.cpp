@@ -8,6 +8,7 @@
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <utility>
@@ -67,7 +68,35 @@ mechanical::ModelFitOptions options_from(const Json& json) {
 /// To be raised with every change of the fit that changes a model: others are then made anew.
 constexpr auto fit_number = "fit 1";
 
+constexpr auto copies_key = "copies";
+constexpr auto copies_without_power_key = "copies_without_power";
+
 constexpr std::size_t most_fit_bytes = 16'000'000;  // fit.json has some 100 kB
+
+/// Of a hundred thousand copies no list is there twice.
+Json json_of(const BatchFit& fit) {
+    Json copies = Json::array();
+    Json without_power = Json::array();
+    for (const auto& [flight, same_as, has_power] : fit.repeated.copies)
+        (has_power ? copies : without_power).push_back({{"flight", flight}, {"of", same_as}});
+    Json overlaps = Json::array();
+    for (const auto& [flight, warning] : fit.repeated.overlaps)
+        overlaps.push_back({{"flight", flight}, {"warning", warning}});
+    Json bands = Json::object();
+    for (const auto phase : flight::all_phases) bands[std::string(to_string(phase))] = band_json(fit.bands[phase]);
+    Json json{{"format", format_version},
+              {"options", options_json(fit.options)},
+              {"exclude", fit.excluded},
+              {"keep", fit.keep}};
+    json[copies_key] = std::move(copies);
+    json[copies_without_power_key] = std::move(without_power);
+    json["overlaps"] = std::move(overlaps);
+    json["made_from"] = fit.made_from;
+    json["bands"] = std::move(bands);
+    return json;
+}
+
+std::string text_of(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 /// A file that nests without end would take a hundred times its size in memory.
 bool require_shallow(int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
@@ -89,10 +118,10 @@ void read_fit_json(const std::filesystem::path& file, BatchFit& fit) {
         fit.options = options_from(json.at("options"));
         fit.excluded = json.at("exclude").get<std::set<std::string>>();
         fit.keep = json.at("keep").get<std::set<std::string>>();
-        for (const auto& copy : json.at("copies")) fit.copies[copy.at("flight")] = copy.at("of");
-        fit.repeated.same_as = fit.copies;
-        for (const auto& copy : json.at("copies_without_power"))
-            fit.repeated.same_as[copy.at("flight")] = copy.at("of");
+        for (const auto* key : {copies_key, copies_without_power_key})
+            for (const auto& copy : json.at(key))
+                fit.repeated.copies.push_back({copy.at("flight"), copy.at("of"), key == copies_key});
+        std::ranges::sort(fit.repeated.copies, {}, &CopiedFlight::flight);
         for (const auto& part : json.at("overlaps"))
             fit.repeated.overlaps.emplace_back(part.at("flight"), part.at("warning"));
         for (const auto phase : flight::all_phases) {
@@ -133,7 +162,7 @@ std::string text_of(const mechanical::ModelFitOptions& options) {
 
 }  // namespace
 
-std::string fingerprint_of_fit(const std::vector<BatchFlight>& flights, const mechanical::ModelFitOptions& options,
+std::string fingerprint_of_fit(const BatchFlights& flights, const mechanical::ModelFitOptions& options,
                                const std::string& more) {
     Fingerprint fingerprint;
     const auto add = [&](std::string_view text) {
@@ -174,21 +203,12 @@ bool is_fit_of(const std::filesystem::path& out, const std::string& made_from) {
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options) {
     auto fitted = fit_model(flights, options);
     const auto analyses = mechanical::analyse_model(fitted);
-    BatchFit fit{options, {}, {}, {}, {}, {}, curve_bands(fitted, analyses), {}};
+    BatchFit fit{options, {}, {}, {}, {}, curve_bands(fitted, analyses), {}};
     fit.model = std::move(fitted.model);
     return fit;
 }
 
 void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
-    Json bands = Json::object();
-    for (const auto phase : flight::all_phases) bands[std::string(to_string(phase))] = band_json(fit.bands[phase]);
-    Json copies = Json::array();
-    Json without_power = Json::array();
-    for (const auto& [flight, other] : fit.repeated.same_as)
-        (fit.copies.contains(flight) ? copies : without_power).push_back({{"flight", flight}, {"of", other}});
-    Json overlaps = Json::array();
-    for (const auto& [flight, warning] : fit.repeated.overlaps)
-        overlaps.push_back({{"flight", flight}, {"warning", warning}});
     write_file_atomically(out / model_errors_name, to_toml(fit.model), out / unfinished_folder);
     auto plain = fit.model;
     for (auto& phase : plain.phases.values) {
@@ -196,19 +216,18 @@ void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
         phase.spread.reset();
     }
     write_file_atomically(out / model_name, to_toml(plain), out / unfinished_folder);
-    const auto text = [](const Json& of) { return of.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; };
-    const Json json{{"format", format_version},
-                    {"options", options_json(fit.options)},
-                    {"exclude", fit.excluded},
-                    {"keep", fit.keep},
-                    {"copies", copies},
-                    {"copies_without_power", without_power},
-                    {"overlaps", overlaps},
-                    {"made_from", fit.made_from},
-                    {"bands", bands}};
-    auto sealed = Json::parse(text(json));  // as it will be read: numbers and names that are no UTF-8
+    auto sealed = Json::parse(text_of(json_of(fit)));  // as it will be read: numbers and names that are no UTF-8
     sealed["seal"] = seal_of(out, sealed);
-    write_file_atomically(out / fit_name, text(sealed), out / unfinished_folder);
+    write_file_atomically(out / fit_name, text_of(sealed), out / unfinished_folder);
+}
+
+std::vector<std::string> remove_batch_fit(const std::filesystem::path& out) {
+    std::vector<std::string> removed;
+    for (const auto* name : model_names) {
+        std::error_code ignored;
+        if (std::filesystem::remove(out / name, ignored)) removed.emplace_back(name);
+    }
+    return removed;
 }
 
 std::optional<BatchFit> read_batch_fit(const std::filesystem::path& out) {

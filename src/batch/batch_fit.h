@@ -5,7 +5,6 @@
 #include "mechanical/model_fit.h"
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -16,11 +15,10 @@ namespace flightwatt::batch {
 /// The fit of a batch, with all that is shown of it: nobody has to fit again.
 struct BatchFit {
     mechanical::ModelFitOptions options;
-    std::set<std::string> excluded;             ///< flights that were not to be used
-    std::set<std::string> keep;                 ///< flights that were used in spite of what spoke against it
-    std::map<std::string, std::string> copies;  ///< flights that are another one under a second name, and which
-    RepeatedFlights repeated = {};              ///< these, those without power, and those that share a part
-    mechanical::MechanicalModel model;          ///< with its errors
+    std::set<std::string> excluded;     ///< flights that were not to be used
+    std::set<std::string> keep;         ///< flights that were used in spite of what spoke against it
+    RepeatedFlights repeated = {};      ///< flights that are another one under a second name, or share a part of one
+    mechanical::MechanicalModel model;  ///< with its errors
     flight::PerPhase<mechanical::CurveBand> bands;
     std::string made_from;  ///< see fingerprint_of_fit; empty: not to be recognised
 };
@@ -28,7 +26,7 @@ struct BatchFit {
 /// Of all that a fit is made from: the flights as they are recorded and selected, before copies are looked for, and how
 /// they are fitted. Equal where the same program would come to the same model, of the same flights; empty where that
 /// cannot be told, as fit.json cannot name a flight.
-std::string fingerprint_of_fit(const std::vector<BatchFlight>& flights, const mechanical::ModelFitOptions& options,
+std::string fingerprint_of_fit(const BatchFlights& flights, const mechanical::ModelFitOptions& options,
                                const std::string& more);
 
 /// Whether what write_batch_fit wrote into OUT was made from the same, and its files and tables are as they were written.
@@ -40,6 +38,9 @@ BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const m
 /// Writes OUT/model.toml (the model alone), OUT/model_errors.toml (with its errors) and OUT/fit.json (options
 /// and bands).
 void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out);
+
+/// Removes a fit and its tables from OUT. Returns the names of the files that were there.
+std::vector<std::string> remove_batch_fit(const std::filesystem::path& out);
 
 /// What write_batch_fit wrote; std::nullopt where there is no model. Throws InputError where a file is
 /// missing, damaged or of a newer format.

@@ -33,6 +33,7 @@ void write_result(const BatchOptions& options, const std::string& flight, const 
                   const std::string& content) {
     std::optional<WriteGate::Pass> pass;
     if (options.gate != nullptr) pass.emplace(*options.gate);
+    const OwnFiles own;  // its name is no other's: what a batch writes is not kept in mind file by file
     write_file_atomically(result_path(options, flight, ending), content, options.out / unfinished_folder);
 }
 
@@ -42,7 +43,7 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     const auto& segmentation = load.segmentation;
     Fingerprint fingerprint;
     fingerprint.add(FLIGHTWATT_VERSION " record 9");
-    fingerprint.add(log.path.string());
+    fingerprint.add(log.path);
     fingerprint.add(load.aircraft_id.value_or(""));
     fingerprint.add(log.why_not_fitted);
     fingerprint.add(load.correct_idle_offset ? "idle offset corrected" : "");
@@ -98,7 +99,7 @@ FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, con
 /// Writes the record of what became of the log.
 void conclude(BatchFlight& done, const LogFile& log, const std::string& fingerprint, const BatchOptions& options) {
     done.record.flight = log.flight;
-    done.record.log = log.path.string();
+    done.record.log = log.path;
     done.record.fingerprint = fingerprint;
     const auto text = to_json_text(done.record);
     write_result(options, log.flight, record_ending, text);
@@ -150,13 +151,13 @@ std::string why_rejected(const LogFile& log, std::string& fingerprint) {
         return describe(error);
     } catch (const std::bad_alloc&) {
         fingerprint.clear();  // with more memory another run may do it
-        return log.path.string() + ": needs more memory than there is";
+        return log.path + ": needs more memory than there is";
     } catch (const std::filesystem::filesystem_error& error) {
         fingerprint.clear();
-        return fmt::format("{}: cannot be read: {}", log.path.string(), error.code().message());
+        return fmt::format("{}: cannot be read: {}", log.path, error.code().message());
     } catch (const std::exception& error) {
         fingerprint.clear();
-        return fmt::format("{}: internal error: {}", log.path.string(), error.what());
+        return fmt::format("{}: internal error: {}", log.path, error.what());
     }
 }
 
@@ -166,7 +167,7 @@ BatchFlight reject(const LogFile& log, const std::string& why, bool is_of_other_
     rejected.record.error = why;
     rejected.record.is_of_other_aircraft = is_of_other_aircraft;
     rejected.record.flight = log.flight;
-    rejected.record.log = log.path.string();
+    rejected.record.log = log.path;
     if (!log.problem.empty() || log.is_gone) return rejected;  // there is nothing of it to write, or all to keep
     remove_results(options.out, log.flight);
     conclude(rejected, log, fingerprint, options);
@@ -179,7 +180,7 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     std::string why;
     bool is_of_other_aircraft = false;
     try {
-        if (!log.problem.empty()) throw InputError({log.path.string()}, log.problem);
+        if (!log.problem.empty()) throw InputError({log.path}, log.problem);
         done = log.is_gone ? do_gone(log, options) : do_existing(log, options, fingerprint);
     } catch (const flight::OtherAircraftError& error) {
         is_of_other_aircraft = true;
@@ -191,15 +192,6 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
     if (!why.empty()) done = reject(log, why, is_of_other_aircraft, fingerprint, options);
     done.is_of_this_run = log.is_of_this_run;
     return done;
-}
-
-/// Only its file has them.
-FlightMarks marks_of(const FlightRecord& record, const std::filesystem::path& out) {
-    const OwnFiles own;
-    const auto file = out / "flights" / (record.flight + record_ending);
-    auto marks = marks_from_json(read_file(file));
-    if (!marks) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
-    return *std::move(marks);
 }
 
 }  // namespace
@@ -215,33 +207,32 @@ Selection selection_of(mechanical::MeasuredFlights measured) {
     return selection;
 }
 
-std::vector<BatchFlight> run_batch(const std::vector<LogFile>& logs, const BatchOptions& options,
-                                   const BatchProgress& progress) {
+BatchFlights run_batch(const LogList& logs, const BatchOptions& options, const BatchProgress& progress) {
     make_directories(options.out / "flights");
     make_directories(options.out / unfinished_folder);
-    std::vector<BatchFlight> flights(logs.size());
+    BatchFlights flights(logs.size(), options.out / unfinished_folder);
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
     const auto work = [&](std::size_t i) {
-        flights[i] = do_log(logs[i], options);
-        flights[i].record.verdicts = std::vector<RecordedVerdict>();  // nobody asks here, and thousands take room
+        const auto flight = do_log(logs[i], options);
+        flights.put(i, flight);
         const std::lock_guard lock(mutex);
-        progress(++done, logs.size(), flights[i]);
+        progress(++done, logs.size(), flight);
     };
     for_each_in_parallel(logs.size(), work, options.jobs);
     return flights;
 }
 
-std::vector<mechanical::MeasuredFlight> read_samples(const std::vector<BatchFlight>& flights,
-                                                     const BatchOptions& options) {
+std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights, const BatchOptions& options) {
     std::vector<std::vector<mechanical::MeasuredFlight>> of_logs(flights.size());
     for_each_in_parallel(flights.size(), [&](std::size_t i) {
-        if (flights[i].selection.flights.empty()) return;
+        const auto flight = flights[i];
+        if (flight.selection.flights.empty()) return;
         const OwnFiles own;
-        const auto file = result_path(options, flights[i].record.flight, record_ending);
+        const auto file = result_path(options, flight.record.flight, record_ending);
         auto record = record_from_json(read_file(file));
         if (!record) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
-        record->flight = flights[i].record.flight;  // of a name that is no UTF-8, too
+        record->flight = flight.record.flight;  // of a name that is no UTF-8, too
         of_logs[i] = select_for_fit(*record, options.needed_samples, options.load).flights;
     });
     std::vector<mechanical::MeasuredFlight> measured;
@@ -249,69 +240,7 @@ std::vector<mechanical::MeasuredFlight> read_samples(const std::vector<BatchFlig
     return measured;
 }
 
-std::string reason_of_copy(const std::string& other) {
-    return fmt::format("it is the same flight as {}, which is used", other);
-}
-
-RepeatedFlights find_repeated(const std::vector<BatchFlight>& flights, const std::filesystem::path& out) {
-    std::vector<const BatchFlight*> candidates;
-    for (const auto& flight : flights)
-        if (!flight.selection.flights.empty() || !flight.record.lacks_power.empty()) candidates.push_back(&flight);
-    // The one with power is used, of these one that is still there, of these the better copy.
-    std::ranges::stable_sort(candidates, [](const auto* one, const auto* other) {
-        const auto rank = [](const auto* flight) {
-            return std::pair(flight->selection.flights.empty(), flight->is_kept);
-        };
-        if (rank(one) != rank(other)) return rank(one) < rank(other);
-        return is_better_copy(one->record.content, other->record.content);
-    });
-    flight::KnownFlights known;
-    std::vector<std::string> used;
-    RepeatedFlights repeated;
-    constexpr std::size_t at_once = 256;  // of a hundred thousand, marks would fill the memory
-    std::vector<FlightMarks> marks(at_once);
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        if (i % at_once == 0) {
-            for_each_in_parallel(std::min(at_once, candidates.size() - i),
-                                 [&](std::size_t k) { marks[k] = marks_of(candidates[i + k]->record, out); });
-        }
-        const auto& record = candidates[i]->record;
-        auto content = record.content;
-        content.marks = std::move(marks[i % at_once]);
-        const auto alike = known.find(content);
-        const auto same = std::ranges::find_if(alike, [](const auto& like) { return like.likeness.is_same; });
-        if (same != alike.end()) {
-            repeated.same_as[record.flight] = used[same->number];
-            continue;
-        }
-        for (const auto& [number, likeness] : alike)
-            repeated.overlaps.emplace_back(record.flight,
-                                           flight::describe_overlap(used[number], record.flight, likeness));
-        known.add(std::move(content));
-        used.push_back(record.flight);
-    }
-    return repeated;
-}
-
-std::map<std::string, std::string> exclude_repeated(std::vector<BatchFlight>& flights,
-                                                    const RepeatedFlights& repeated) {
-    std::map<std::string, std::string> copies;
-    std::map<std::string, BatchFlight*> by_name;
-    for (auto& flight : flights) by_name[flight.record.flight] = &flight;
-    for (const auto& [name, warning] : repeated.overlaps) by_name.at(name)->record.warnings.push_back(warning);
-    for (const auto& [name, other] : repeated.same_as) {
-        auto& flight = *by_name.at(name);
-        const bool has_power = flight.record.lacks_power.empty();
-        if (has_power) copies[name] = other;
-        flight.selection.flights.clear();
-        flight.selection.exclusions.push_back(
-            {name, std::nullopt,
-             has_power ? reason_of_copy(other) : fmt::format("it is the same flight as {}", other)});
-    }
-    return copies;
-}
-
-std::string mix_of(const std::vector<BatchFlight>& flights) {
+std::string mix_of(const BatchFlights& flights) {
     std::vector<flight::FlownBy> flown;
     for (const auto& flight : flights) {
         const auto& record = flight.record;

@@ -72,14 +72,51 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
     return cells;
 }
 
+constexpr std::size_t piece_bytes = 65'536;
+
+void add_rows(const BatchFlight& flight, CsvWriter& csv) {
+    const auto& record = flight.record;
+    const std::string none;
+    if (!record.accepted) {
+        csv.add(record.flight, none, none, none, none, none, none, none, none, none, false, none, none, none, none,
+                none, none, none, none, record.error);
+        return;
+    }
+    const bool has_power = record.lacks_power.empty();
+    const auto known = [&](auto value) { return has_power ? std::optional(value) : std::nullopt; };
+    const auto faults = has_power ? fmt::format("{}", fmt::join(record.power_faults, "; ")) : record.lacks_power;
+    for (const auto& phase : record.phases) {
+        const auto& statistics = phase.statistics;
+        csv.add(record.flight, phase.sortie, to_string(phase.phase), phase.start_s, phase.end_s,
+                phase.end_s - phase.start_s, known(statistics.samples), known(statistics.mean_power_w),
+                known(statistics.energy_wh), statistics.counter_energy_wh, is_used(flight, phase),
+                known(statistics.gaps), known(statistics.longest_gap_s), phase.complete, record.aircraft_id,
+                record.aircraft_name, flight::is_synthetic(record.aircraft_name), record.power_source, faults, none);
+    }
+}
+
 }  // namespace
 
-TextTable flights_table(const std::vector<BatchFlight>& flights) {
+Totals totals_of(const BatchFlights& flights) {
+    Totals totals;
+    for (const auto& flight : flights) {
+        const auto& record = flight.record;
+        if (record.accepted) ++totals.accepted;
+        if (record.accepted && record.lacks_power.empty()) ++totals.with_power;
+        if (!flight.is_of_this_run) continue;
+        ++totals.of_this_run;
+        if (!record.accepted && !record.is_of_other_aircraft) ++totals.rejected_of_this_run;
+    }
+    return totals;
+}
+
+TextTable flights_table(const BatchFlights& flights, std::size_t most_logs) {
     TextTable table;
     table.header = {"flight",     "aircraft",  "sortie",    "take-off s",   "cruise s",   "landing s",
                     "take-off W", "cruise W",  "landing W", "energy Wh",    "counter Wh", "samples",
                     "gaps",       "longest s", "warnings",  "phases fitted"};
-    for (const auto& flight : flights) {
+    for (std::size_t i = 0; i < std::min(flights.size(), most_logs); ++i) {
+        const auto flight = flights[i];
         if (!flight.record.accepted) {
             std::vector<std::string> row{flight.record.flight, "-"};
             row.resize(table.header.size(), "-");
@@ -93,33 +130,18 @@ TextTable flights_table(const std::vector<BatchFlight>& flights) {
     return table;
 }
 
-std::string catalogue_csv(const std::vector<BatchFlight>& flights) {
-    CsvWriter csv({"flight",        "sortie",    "phase",         "start_s",      "end_s",
-                   "duration_s",    "samples",   "mean_power_w",  "energy_wh",    "counter_energy_wh",
-                   "used",          "gaps",      "longest_gap_s", "complete",     "aircraft_id",
-                   "aircraft_name", "synthetic", "power_source",  "power_faults", "error"});
-    const std::string none;
-    for (const auto& flight : flights) {
-        const auto& record = flight.record;
-        if (!record.accepted) {
-            csv.add(record.flight, none, none, none, none, none, none, none, none, none, false, none, none, none, none,
-                    none, none, none, none, record.error);
-            continue;
+TextWriter catalogue_csv(const BatchFlights& flights) {
+    return [&flights](const TextSink& sink) {
+        CsvWriter csv({"flight",        "sortie",    "phase",         "start_s",      "end_s",
+                       "duration_s",    "samples",   "mean_power_w",  "energy_wh",    "counter_energy_wh",
+                       "used",          "gaps",      "longest_gap_s", "complete",     "aircraft_id",
+                       "aircraft_name", "synthetic", "power_source",  "power_faults", "error"});
+        for (const auto& flight : flights) {
+            add_rows(flight, csv);
+            if (csv.text().size() > piece_bytes) sink(csv.take());
         }
-        const bool has_power = record.lacks_power.empty();
-        const auto known = [&](auto value) { return has_power ? std::optional(value) : std::nullopt; };
-        const auto faults = has_power ? fmt::format("{}", fmt::join(record.power_faults, "; ")) : record.lacks_power;
-        for (const auto& phase : record.phases) {
-            const auto& statistics = phase.statistics;
-            csv.add(record.flight, phase.sortie, to_string(phase.phase), phase.start_s, phase.end_s,
-                    phase.end_s - phase.start_s, known(statistics.samples), known(statistics.mean_power_w),
-                    known(statistics.energy_wh), statistics.counter_energy_wh, is_used(flight, phase),
-                    known(statistics.gaps), known(statistics.longest_gap_s), phase.complete, record.aircraft_id,
-                    record.aircraft_name, flight::is_synthetic(record.aircraft_name), record.power_source, faults,
-                    none);
-        }
-    }
-    return csv.text();
+        sink(csv.take());
+    };
 }
 
 }  // namespace flightwatt::batch

@@ -3,15 +3,14 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/fingerprint.h"
-#include "batch/manifest.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
 #include <array>
-#include <set>
 #include <string_view>
 #include <system_error>
-#include <tuple>
+#include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -61,21 +60,32 @@ void add_folder(const std::filesystem::path& folder, const std::filesystem::path
         if (entry->is_directory(ignored)) {
             if (!entry->is_symlink(ignored)) below.push_back(entry->path());
         } else if (is_log_name(entry->path())) {
-            logs.push_back({entry->path(), {}, why_not_fitted(entry->path(), given)});
+            logs.push_back({entry->path().string(), {}, why_not_fitted(entry->path(), given)});
         }
         entry.increment(error);
     }
-    if (error) logs.push_back({folder, {}, {}, cause_of(error)});
+    if (error) logs.push_back({folder.string(), {}, {}, cause_of(error)});
     for (const auto& inner : below) add_folder(inner, given, logs);
 }
 
 std::vector<LogFile> each_once(std::vector<LogFile> logs) {
-    for (auto& log : logs) log.path = log.path.lexically_normal();
-    std::sort(logs.begin(), logs.end(), [](const LogFile& a, const LogFile& b) {
-        return std::tie(a.path, a.why_not_fitted) < std::tie(b.path, b.why_not_fitted);
+    PlaceFinder find_place;
+    for (auto& log : logs) {
+        auto normal = std::filesystem::path(log.path).lexically_normal().string();
+        // Behind a link, LINK/.. is not where LINK stands.
+        const bool is_same = log.path.find("..") == std::string::npos || find_place(normal) == find_place(log.path);
+        if (is_same) log.path = std::move(normal);
+    }
+    std::ranges::sort(logs, [](const LogFile& a, const LogFile& b) {
+        return a.path == b.path ? a.why_not_fitted < b.why_not_fitted : comes_before(a.path, b.path);
     });
-    std::set<std::filesystem::path> seen;
-    std::erase_if(logs, [&](const auto& log) { return !seen.insert(place_of(log.path)).second; });
+    for (auto& log : logs) log.place = find_place(log.path);
+    {
+        std::unordered_set<std::string_view> seen;
+        for (auto& log : logs)
+            if (!seen.insert(log.place).second) log.path.clear();
+    }
+    std::erase_if(logs, [](const LogFile& log) { return log.path.empty(); });
     return logs;
 }
 
@@ -93,6 +103,21 @@ std::string file_name_of(std::string name) {
 
 }  // namespace
 
+std::string PlaceFinder::operator()(const std::string& log) {
+    const std::filesystem::path path(log);
+    auto folder = path.has_parent_path() ? path.parent_path().string() : std::string(".");
+    if (folder != folder_) {
+        std::error_code error;
+        const auto whole = std::filesystem::absolute(folder, error);
+        const auto canonical = std::filesystem::weakly_canonical(whole, error);
+        place_ = error ? whole.lexically_normal() : canonical;
+        folder_ = std::move(folder);
+    }
+    return (place_ / path.filename()).string();
+}
+
+std::string place_of(const std::string& log) { return PlaceFinder()(log); }
+
 void FreeNames::take(const std::string& name) { taken_.insert(name); }
 
 std::string FreeNames::give(const std::filesystem::path& log) {
@@ -106,7 +131,12 @@ std::string FreeNames::give(const std::filesystem::path& log) {
     }
 }
 
-std::vector<std::string> listed_paths(std::string_view text) {
+std::vector<std::string> listed_paths(std::string_view text, const std::string& file) {
+    if (const auto nul = text.find('\0'); nul != std::string_view::npos) {
+        const auto line = static_cast<std::size_t>(std::ranges::count(text.substr(0, nul), '\n')) + 1;
+        throw InputError({file, line}, "holds a NUL, which no path does",
+                         "expected the path of a log in each line, as find -print writes them");
+    }
     std::vector<std::string> paths;
     while (!text.empty()) {
         const auto line = text.substr(0, text.find('\n'));
@@ -132,19 +162,24 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
             throw InputError({input.empty() ? "''" : input}, cause,
                              "expected a .data log, a .LOG or .tlm of an SD card, or a folder of them");
         }
-        logs.push_back({input, {}, {}});
+        logs.push_back({input});
     }
     for (const auto& path : listed) {
         std::error_code error;
         if (std::filesystem::is_directory(path, error)) {
             add_folder(path, path, logs);
         } else {
-            logs.push_back({path, {}, {}});
+            logs.push_back({path});
         }
     }
     logs = each_once(std::move(logs));
     if (logs.empty()) {
-        throw InputError({}, fmt::format("no log in {}", fmt::join(inputs, ", ")),
+        constexpr std::size_t most_named = 3;
+        auto named = inputs;
+        named.insert(named.end(), listed.begin(), listed.end());
+        const bool are_more = named.size() > most_named;
+        named.resize(std::min(named.size(), most_named));
+        throw InputError({}, fmt::format("no log in {}{}", fmt::join(named, ", "), are_more ? ", ..." : ""),
                          "expected *.data, *.LOG or *.tlm, also .gz, .bz2, .xz or .zst");
     }
     FreeNames names;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "batch/log_list.h"
+
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -9,14 +12,17 @@
 
 namespace flightwatt::batch {
 
-/// A log that a batch is to do, and the name that its results go by.
-struct LogFile {
-    std::filesystem::path path;
-    std::string flight;
-    std::string why_not_fitted = {};  ///< empty: it is fitted
-    std::string problem = {};         ///< why it cannot be read at all: a folder that cannot be listed
-    bool is_of_this_run = true;       ///< false: a log of an earlier run into the same folder
-    bool is_gone = false;             ///< of an earlier run, and no longer there
+/// The path of a log from the root, its folder without links: one log, one place, however it is written.
+std::string place_of(const std::string& log);
+
+/// The same of many logs, whose folders are asked for once as long as they follow each other.
+class PlaceFinder {
+  public:
+    std::string operator()(const std::string& log);
+
+  private:
+    std::optional<std::string> folder_;  ///< of the last log, as it was written
+    std::filesystem::path place_;        ///< and from the root
 };
 
 /// The logs among files and folders (searched to the bottom for .data, .LOG and .tlm files, compressed or not), in the
@@ -29,7 +35,8 @@ struct LogFile {
 std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std::vector<std::string>& listed = {});
 
 /// The paths of a text that names one a line: what stands in a line is the path. Empty lines are passed over.
-std::vector<std::string> listed_paths(std::string_view text);
+/// Throws InputError for `file` where it holds a NUL, as lists of find -print0 do.
+std::vector<std::string> listed_paths(std::string_view text, const std::string& file);
 
 /// Names for the results of logs, each given once.
 class FreeNames {

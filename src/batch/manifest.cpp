@@ -7,10 +7,15 @@
 #include "batch/batch_files.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include <boost/algorithm/hex.hpp>
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -34,6 +39,40 @@ std::string bytes_from(const ManifestJson& json) {
     return json.is_object() ? boost::algorithm::unhex(json.at("hex").get<std::string>()) : json.get<std::string>();
 }
 
+/// Adds a flight to a list; false for what is none.
+bool add_flight(const ManifestJson& json, LogList& flights) {
+    try {
+        LogFile flight{bytes_from(json.at("log")), bytes_from(json.at("flight")),
+                       bytes_from(json.at("why_not_fitted"))};
+        flight.place = bytes_from(json.at("place"));
+        constexpr std::string_view in_no_name("/\0", 2);
+        if (flight.flight.empty() || flight.flight.find_first_of(in_no_name) != std::string::npos) return false;
+        if ((flight.path + flight.place).find('\0') != std::string::npos) return false;
+        flights.push_back(flight);
+        return true;
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
+constexpr std::size_t piece_of_list_bytes = 65'536;
+
+/// As it stands in the list of flights.
+std::string flight_text(const LogFile& flight) {
+    const ManifestJson json{{"flight", bytes_json(flight.flight)},
+                            {"log", bytes_json(flight.path)},
+                            {"place", bytes_json(flight.place)},
+                            {"why_not_fitted", bytes_json(flight.why_not_fitted)}};
+    const std::string indent = "  ";
+    return indent + boost::algorithm::replace_all_copy(json.dump(1, ' '), "\n", "\n" + indent);
+}
+
+std::unordered_set<std::string_view> names_of(const LogList& flights) {
+    std::unordered_set<std::string_view> names;
+    for (std::size_t i = 0; i < flights.size(); ++i) names.insert(flights.flight(i));
+    return names;
+}
+
 bool is_there(const std::filesystem::path& path) {
     std::error_code unknown;
     return std::filesystem::exists(path, unknown);
@@ -45,13 +84,15 @@ bool begins_with(const std::filesystem::path& file, std::string_view beginning) 
 }
 
 /// The flight of a record of any version; std::nullopt for another program's file.
-std::optional<ManifestFlight> flight_of_record(const std::filesystem::path& file, const std::string& name) {
+std::optional<LogFile> flight_of_record(const std::filesystem::path& file, const std::string& name) {
     try {
         const auto json = ManifestJson::parse(read_file(file));
         for (const auto* key : {"flight", "fingerprint", "accepted", "measured"})
             if (!json.contains(key)) return std::nullopt;
         const std::string log = json.at("log");
-        return ManifestFlight{name, log, place_of(log), json.value("why_not_fitted", "")};
+        LogFile flight{log, name, json.value("why_not_fitted", "")};
+        flight.place = place_of(log);
+        return flight;
     } catch (const InputError&) {
         return std::nullopt;
     } catch (const ManifestJson::exception&) {
@@ -63,8 +104,8 @@ std::optional<ManifestFlight> flight_of_record(const std::filesystem::path& file
 Manifest manifest_of_records(const std::filesystem::path& out) {
     Manifest manifest;
     for (const auto& name : recorded_flights(out / "flights")) {
-        auto flight = flight_of_record(out / "flights" / (name + record_ending), name);
-        if (flight) manifest.flights.push_back(std::move(*flight));
+        const auto flight = flight_of_record(out / "flights" / (name + record_ending), name);
+        if (flight) manifest.flights.push_back(*flight);
     }
     manifest.is_of_earlier_version = !manifest.flights.empty();
     if (manifest.is_of_earlier_version && begins_with(out / catalogue_name, "flight,sortie,phase,")) {
@@ -77,41 +118,44 @@ Manifest manifest_of_records(const std::filesystem::path& out) {
 /// Finds the earlier flight of a log: at the same place, or of the same path where its own place is gone (moved folders).
 class EarlierFlights {
   public:
-    explicit EarlierFlights(const std::vector<ManifestFlight>& flights) {
-        for (const auto& flight : flights) {
-            by_place_.emplace(flight.place, &flight);
-            by_log_.emplace(flight.log, &flight);
+    explicit EarlierFlights(const LogList& flights) : flights_(flights) {
+        for (std::size_t i = 0; i < flights.size(); ++i) {
+            by_place_.emplace(flights.place(i), i);
+            by_path_.emplace(flights.path(i), i);
         }
     }
-    const ManifestFlight* find(const std::filesystem::path& log) const {
-        if (const auto same = by_place_.find(place_of(log)); same != by_place_.end()) return same->second;
-        const auto moved = by_log_.find(log);
-        return moved == by_log_.end() || is_there(moved->second->place) ? nullptr : moved->second;
+    std::optional<std::size_t> find(const LogFile& log) const {
+        if (const auto same = by_place_.find(log.place); same != by_place_.end()) return same->second;
+        const auto moved = by_path_.find(log.path);
+        if (moved == by_path_.end() || is_there(flights_.place(moved->second))) return std::nullopt;
+        return moved->second;
     }
 
   private:
-    std::map<std::filesystem::path, const ManifestFlight*> by_place_;
-    std::map<std::filesystem::path, const ManifestFlight*> by_log_;
+    const LogList& flights_;
+    std::unordered_map<std::string_view, std::size_t> by_place_;
+    std::unordered_map<std::string_view, std::size_t> by_path_;
 };
 
-/// Names this run's logs; marks in `known` the earlier flights that are among them.
-void name_logs(std::vector<LogFile>& logs, const std::vector<ManifestFlight>& earlier, bool prune,
-               std::set<std::string>& known) {
+/// Names this run's logs. Returns the names of the earlier flights that are among them.
+std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const LogList& earlier, bool prune) {
     const EarlierFlights flights(earlier);
+    std::unordered_set<std::string_view> known;
     FreeNames names;
     std::vector<LogFile*> without_name;
     for (auto& log : logs) {
-        const auto* before = log.problem.empty() ? flights.find(log.path) : nullptr;
-        if (before != nullptr && known.insert(before->flight).second) {
-            log.flight = before->flight;
+        const auto before = log.problem.empty() ? flights.find(log) : std::nullopt;
+        if (before && known.insert(earlier.flight(*before)).second) {
+            log.flight = earlier.flight(*before);
             names.take(log.flight);
         } else {
             without_name.push_back(&log);
         }
     }
     if (!prune)
-        for (const auto& flight : earlier) names.take(flight.flight);
+        for (std::size_t i = 0; i < earlier.size(); ++i) names.take(std::string(earlier.flight(i)));
     for (auto* log : without_name) log->flight = names.give(log->path);
+    return known;
 }
 
 /// Whether a flight without its log has a result worth keeping; a damaged record may be of one.
@@ -125,19 +169,18 @@ bool was_usable(const std::filesystem::path& out, const std::string& flight) {
 }
 
 /// An earlier flight that is not among this run's logs.
-void add_earlier(const ManifestFlight& flight, const std::filesystem::path& out, bool prune, BatchPlan& plan) {
-    LogFile log{flight.log, flight.flight, flight.why_not_fitted};
-    if (place_of(flight.log) != flight.place) log.path = flight.place;  // run from another folder
-    log.is_of_this_run = false;
-    log.is_gone = !is_there(log.path);
-    const auto gone = log.is_gone ? "is gone" : "is not in this batch";
+void add_earlier(LogFile flight, const std::filesystem::path& out, PlaceFinder& find_place, bool prune, BatchPlan& plan,
+                 LogList& logs) {
+    if (find_place(flight.path) != flight.place) flight.path = flight.place;  // run from another folder
+    flight.is_of_this_run = false;
+    flight.is_gone = !is_there(flight.path);
+    const auto gone = flight.is_gone ? "is gone" : "is not in this batch";
     if (prune) {
-        plan.dropped.push_back({flight.flight, fmt::format("its log {} {}", log.path.string(), gone)});
-    } else if (log.is_gone && !was_usable(out, flight.flight)) {
-        plan.dropped.push_back(
-            {flight.flight, fmt::format("its log {} is gone, and nothing came of it", log.path.string())});
+        plan.dropped.push_back({flight.flight, fmt::format("its log {} {}", flight.path, gone)});
+    } else if (flight.is_gone && !was_usable(out, flight.flight)) {
+        plan.dropped.push_back({flight.flight, fmt::format("its log {} is gone, and nothing came of it", flight.path)});
     } else {
-        plan.logs.push_back(std::move(log));
+        logs.push_back(flight);
     }
 }
 
@@ -150,12 +193,24 @@ bool is_in_the_way(const std::filesystem::path& file, bool is_listed) {
 }
 
 void refuse_if_in_the_way(const std::filesystem::path& file, bool is_listed) {
-    declare_output(file);
     if (!is_in_the_way(file, is_listed)) return;
     throw UsageError(
         fmt::format("{} would be replaced, and no batch wrote it (see {}); move it away, or choose another folder "
                     "with -o",
                     file.string(), manifest_name));
+}
+
+/// What stands in OUT may be another folder's, whose files would be replaced and removed.
+void refuse_links(const std::filesystem::path& out) {
+    for (const auto* name : {manifest_name, unfinished_folder}) refuse_if_in_the_way(out / name, true);
+    std::error_code unknown;
+    const auto flights = std::filesystem::weakly_canonical(out / "flights", unknown);
+    if (unknown || flights == std::filesystem::weakly_canonical(out, unknown) / "flights") return;
+    if (!is_there(flights.parent_path() / manifest_name)) return;  // on a larger disk, say
+    throw UsageError(
+        fmt::format("{} leads into another batch, {}, whose flights would be lost; remove that link, or "
+                    "choose another folder with -o",
+                    (out / "flights").string(), flights.parent_path().string()));
 }
 
 void remove_unfinished(const std::filesystem::path& folder) {
@@ -169,14 +224,6 @@ void remove_unfinished(const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::filesystem::path place_of(const std::filesystem::path& log) {
-    std::error_code error;
-    const auto folder = log.has_parent_path() ? log.parent_path() : std::filesystem::path(".");
-    const auto whole = std::filesystem::absolute(folder, error);
-    const auto canonical = std::filesystem::weakly_canonical(whole, error);
-    return (error ? whole.lexically_normal() : canonical) / log.filename();
-}
-
 Manifest read_manifest(const std::filesystem::path& out) {
     const OwnFiles own;
     const auto file = out / manifest_name;
@@ -187,21 +234,28 @@ Manifest read_manifest(const std::filesystem::path& out) {
     const std::string hint =
         "choose another folder with -o; if a batch made this one, remove that file: its records then say what is its";
     try {
-        const auto json = ManifestJson::parse(read_file(file));
+        Manifest manifest;
+        bool is_whole = true;
+        bool are_flights = false;
+        const auto json = ManifestJson::parse(read_file(file), [&](int depth, auto event, ManifestJson& parsed) {
+            constexpr int deepest = 20;
+            if (depth > deepest) throw std::runtime_error("nested too deep");
+            using Event = ManifestJson::parse_event_t;
+            if (depth == 1 && event == Event::key) are_flights = parsed == "flights";
+            const bool is_flight = are_flights && depth == 2 && event == Event::object_end;
+            if (is_flight) is_whole = add_flight(parsed, manifest.flights) && is_whole;
+            return !is_flight;  // a hundred thousand need not stay as JSON
+        });
         if (json.at("format").get<double>() > format_version) {
             throw InputError(
                 {file.string()},
                 fmt::format("its format is newer than this program, which reads formats up to {}", format_version),
                 "use a newer FlightWatt, or another folder with -o");
         }
-        Manifest manifest;
         manifest.files = json.at("files").get<std::set<std::string>>();
-        for (const auto& flight : json.at("flights")) {
-            manifest.flights.push_back({bytes_from(flight.at("flight")), bytes_from(flight.at("log")),
-                                        bytes_from(flight.at("place")), bytes_from(flight.at("why_not_fitted"))});
-            const auto& name = manifest.flights.back().flight;
-            if (name.empty() || name.find('/') != std::string::npos) throw std::invalid_argument("no name of a file");
-        }
+        const auto& rest = json.at("flights");
+        if (!is_whole || !rest.is_array() || !rest.empty()) throw std::invalid_argument("no list of flights");
+        if (names_of(manifest.flights).size() < manifest.flights.size()) throw std::invalid_argument("a name twice");
         return manifest;
     } catch (const InputError&) {
         throw;
@@ -211,66 +265,89 @@ Manifest read_manifest(const std::filesystem::path& out) {
 }
 
 void write_manifest(const Manifest& manifest, const std::filesystem::path& out) {
-    auto flights = ManifestJson::array();
-    for (const auto& flight : manifest.flights) {
-        flights.push_back({{"flight", bytes_json(flight.flight)},
-                           {"log", bytes_json(flight.log.string())},
-                           {"place", bytes_json(flight.place.string())},
-                           {"why_not_fitted", bytes_json(flight.why_not_fitted)}});
-    }
-    const ManifestJson json{
-        {"format", format_version}, {"files", manifest.files}, {"unfinished", unfinished_folder}, {"flights", flights}};
+    const ManifestJson json{{"format", format_version},
+                            {"files", manifest.files},
+                            {"unfinished", unfinished_folder},
+                            {"flights", ManifestJson::array()}};
+    const TextWriter write = [&](const TextSink& sink) {
+        auto text = json.dump(1, ' ');
+        const std::string_view end = "]\n}";
+        text.resize(text.size() - end.size());
+        for (std::size_t i = 0; i < manifest.flights.size(); ++i) {
+            text += (i == 0 ? "\n" : ",\n") + flight_text(manifest.flights[i]);
+            if (text.size() < piece_of_list_bytes) continue;
+            sink(text);
+            text.clear();
+        }
+        if (!manifest.flights.empty()) text += "\n ";
+        sink(text + std::string(end) + "\n");
+    };
     const OwnFiles own;  // written before the work and after
-    write_file_atomically(out / manifest_name, json.dump(1, ' ') + "\n", out / unfinished_folder);
+    write_file_atomically(out / manifest_name, write, out / unfinished_folder);
 }
 
 BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out, bool prune) {
     BatchPlan plan;
     plan.earlier = read_manifest(out);
-    std::set<std::string> known;
-    name_logs(logs, plan.earlier.flights, prune, known);
-    plan.logs = std::move(logs);
-    for (const auto& flight : plan.earlier.flights) {
-        if (!known.contains(flight.flight)) add_earlier(flight, out, prune, plan);
-    }
-    std::ranges::stable_sort(plan.logs, {}, &LogFile::path);
+    const auto& earlier = plan.earlier.flights;
+    PlaceFinder find_place;
+    for (auto& log : logs)
+        if (log.place.empty()) log.place = find_place(log.path);
+    const auto known = name_logs(logs, earlier, prune);
+    LogList all(logs);
+    logs = std::vector<LogFile>();
+    for (std::size_t i = 0; i < earlier.size(); ++i)
+        if (!known.contains(earlier.flight(i))) add_earlier(earlier[i], out, find_place, prune, plan, all);
+    for (const auto number : all.by_path()) plan.logs.push_back(all[number]);
     plan.manifest.files = {model_names.begin(), model_names.end()};
     plan.manifest.files.insert(catalogue_name);
-    for (const auto& log : plan.logs) {
-        if (!log.problem.empty()) continue;  // leaves no file
-        plan.manifest.flights.push_back({log.flight, log.path, place_of(log.path), log.why_not_fitted});
+    for (const auto number : plan.logs.by_flight()) {
+        const auto log = plan.logs[number];
+        if (log.problem.empty()) plan.manifest.flights.push_back(log);  // else it leaves no file
     }
-    std::ranges::sort(plan.manifest.flights, {}, &ManifestFlight::flight);
     return plan;
 }
 
 void refuse_files_of_others(const BatchPlan& plan, const std::filesystem::path& out) {
     for (const auto& name : plan.manifest.files) {
+        declare_output(out / name);
         refuse_if_in_the_way(out / name, plan.earlier.files.contains(name));
     }
     declare_output(out / manifest_name);
-    std::set<std::string> earlier;
-    for (const auto& flight : plan.earlier.flights) earlier.insert(flight.flight);
-    for (const auto& flight : plan.manifest.flights) {
+    refuse_links(out);
+    for (const auto& dropped : plan.dropped)
+        for (const auto* ending : result_endings) refuse_to_lose(out / "flights" / (dropped.flight + ending));
+    const auto earlier = names_of(plan.earlier.flights);
+    const auto& flights = plan.manifest.flights;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
         for (const auto* ending : result_endings) {
-            refuse_if_in_the_way(out / "flights" / (flight.flight + ending), earlier.contains(flight.flight));
+            const auto file = out / "flights" / (std::string(flights.flight(i)) + ending);
+            refuse_to_lose(file);  // a log, say
+            refuse_if_in_the_way(file, earlier.contains(flights.flight(i)));
         }
     }
 }
 
+void refuse_new_batch(const std::filesystem::path& out) {
+    if (!is_there(out / manifest_name)) return;
+    throw OutputError(fmt::format("another run has made {} meanwhile; run the command again", out.string()));
+}
+
 void prepare_folder(const BatchPlan& plan, const std::filesystem::path& out) {
+    make_directories(out / "flights");
     make_directories(out / unfinished_folder);
     remove_unfinished(out / unfinished_folder);
-    std::set<std::string> stay;
-    for (const auto& flight : plan.manifest.flights) stay.insert(flight.flight);
-    auto listed = plan.manifest;
-    for (const auto& flight : plan.earlier.flights)
-        if (!stay.contains(flight.flight)) listed.flights.push_back(flight);
-    write_manifest(listed, out);
-    make_directories(out / "flights");
-    if (listed.flights.size() == plan.manifest.flights.size()) return;
-    for (const auto& dropped : plan.dropped)
-        if (!stay.contains(dropped.flight)) remove_results(out, dropped.flight);
+    const auto stay = names_of(plan.manifest.flights);
+    std::vector<LogFile> others;
+    for (std::size_t i = 0; i < plan.earlier.flights.size(); ++i)
+        if (!stay.contains(plan.earlier.flights.flight(i))) others.push_back(plan.earlier.flights[i]);
+    if (!others.empty()) {
+        auto listed = plan.manifest;
+        for (const auto& flight : others) listed.flights.push_back(flight);
+        write_manifest(listed, out);
+        for (const auto& dropped : plan.dropped)
+            if (!stay.contains(dropped.flight)) remove_results(out, dropped.flight);
+    }
     write_manifest(plan.manifest, out);
 }
 

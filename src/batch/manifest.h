@@ -14,22 +14,11 @@ inline constexpr auto manifest_name = "batch.json";
 /// The folder in OUT where files stand until they are whole.
 inline constexpr auto unfinished_folder = ".flightwatt-unfinished";
 
-/// A flight whose files are the batch's: flights/NAME.series.csv, .phases.csv and .record.json.
-struct ManifestFlight {
-    std::string flight;
-    std::filesystem::path log;    ///< as it was given
-    std::filesystem::path place;  ///< the same from the root
-    std::string why_not_fitted;   ///< see LogFile
-};
-
 struct Manifest {
-    std::set<std::string> files;          ///< in OUT itself
-    std::vector<ManifestFlight> flights;  ///< by name
-    bool is_of_earlier_version = false;   ///< there is none: it was made up from the records
+    std::set<std::string> files;         ///< in OUT itself
+    LogList flights;                     ///< whose files are the batch's, by name
+    bool is_of_earlier_version = false;  ///< there is none: it was made up from the records
 };
-
-/// The path of a log from the root, its folder without links: one log, one place, however it is written.
-std::filesystem::path place_of(const std::filesystem::path& log);
 
 /// OUT/batch.json; where there is none, what records of an earlier version stand for (nothing in an empty or new
 /// folder). Throws InputError where batch.json is damaged, another program's, or of a newer format.
@@ -45,7 +34,7 @@ struct DroppedFlight {
 
 /// What a run is to do.
 struct BatchPlan {
-    std::vector<LogFile> logs;  ///< this run's and those of earlier runs, by path
+    LogList logs;  ///< this run's and those of earlier runs, by path
     std::vector<DroppedFlight> dropped;
     Manifest manifest;  ///< once it is done
     Manifest earlier;
@@ -58,6 +47,9 @@ BatchPlan plan_batch(std::vector<LogFile> logs, const std::filesystem::path& out
 
 /// Throws UsageError, naming it, where a file that no batch wrote stands where this one is going to write.
 void refuse_files_of_others(const BatchPlan& plan, const std::filesystem::path& out);
+
+/// Throws OutputError where another run made a batch of the folder since it was not there when this one was planned.
+void refuse_new_batch(const std::filesystem::path& out);
 
 /// Makes the folders, lists in batch.json what is going to be written, and removes what is dropped and what killed runs
 /// left unfinished. Killed at any moment, every file is listed.

@@ -28,7 +28,7 @@ std::filesystem::path result_of(const std::filesystem::path& out, const std::str
 /// A flight of one of the batches, as its list has it.
 struct ListedFlight {
     std::filesystem::path from;
-    ManifestFlight listed;
+    LogFile listed;
 };
 
 /// The flights of one batch. Throws InputError for what is no batch's folder, or of one that was not finished.
@@ -39,7 +39,9 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
                          "make it with: flightwatt batch LOGS --no-fit -o FOLDER");
     }
     std::vector<ListedFlight> flights;
-    for (auto& listed : read_manifest(batch).flights) {
+    const auto listed_flights = read_manifest(batch).flights;
+    for (std::size_t i = 0; i < listed_flights.size(); ++i) {
+        auto listed = listed_flights[i];
         if (!std::filesystem::exists(result_of(batch, listed.flight, record_ending), none)) {
             throw InputError({batch.string()},
                              fmt::format("this batch was not finished: {} has no record", listed.flight),
@@ -60,7 +62,7 @@ std::string fingerprint_in(const ListedFlight& flight) {
 void require_same(const ListedFlight& one, const ListedFlight& other) {
     if (fingerprint_in(one) == fingerprint_in(other)) return;
     throw InputError(
-        {one.listed.place.string()},
+        {one.listed.place},
         fmt::format("this log was read differently by the batches {} and {}: it changed meanwhile, or their "
                     "options differ",
                     one.from.string(), other.from.string()),
@@ -70,9 +72,11 @@ void require_same(const ListedFlight& one, const ListedFlight& other) {
 /// By the paths of their logs, each log once. Returns how many were left out.
 std::size_t keep_each_once(std::vector<ListedFlight>& flights) {
     std::ranges::stable_sort(flights, [](const ListedFlight& one, const ListedFlight& other) {
-        return std::tie(one.listed.log, one.listed.place) < std::tie(other.listed.log, other.listed.place);
+        const auto& [log, place] = std::tie(one.listed.path, one.listed.place);
+        return log == other.listed.path ? comes_before(place, other.listed.place)
+                                        : comes_before(log, other.listed.path);
     });
-    std::map<std::filesystem::path, std::size_t> seen;
+    std::map<std::string, std::size_t> seen;
     std::vector<ListedFlight> kept;
     for (auto& flight : flights) {
         const auto [place, is_new] = seen.emplace(flight.listed.place, kept.size());
@@ -87,12 +91,11 @@ std::size_t keep_each_once(std::vector<ListedFlight>& flights) {
 }
 
 /// Throws UsageError for a flight of `out` that is in none of the batches and is not to be dropped.
-void drop_others(const std::set<std::filesystem::path>& places, const std::filesystem::path& out, bool prune,
-                 BatchPlan& plan) {
-    for (const auto& flight : plan.earlier.flights) {
+void drop_others(const std::set<std::string>& places, const std::filesystem::path& out, bool prune, BatchPlan& plan) {
+    for (std::size_t i = 0; i < plan.earlier.flights.size(); ++i) {
+        const auto flight = plan.earlier.flights[i];
         if (places.contains(flight.place)) continue;
-        plan.dropped.push_back(
-            {flight.flight, fmt::format("its log {} is in none of the batches", flight.log.string())});
+        plan.dropped.push_back({flight.flight, fmt::format("its log {} is in none of the batches", flight.path)});
     }
     if (plan.dropped.empty() || prune) return;
     throw UsageError(
@@ -122,7 +125,7 @@ class FlightMerger {
     BatchFlight merge(std::size_t number) const {
         const OwnFiles own;  // its batches' results, which are no inputs that a result could replace
         const auto& [from, flight] = plan_.sources[number];
-        const auto& name = plan_.folder.logs[number].flight;
+        const std::string name(plan_.folder.logs.flight(number));
         BatchFlight merged;
         const auto text = read_file(result_of(from, flight, record_ending));
         merged.record = read_intact_record(from, flight);
@@ -134,7 +137,6 @@ class FlightMerger {
             take_over_as(name, from, flight, merged.record);
         }
         merged.selection = selection_of(select_for_fit(merged.record, options_.needed_samples, {}));
-        merged.record.verdicts = std::vector<RecordedVerdict>();
         return merged;
     }
 
@@ -182,7 +184,6 @@ class FlightMerger {
             record.results = results_fingerprint(options_.out, name);
         }
         write(name, record_ending, to_json_text(record));
-        record.content.marks = {};  // of thousands of flights they would fill the memory
     }
 
     void write(const std::string& name, const char* ending, const std::string& text) const {
@@ -213,29 +214,29 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
     folder.manifest.files = {model_names.begin(), model_names.end()};
     folder.manifest.files.insert(catalogue_name);
     FreeNames names;
-    std::set<std::filesystem::path> places;
+    std::set<std::string> places;
     for (auto& [from, listed] : flights) {
         places.insert(listed.place);
-        const auto name = names.give(listed.log);
-        folder.logs.push_back({listed.log, name, listed.why_not_fitted});
-        folder.manifest.flights.push_back({name, listed.log, listed.place, listed.why_not_fitted});
-        plan.sources.push_back({from, std::move(listed.flight)});
+        plan.sources.push_back({from.string(), std::move(listed.flight)});
+        listed.flight = names.give(listed.path);
+        folder.logs.push_back(listed);
     }
-    std::ranges::sort(folder.manifest.flights, {}, &ManifestFlight::flight);
+    for (const auto number : folder.logs.by_flight()) folder.manifest.flights.push_back(folder.logs[number]);
     drop_others(places, out, prune, folder);
     return plan;
 }
 
-std::vector<BatchFlight> merge_flights(const MergePlan& plan, const MergeOptions& options,
-                                       const BatchProgress& progress) {
-    std::vector<BatchFlight> flights(plan.sources.size());
+BatchFlights merge_flights(const MergePlan& plan, const MergeOptions& options, const BatchProgress& progress) {
+    make_directories(options.out / unfinished_folder);
+    BatchFlights flights(plan.sources.size(), options.out / unfinished_folder);
     const FlightMerger merger(plan, options);
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
     for_each_in_parallel(flights.size(), [&](std::size_t i) {
-        flights[i] = merger.merge(i);
+        const auto flight = merger.merge(i);
+        flights.put(i, flight);
         const std::lock_guard lock(mutex);
-        progress(++done, flights.size(), flights[i]);
+        progress(++done, flights.size(), flight);
     });
     return flights;
 }

@@ -14,8 +14,8 @@ namespace flightwatt::batch {
 
 /// A flight that is taken over, in the order of `MergePlan::folder.logs`.
 struct MergedFlight {
-    std::filesystem::path from;  ///< the folder of its batch
-    std::string flight;          ///< what it is called there
+    std::string from;    ///< the folder of its batch
+    std::string flight;  ///< what it is called there
 };
 
 struct MergePlan {
@@ -42,7 +42,6 @@ struct MergeOptions {
 /// name stays and the file system can, else as a copy; one that is there already stays. Several flights at a time.
 /// Returned in the order of the plan, without the samples. Throws InputError for a flight that is not as its batch
 /// wrote it, OutputError where OUT cannot be written. The folder is to be prepared before (manifest.h).
-std::vector<BatchFlight> merge_flights(const MergePlan& plan, const MergeOptions& options,
-                                       const BatchProgress& progress);
+BatchFlights merge_flights(const MergePlan& plan, const MergeOptions& options, const BatchProgress& progress);
 
 }  // namespace flightwatt::batch

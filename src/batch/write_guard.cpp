@@ -44,6 +44,11 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
         fmt::format("another run is writing into {}; wait for it, or choose another folder", folder.string()));
 }
 
+EmptyAtEnd::~EmptyAtEnd() {
+    std::error_code ignored;
+    std::filesystem::remove(folder, ignored);
+}
+
 FolderLock::~FolderLock() { ::close(folder_); }
 
 WriteGate::Pass::Pass(WriteGate& gate) : gate_(gate) {

@@ -27,6 +27,12 @@ class FolderLock {
     int folder_ = -1;
 };
 
+/// A folder that is removed at the end if nothing is left in it.
+struct EmptyAtEnd {
+    std::filesystem::path folder;
+    ~EmptyAtEnd();
+};
+
 /// Lets files be written whole before the program ends: those who write are inside, whoever ends the program
 /// closes it first.
 class WriteGate {

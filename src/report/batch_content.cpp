@@ -28,16 +28,16 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         if (!damage.empty()) content.damaged.push_back(record.flight + ": " + damage);
         if (record.accepted) {
             auto selection = batch::select_for_fit(record, needed, load);
-            const auto copy = fit.copies.find(record.flight);
-            if (copy != fit.copies.end()) {
+            const auto* copy = batch::used_instead_of(record.flight, fit.repeated);
+            if (copy != nullptr) {
                 selection.flights.clear();
-                selection.exclusions.push_back({record.flight, std::nullopt, batch::reason_of_copy(copy->second)});
+                selection.exclusions.push_back({record.flight, std::nullopt, batch::reason_of_copy(*copy)});
             }
             for (const auto& exclusion : selection.exclusions) flight.exclusions.push_back(to_string(exclusion));
             std::move(selection.flights.begin(), selection.flights.end(), std::back_inserter(content.measured));
             flight.verdicts = record.verdicts;
             flight.unusable_power = batch::exclusion_of(record, load);
-            if (copy != fit.copies.end()) flight.unusable_power = batch::reason_of_copy(copy->second);
+            if (copy != nullptr) flight.unusable_power = batch::reason_of_copy(*copy);
             flight.series = std::move(series);
             flight.phases = std::move(phases);
         }

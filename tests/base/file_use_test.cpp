@@ -60,6 +60,18 @@ TEST_F(FileUse, LetsNoResultReplaceWhatWasReadByWhateverName) {
     EXPECT_EQ(read_file(input), "only copy");
 }
 
+TEST_F(FileUse, KnowsThousandsOfInputs) {
+    constexpr int count = 1100;
+    const auto file = [&](int number) { return folder / ("log" + std::to_string(number)); };
+    for (int i = 0; i < count; ++i) write_file_atomically(file(i), "x");
+    EXPECT_TRUE(holds_when_watched([&] {
+        for (int i = 0; i < count; ++i) read_file(file(i));
+        for (const int number : {0, 999, 1000, count - 1})
+            if (!refused([&] { write_file_atomically(file(number), "y"); })) return false;
+        return !refused([&] { write_file_atomically(folder / "other", "y"); });
+    }));
+}
+
 TEST_F(FileUse, RefusesToReadWhatAResultIsToReplace) {
     EXPECT_TRUE(holds_when_watched([&] {
         declare_output(folder / "hardlink", "--output");

@@ -1,5 +1,6 @@
 #include "base/csv.h"
 #include "batch/batch_run.h"
+#include "helpers/sample_logs.h"
 
 #include <string>
 
@@ -45,8 +46,14 @@ BatchFlight rejected_flight() {
     return flight;
 }
 
+BatchFlights both_flights() {
+    const std::vector<BatchFlight> flights{two_sorties(), rejected_flight()};
+    return {flights, test::scratch_dir()};
+}
+
 TEST(Catalogue, HasARowAPhaseAndARejectedLog) {
-    const auto table = parse_csv(catalogue_csv({two_sorties(), rejected_flight()}), "flights.csv");
+    const auto flights = both_flights();
+    const auto table = parse_csv(test::text_of(catalogue_csv(flights)), "flights.csv");
     const std::vector<std::string> first(table.columns.begin(), table.columns.begin() + 11);
     EXPECT_THAT(first, testing::ElementsAre("flight", "sortie", "phase", "start_s", "end_s", "duration_s", "samples",
                                             "mean_power_w", "energy_wh", "counter_energy_wh", "used"));
@@ -74,7 +81,7 @@ TEST(Catalogue, HasARowAPhaseAndARejectedLog) {
 }
 
 TEST(FlightsTable, HasARowASortie) {
-    const auto table = flights_table({two_sorties(), rejected_flight()});
+    const auto table = flights_table(both_flights(), 2);
     ASSERT_EQ(table.rows.size(), 3U);
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
     EXPECT_THAT(table.rows[0],

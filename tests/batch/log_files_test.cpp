@@ -57,6 +57,19 @@ TEST(FindLogs, TakesALogOnceHoweverItIsWritten) {
     EXPECT_THAT(names(logs), ElementsAre("a"));
 }
 
+TEST(FindLogs, DoesNotTakeLinksForFolders) {
+    const auto folder = test::scratch_dir();
+    touch(folder / "here" / "x.data");
+    touch(folder / "far" / "x.data");
+    touch(folder / "far" / "below" / "y.data");
+    std::filesystem::create_directory_symlink(folder / "far" / "below", folder / "here" / "link");
+    const auto logs = find_logs({(folder / "here" / "link" / ".." / "x.data").string()});
+    ASSERT_EQ(logs.size(), 1U);
+    EXPECT_EQ(logs[0].place, folder / "far" / "x.data");
+    EXPECT_TRUE(std::filesystem::equivalent(logs[0].path, folder / "far" / "x.data"));
+    EXPECT_EQ(find_logs({(folder / "here" / ".." / "far" / "x.data").string()})[0].path, folder / "far" / "x.data");
+}
+
 TEST(FindLogs, GivesEachLogANameOfItsOwn) {
     const auto folder = test::scratch_dir();
     for (const auto* name : {"1/x.data", "2/x.data", "3/x.data", "4/x_2.data", "5/.data", "6/.data"}) {
@@ -132,8 +145,11 @@ TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {
 }
 
 TEST(ListedPaths, AreLinesAsTheyStand) {
-    EXPECT_THAT(listed_paths(""), ElementsAre());
-    EXPECT_THAT(listed_paths("a.data\n\n b c.data\n#d.data"), ElementsAre("a.data", " b c.data", "#d.data"));
+    EXPECT_THAT(listed_paths("", "list"), ElementsAre());
+    EXPECT_THAT(listed_paths("a.data\n\n b c.data\n#d.data", "list"), ElementsAre("a.data", " b c.data", "#d.data"));
+    EXPECT_EQ(
+        rejected([] { listed_paths(std::string_view("a.data\nb\0c", 10), "list"); }),
+        "list:2: holds a NUL, which no path does; expected the path of a log in each line, as find -print writes them");
 }
 
 TEST(FindLogs, TakesWhatIsListedAsItIs) {

@@ -11,6 +11,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace flightwatt::batch {
 namespace {
@@ -35,11 +36,19 @@ std::vector<std::string> words(const std::vector<DroppedFlight>& dropped) {
     return lines;
 }
 
+LogFile listed(const std::string& flight, const std::string& path, const std::string& place,
+               const std::string& why_not_fitted = "") {
+    LogFile log{path, flight, why_not_fitted};
+    log.place = place;
+    return log;
+}
+
 TEST(Manifest, HoldsAnyName) {
     const auto out = test::scratch_dir();
     Manifest manifest;
     manifest.files = {"flights.csv"};
-    manifest.flights = {{"caf\xE9", "in/caf\xE9.data", "/in/caf\xE9.data", ""}, {"\"a\"", "a", "/a", "why"}};
+    manifest.flights.push_back(listed("caf\xE9", "in/caf\xE9.data", "/in/caf\xE9.data"));
+    manifest.flights.push_back(listed("\"a\"", "/a", "/a", "why"));
     write_manifest(manifest, out);
     const auto read = read_manifest(out);
     EXPECT_EQ(read.files, manifest.files);
@@ -47,6 +56,8 @@ TEST(Manifest, HoldsAnyName) {
     EXPECT_EQ(read.flights[0].flight, "caf\xE9");
     EXPECT_EQ(read.flights[0].place, "/in/caf\xE9.data");
     EXPECT_EQ(read.flights[1].why_not_fitted, "why");
+    EXPECT_EQ(read.flights[1].place, "/a");
+    EXPECT_TRUE(nlohmann::json::parse(read_file(out / manifest_name)).at("flights").is_array());
     EXPECT_FALSE(read.is_of_earlier_version);
 }
 
@@ -55,12 +66,34 @@ TEST(Manifest, IsRefusedWhereItIsNone) {
     EXPECT_THAT(read_manifest(out).flights, IsEmpty());
     for (const auto* text : {"", "{", "[]", "{\"format\": 1}", R"({"format": 1, "files": [], "flights": [{}]})",
                              R"({"format": 1, "files": [], "flights":
-                                [{"flight": "../x", "log": "", "place": "", "why_not_fitted": ""}]})"}) {
+                                [{"flight": "../x", "log": "", "place": "", "why_not_fitted": ""}]})",
+                             R"({"format": 1, "files": [], "flights": ["x"]})",
+                             R"({"format": 1, "files": [], "flights": [[{"flight": "x", "log": "x", "place": "/x",
+                                "why_not_fitted": ""}]]})",
+                             R"({"format": 1, "files": [], "flights":
+                                [{"flight": "x\u0000", "log": "x", "place": "/x", "why_not_fitted": ""}]})",
+                             R"({"format": 1, "files": [], "flights":
+                                [{"flight": "x", "log": "x", "place": "/x", "why_not_fitted": ""},
+                                 {"flight": "x", "log": "y", "place": "/y", "why_not_fitted": ""}]})"}) {
         write_text(out / manifest_name, text);
         EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("batch.json: this is no list")) << text;
     }
+    write_text(out / manifest_name, R"({"format": 1, "files": [], "flights": [], "x": )" + std::string(1000, '[') +
+                                        std::string(1000, ']') + "}");
+    EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("batch.json: this is no list"));
     write_text(out / manifest_name, R"({"format": 99})");
     EXPECT_THAT(test::rejected([&] { read_manifest(out); }), HasSubstr("newer"));
+}
+
+TEST(Manifest, PassesOverWhatALaterVersionAdds) {
+    const auto out = test::scratch_dir();
+    write_text(out / manifest_name, R"({"format": 1, "files": [], "more": {"a": {"flight": "ghost", "log": "g",
+        "place": "/g", "why_not_fitted": ""}}, "flights":
+        [{"flight": "x", "log": "x", "place": "/x", "why_not_fitted": "", "size": {"bytes": [1]}}],
+        "rest": [{"flight": "ghost"}]})");
+    const auto flights = read_manifest(out).flights;
+    ASSERT_EQ(flights.size(), 1U);
+    EXPECT_EQ(flights.flight(0), "x");
 }
 
 TEST(Manifest, IsMadeOfTheRecordsOfAnEarlierVersion) {
@@ -120,11 +153,38 @@ TEST(BatchPlan, SaysWhatIsDropped) {
                             "opterra_synthetic_02, its log " + in + "/opterra_synthetic_02.data is not in this batch"));
 }
 
+TEST(BatchPlan, LeadsIntoNoOtherFolder) {
+    const auto folder = test::scratch_dir();
+    const auto in = folder / "in";
+    test::copy_sample(1, in);
+    test::batch(in, folder / "other");
+    const auto plan = [&] { return plan_batch(find_logs({in.string()}), folder / "out", true); };
+    for (const auto* name : {"flights", manifest_name, unfinished_folder}) {
+        const auto link = folder / "out" / name;
+        make_directories(folder / "out");
+        make_directories(folder / "other" / unfinished_folder);
+        std::filesystem::create_symlink(folder / "other" / name, link);
+        EXPECT_THAT(refusal(plan(), folder / "out"), HasSubstr(link.string())) << name;
+        std::filesystem::remove(link);
+    }
+    // A larger disk may hold the flights.
+    make_directories(folder / "disk");
+    std::filesystem::create_directory_symlink(folder / "disk", folder / "out" / "flights");
+    EXPECT_EQ(refusal(plan(), folder / "out"), "");
+}
+
+TEST(BatchPlan, IsNotForAFolderThatAnotherRunMade) {
+    const auto folder = test::scratch_dir();
+    refuse_new_batch(folder);
+    write_manifest({}, folder);
+    EXPECT_THROW(refuse_new_batch(folder), OutputError);
+}
+
 TEST(BatchPlan, KnowsLogsAgainInAFolderThatMoved) {
     const auto folder = test::scratch_dir();
     for (const auto* name : {"here", "there"}) std::filesystem::create_directories(folder / name);
     Manifest manifest;
-    manifest.flights = {{"x_2", "in/x.data", folder / "here" / "in" / "x.data", ""}};
+    manifest.flights.push_back(listed("x_2", "in/x.data", folder / "here" / "in" / "x.data"));
     write_manifest(manifest, folder);
     const auto plan = plan_batch({{"in/x.data", "x"}}, folder, false);
     ASSERT_EQ(plan.logs.size(), 1U);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -15,10 +16,16 @@ namespace {
 
 using test::batch;
 using test::copy_sample;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Pair;
-using testing::UnorderedElementsAre;
+
+/// Finds and excludes them.
+std::vector<CopiedFlight> copies_of(BatchFlights& flights, const std::filesystem::path& out) {
+    const auto repeated = find_repeated(flights, out);
+    exclude_repeated(flights, repeated);
+    return repeated.copies;
+}
 
 TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     const auto folder = test::scratch_dir();
@@ -26,8 +33,7 @@ TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     copy_sample(1, folder / "in", "b");
     copy_sample(2, folder / "in", "c");
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")),
-                UnorderedElementsAre(Pair("b", "a")));
+    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(CopiedFlight{"b", "a", true}));
     EXPECT_THAT(flights[1].selection.flights, IsEmpty());
     EXPECT_EQ(to_string(flights[1].selection.exclusions.back()),
               "b: it is excluded from the fit: it is the same flight as a, which is used");
@@ -35,8 +41,7 @@ TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     // Rather that of which the log is there.
     std::filesystem::remove(folder / "in" / "a.data");
     flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")),
-                UnorderedElementsAre(Pair("a", "b")));
+    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(CopiedFlight{"a", "b", true}));
 }
 
 /// What another receiver made of a log: it lost every nth line.
@@ -53,13 +58,11 @@ TEST(RepeatedFlights, UsesTheBetterOfTwoRecordingsOfAFlight) {
     lose_lines(copy_sample(1, folder / "in", "a"), 4);
     lose_lines(copy_sample(1, folder / "in", "b"), 9);
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")),
-                UnorderedElementsAre(Pair("a", "b")));
+    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(CopiedFlight{"a", "b", true}));
     // What has its definitions is used, however few its lines.
     std::filesystem::remove(folder / "in" / "b.log");
     flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")),
-                UnorderedElementsAre(Pair("b", "a")));
+    EXPECT_THAT(copies_of(flights, folder / "out"), ElementsAre(CopiedFlight{"b", "a", true}));
 }
 
 TEST(RepeatedFlights, WarnsOfTwoRecordingsThatShareLittle) {
@@ -72,7 +75,7 @@ TEST(RepeatedFlights, WarnsOfTwoRecordingsThatShareLittle) {
     write_file_atomically(folder / "in" / "b.data",
                           text.substr(0, text.find('\n') + 1) + fmt::format("{}", fmt::join(rest.after, "")));
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_THAT(exclude_repeated(flights, find_repeated(flights, folder / "out")), IsEmpty());
+    EXPECT_THAT(copies_of(flights, folder / "out"), IsEmpty());
     EXPECT_THAT(flights[0].record.warnings.back() + flights[1].record.warnings.back(),
                 HasSubstr("of one flight both, less than half of either: it counts twice"));
 }
@@ -82,9 +85,12 @@ TEST(RepeatedFlights, KnowsThatFlightsAreOfSeveralAircraft) {
     for (int number = 1; number <= 2; ++number) copy_sample(number, folder / "in");
     auto flights = batch(folder / "in", folder / "out");
     EXPECT_EQ(mix_of(flights), "");
-    flights[0].record.aircraft_id = "8";
+    auto first = flights[0];
+    first.record.aircraft_id = "8";
+    flights.put(0, first);
     EXPECT_THAT(mix_of(flights), HasSubstr("; 8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01"));
-    flights[0].selection.flights.clear();
+    first.selection.flights.clear();
+    flights.put(0, first);
     EXPECT_EQ(mix_of(flights), "") << "what is not fitted does not count";
 }
 

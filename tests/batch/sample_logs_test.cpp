@@ -32,7 +32,7 @@ namespace {
 
 namespace io = boost::iostreams;
 
-mechanical::MechanicalModel fit_of(const std::vector<BatchFlight>& flights, const std::filesystem::path& out) {
+mechanical::MechanicalModel fit_of(const BatchFlights& flights, const std::filesystem::path& out) {
     std::vector<mechanical::FlightSamples> samples;
     for (auto& measured : test::samples_of(flights, out)) samples.push_back(std::move(measured.samples));
     return fit_model(samples).model;

@@ -38,8 +38,8 @@ inline std::map<std::string, std::string> contents(const std::filesystem::path& 
 }
 
 /// A batch over `input` into `out`, with the catalogue that flightwatt batch writes.
-inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input, const std::filesystem::path& out,
-                                             unsigned jobs = 2, bool prune = false) {
+inline batch::BatchFlights batch(const std::filesystem::path& input, const std::filesystem::path& out,
+                                 unsigned jobs = 2, bool prune = false) {
     batch::BatchOptions options;
     options.out = out;
     options.jobs = jobs;
@@ -52,15 +52,22 @@ inline std::vector<batch::BatchFlight> batch(const std::filesystem::path& input,
 }
 
 /// What a fit takes of the batch in `out`.
-inline std::vector<mechanical::MeasuredFlight> samples_of(const std::vector<batch::BatchFlight>& flights,
+inline std::vector<mechanical::MeasuredFlight> samples_of(const batch::BatchFlights& flights,
                                                           const std::filesystem::path& out) {
     batch::BatchOptions options;
     options.out = out;
     return read_samples(flights, options);
 }
 
+/// A text that is written in pieces.
+inline std::string text_of(const TextWriter& write) {
+    std::string text;
+    write([&](std::string_view piece) { text += piece; });
+    return text;
+}
+
 /// The flights that were done anew.
-inline std::vector<std::string> done_anew(const std::vector<batch::BatchFlight>& flights) {
+inline std::vector<std::string> done_anew(const batch::BatchFlights& flights) {
     std::vector<std::string> names;
     for (const auto& flight : flights) {
         if (!flight.was_up_to_date) names.push_back(flight.record.flight);

@@ -1,0 +1,136 @@
+#include "base/error.h"
+#include "base/file_use.h"
+#include "base/parallel.h"
+#include "batch/batch_files.h"
+#include "batch/batch_run.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::batch {
+namespace {
+
+/// A flight that may be another one, or another one it: no more of each than their order takes.
+struct Candidate {
+    std::size_t number = 0;  ///< in the batch
+    std::size_t samples = 0;
+    std::size_t decimals = 0;
+    bool has_definitions = false;
+    bool is_fitted = false;
+    bool is_kept = false;
+
+    flight::FlightContent content() const {
+        flight::FlightContent content;
+        content.samples = samples;
+        content.decimals = decimals;
+        content.has_definitions = has_definitions;
+        return content;
+    }
+};
+
+/// Those to be used first.
+std::vector<Candidate> candidates_among(const BatchFlights& flights) {
+    std::vector<Candidate> candidates;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const auto flight = flights[i];
+        const auto& content = flight.record.content;
+        const bool is_fitted = !flight.selection.flights.empty();
+        if (is_fitted || !flight.record.lacks_power.empty())
+            candidates.push_back(
+                {i, content.samples, content.decimals, content.has_definitions, is_fitted, flight.is_kept});
+    }
+    // The one with power is used, of these one that is still there, of these the better copy.
+    std::ranges::stable_sort(candidates, [](const Candidate& one, const Candidate& other) {
+        const auto rank = [](const Candidate& flight) { return std::pair(!flight.is_fitted, flight.is_kept); };
+        if (rank(one) != rank(other)) return rank(one) < rank(other);
+        return is_better_copy(one.content(), other.content());
+    });
+    return candidates;
+}
+
+struct NamedContent {
+    std::string flight;
+    bool has_power = false;
+    flight::FlightContent content;  ///< with its marks, which only its file has
+};
+
+NamedContent content_of(const FlightRecord& record, const std::filesystem::path& out) {
+    const OwnFiles own;
+    const auto file = out / "flights" / (record.flight + record_ending);
+    auto marks = marks_from_json(read_file(file));
+    if (!marks) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
+    NamedContent named{record.flight, record.lacks_power.empty(), record.content};
+    named.content.marks = *std::move(marks);
+    return named;
+}
+
+}  // namespace
+
+std::string reason_of_copy(const std::string& other) {
+    return fmt::format("it is the same flight as {}, which is used", other);
+}
+
+RepeatedFlights find_repeated(const BatchFlights& flights, const std::filesystem::path& out) {
+    const auto candidates = candidates_among(flights);
+    flight::KnownFlights known;
+    std::vector<std::string> used;
+    RepeatedFlights repeated;
+    constexpr std::size_t at_once = 256;  // of a hundred thousand, marks would fill the memory
+    std::vector<NamedContent> contents(at_once);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (i % at_once == 0) {
+            for_each_in_parallel(std::min(at_once, candidates.size() - i), [&](std::size_t k) {
+                contents[k] = content_of(flights[candidates[i + k].number].record, out);
+            });
+        }
+        auto& [name, has_power, content] = contents[i % at_once];
+        const auto alike = known.find(content);
+        const auto same = std::ranges::find_if(alike, [](const auto& like) { return like.likeness.is_same; });
+        if (same != alike.end()) {
+            repeated.copies.push_back({name, used[same->number], has_power});
+            continue;
+        }
+        for (const auto& [number, likeness] : alike)
+            repeated.overlaps.emplace_back(name, flight::describe_overlap(used[number], name, likeness));
+        known.add(std::move(content));
+        used.push_back(name);
+    }
+    repeated.copies.shrink_to_fit();
+    std::ranges::sort(repeated.copies, {}, &CopiedFlight::flight);
+    return repeated;
+}
+
+const std::string* used_instead_of(const std::string& flight, const RepeatedFlights& repeated) {
+    const auto copy = std::ranges::lower_bound(repeated.copies, flight, {}, &CopiedFlight::flight);
+    const bool is_found = copy != repeated.copies.end() && copy->flight == flight && copy->has_power;
+    return is_found ? &copy->same_as : nullptr;
+}
+
+void exclude_repeated(BatchFlights& flights, const RepeatedFlights& repeated) {
+    if (repeated.copies.empty() && repeated.overlaps.empty()) return;
+    auto overlaps = repeated.overlaps;
+    std::ranges::stable_sort(overlaps, {}, &std::pair<std::string, std::string>::first);
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        auto flight = flights[i];
+        const auto& name = flight.record.flight;
+        const auto copy = std::ranges::lower_bound(repeated.copies, name, {}, &CopiedFlight::flight);
+        const bool is_copy = copy != repeated.copies.end() && copy->flight == name;
+        auto part = std::ranges::lower_bound(overlaps, name, {}, &std::pair<std::string, std::string>::first);
+        const bool has_part = part != overlaps.end() && part->first == name;
+        if (!is_copy && !has_part) continue;
+        for (; part != overlaps.end() && part->first == name; ++part) flight.record.warnings.push_back(part->second);
+        if (is_copy) {
+            flight.selection.flights.clear();
+            flight.selection.exclusions.push_back({name, std::nullopt,
+                                                   copy->has_power
+                                                       ? reason_of_copy(copy->same_as)
+                                                       : fmt::format("it is the same flight as {}", copy->same_as)});
+        }
+        flights.put(i, flight);
+    }
+}
+
+}  // namespace flightwatt::batch
