@@ -219,6 +219,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
     if (is_known) known = known_fit(options.out);
     auto repeated = known ? std::move(known->fit.repeated) : find_repeated(flights, options.out);
     exclude_repeated(flights, repeated);
+    repeated.copies = {};  // of an archive, too many to be held beside the fit
     report_notes(call, flights);
     {
         const batch::WriteGate::Pass pass(*options.gate);
@@ -249,7 +250,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
         refuse_mix(call, flights, options.out);
         auto [fit, physical] = known ? *std::move(known) : fit_batch(call, flights, options);
         ::malloc_trim(0);  // the samples
-        fit.repeated = std::move(repeated);
+        fit.repeated = {copies_among(flights), std::move(repeated.overlaps)};
         fit.excluded = options.load.excluded;
         fit.keep = options.load.keep;
         fit.made_from = made_from;

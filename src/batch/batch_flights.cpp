@@ -50,7 +50,7 @@ void serialize(Archive& archive, SelectedSortie& sortie) {
 template <typename Archive>
 void serialize(Archive& archive, BatchFlight& flight) {
     archive(flight.record, flight.was_up_to_date, flight.is_of_this_run, flight.is_kept, flight.selection.flights,
-            flight.selection.exclusions);
+            flight.selection.exclusions, flight.selection.same_as);
 }
 
 namespace {

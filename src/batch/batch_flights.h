@@ -25,6 +25,7 @@ struct SelectedSortie {
 struct Selection {
     std::vector<SelectedSortie> flights;  ///< none if the log was rejected
     std::vector<mechanical::Exclusion> exclusions;
+    std::string same_as{};  ///< the flight that is used instead of this one, which it is under a second name
 };
 
 /// One log of a batch, done or found up to date.

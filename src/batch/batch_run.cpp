@@ -224,10 +224,12 @@ BatchFlights run_batch(const LogList& logs, const BatchOptions& options, const B
 }
 
 std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights, const BatchOptions& options) {
-    std::vector<std::vector<mechanical::MeasuredFlight>> of_logs(flights.size());
-    for_each_in_parallel(flights.size(), [&](std::size_t i) {
-        const auto flight = flights[i];
-        if (flight.selection.flights.empty()) return;
+    std::vector<std::size_t> selected;
+    for (std::size_t i = 0; i < flights.size(); ++i)
+        if (!flights[i].selection.flights.empty()) selected.push_back(i);
+    std::vector<std::vector<mechanical::MeasuredFlight>> of_logs(selected.size());
+    for_each_in_parallel(selected.size(), [&](std::size_t i) {
+        const auto flight = flights[selected[i]];
         const OwnFiles own;
         const auto file = result_path(options, flight.record.flight, record_ending);
         auto record = record_from_json(read_file(file));

@@ -65,6 +65,9 @@ const std::string* used_instead_of(const std::string& flight, const RepeatedFlig
 /// Takes copies out of what is fitted, and says so; warns of overlaps.
 void exclude_repeated(BatchFlights& flights, const RepeatedFlights& repeated);
 
+/// The copies that exclude_repeated took out. Nobody has to hold a hundred thousand of them meanwhile.
+std::vector<CopiedFlight> copies_among(const BatchFlights& flights);
+
 /// Why a flight is not fitted that is a copy of another.
 std::string reason_of_copy(const std::string& other);
 

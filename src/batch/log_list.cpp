@@ -34,12 +34,13 @@ void LogList::push_back(const LogFile& log) {
     Lengths lengths{};
     std::ranges::transform(texts, lengths.begin(), [](auto text) { return static_cast<std::uint32_t>(text.size()); });
     starts_.push_back(bytes_.size());
-    bytes_ += static_cast<char>((log.is_of_this_run ? of_this_run : 0) | (log.is_gone ? gone : 0) |
-                                (is_place_path ? place_is_path : 0));
+    bytes_.push_back(static_cast<char>((log.is_of_this_run ? of_this_run : 0) | (log.is_gone ? gone : 0) |
+                                       (is_place_path ? place_is_path : 0)));
+    const auto append = [this](std::string_view text) { bytes_.insert(bytes_.end(), text.begin(), text.end()); };
     std::array<char, sizeof(Lengths)> framed{};
     std::memcpy(framed.data(), lengths.data(), framed.size());
-    bytes_.append(framed.data(), framed.size());
-    for (const auto text : texts) bytes_ += text;
+    append({framed.data(), framed.size()});
+    for (const auto text : texts) append(text);
 }
 
 std::string_view LogList::text(std::size_t number, std::size_t field) const {
@@ -48,7 +49,7 @@ std::string_view LogList::text(std::size_t number, std::size_t field) const {
     std::memcpy(lengths.data(), bytes_.data() + start, sizeof(lengths));
     const auto before =
         std::accumulate(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(field), std::uint64_t{0});
-    return std::string_view(bytes_).substr(start + sizeof(lengths) + before, lengths.at(field));
+    return std::string_view(bytes_.data(), bytes_.size()).substr(start + sizeof(lengths) + before, lengths.at(field));
 }
 
 std::string_view LogList::place(std::size_t number) const {

@@ -43,7 +43,8 @@ class LogList {
   private:
     std::string_view text(std::size_t number, std::size_t field) const;
 
-    std::string bytes_;  ///< of each log: its flags, the lengths of its texts, the texts
+    /// Of each log: its flags, the lengths of its texts, the texts. No string: one that is replaced keeps its room.
+    std::vector<char> bytes_;
     std::vector<std::uint64_t> starts_;
 };
 

@@ -124,6 +124,7 @@ void exclude_repeated(BatchFlights& flights, const RepeatedFlights& repeated) {
         for (; part != overlaps.end() && part->first == name; ++part) flight.record.warnings.push_back(part->second);
         if (is_copy) {
             flight.selection.flights.clear();
+            flight.selection.same_as = copy->same_as;
             flight.selection.exclusions.push_back({name, std::nullopt,
                                                    copy->has_power
                                                        ? reason_of_copy(copy->same_as)
@@ -131,6 +132,16 @@ void exclude_repeated(BatchFlights& flights, const RepeatedFlights& repeated) {
         }
         flights.put(i, flight);
     }
+}
+
+std::vector<CopiedFlight> copies_among(const BatchFlights& flights) {
+    std::vector<CopiedFlight> copies;
+    for (auto&& flight : flights) {
+        if (flight.selection.same_as.empty()) continue;
+        copies.push_back({flight.record.flight, flight.selection.same_as, flight.record.lacks_power.empty()});
+    }
+    std::ranges::sort(copies, {}, &CopiedFlight::flight);
+    return copies;
 }
 
 }  // namespace flightwatt::batch

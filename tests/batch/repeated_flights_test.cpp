@@ -24,6 +24,7 @@ using testing::IsEmpty;
 std::vector<CopiedFlight> copies_of(BatchFlights& flights, const std::filesystem::path& out) {
     const auto repeated = find_repeated(flights, out);
     exclude_repeated(flights, repeated);
+    EXPECT_EQ(copies_among(flights), repeated.copies);
     return repeated.copies;
 }
 

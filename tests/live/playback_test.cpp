@@ -10,6 +10,7 @@
 #include "helpers/test_paths.h"
 #include "live/sources.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -173,7 +174,8 @@ TEST(Playback, BringsAllToAUdpSourceAtTheirTimes) {
                                                  {.definitions = test::small_dictionary(), .version = version});
         const auto messages = played(*source, log, 60.0, *target, lines.size());
         EXPECT_EQ(texts_of(messages), lines);
-        EXPECT_GE(*messages.back().time_s - *messages.front().time_s, 15.0);  // of 19.9 s, less the first that wait
+        EXPECT_TRUE(std::ranges::is_sorted(messages, {}, &IncomingMessage::time_s));
+        EXPECT_GE(*messages.back().time_s, 19.9);  // since the source was opened, however late the first were heard
     }
 }
 
@@ -211,7 +213,7 @@ TEST(Playback, SpeaksAsTheAircraftWhereItIsAsked) {
     ASSERT_TRUE(target->is_heard(std::chrono::seconds(10)));
     const auto messages = played(*source, log, 10.0, *target, 2);
     ASSERT_THAT(texts_of(messages), ElementsAre("20 A 1", "20 B 2"));
-    EXPECT_GE(*messages[1].time_s - *messages[0].time_s, 0.5);
+    EXPECT_GE(*messages[1].time_s, std::max(1.0, *messages[0].time_s));  // since the bus was joined
 }
 
 }  // namespace
