@@ -215,8 +215,7 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
            const std::optional<mechanical::MechanicalModel>& published) {
     const auto made_from = fingerprint_of(call, flights, options, published);
     const bool is_known = !call.has("no-fit") && !cli::is_physical(call) && batch::is_fit_of(options.out, made_from);
-    std::optional<FittedBatch> known;
-    if (is_known) known = known_fit(options.out);
+    auto known = is_known ? std::optional(known_fit(options.out)) : std::nullopt;
     auto repeated = known ? std::move(known->fit.repeated) : find_repeated(flights, options.out);
     exclude_repeated(flights, repeated);
     repeated.copies = {};  // of an archive, too many to be held beside the fit
@@ -234,16 +233,14 @@ int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch:
             throw InputError(
                 {}, fmt::format("all {} logs were rejected or left out, so there is nothing to fit", flights.size()));
         }
-        if (totals.with_power == 0) {
+        if (totals.with_power == 0 || call.has("no-fit")) {
             remove_model(call, options.out);
-            cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
-            cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
-            return exit_code(call, totals);
-        }
-        if (call.has("no-fit")) {
-            remove_model(call, options.out);
-            cli::note(call, fmt::format("nothing was fitted; next: flightwatt fit {} -o MODEL.toml",
-                                        cli::typed_in_shell(options.out.string())));
+            if (totals.with_power == 0) {
+                cli::warn(call, "no flight has measured power: nothing was fitted, and there is no model");
+            } else {
+                cli::note(call, fmt::format("nothing was fitted; next: flightwatt fit {} -o MODEL.toml",
+                                            cli::typed_in_shell(options.out.string())));
+            }
             cli::print(call.json ? cli::json_text(with_logs({}, flights)) : shown);
             return exit_code(call, totals);
         }

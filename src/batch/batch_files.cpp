@@ -34,7 +34,7 @@ std::vector<LogFile> stored_flights(const std::filesystem::path& out) {
     std::vector<LogFile> flights;
     for (std::size_t i = 0; i < listed.size(); ++i) {
         std::error_code none;
-        const auto record = out / "flights" / (std::string(listed.flight(i)) + record_ending);
+        const auto record = result_path(out, listed.flight(i), record_ending);
         if (std::filesystem::exists(record, none)) flights.push_back(listed[i]);
     }
     return flights;
@@ -50,7 +50,7 @@ Results read_results(const std::filesystem::path& out, const std::string& flight
     Results results;
     Fingerprint fingerprint;
     for (const auto* ending : {series_ending, phases_ending}) {
-        const auto path = out / "flights" / (flight + ending);
+        const auto path = result_path(out, flight, ending);
         std::error_code none;
         if (!std::filesystem::is_regular_file(path, none)) return {};
         auto text = read_file(path);
@@ -68,7 +68,7 @@ struct IntactFlight {
 
 /// Throws InputError for files that are not as the batch wrote them.
 IntactFlight read_intact(const std::filesystem::path& out, const std::string& flight) {
-    const auto file = out / "flights" / (flight + record_ending);
+    const auto file = result_path(out, flight, record_ending);
     const std::string hint = "run flightwatt batch again";
     auto record = record_from_json(read_file(file));
     if (!record) {
@@ -84,7 +84,7 @@ IntactFlight read_intact(const std::filesystem::path& out, const std::string& fl
     if (!intact.record.accepted) return intact;
     auto results = read_results(out, flight);
     if (intact.record.results.empty() || intact.record.results != results.fingerprint) {
-        throw InputError({(out / "flights" / (flight + series_ending)).string()},
+        throw InputError({result_path(out, flight, series_ending).string()},
                          "it or the phases beside it are not as the batch wrote them", hint);
     }
     intact.series_csv = std::move(results.series_csv);
@@ -141,6 +141,10 @@ std::vector<StoredFlight> read_stored(const std::filesystem::path& out, bool wit
 
 }  // namespace
 
+std::filesystem::path result_path(const std::filesystem::path& out, std::string_view flight, const char* ending) {
+    return out / "flights" / (std::string(flight) + ending);
+}
+
 std::vector<std::string> recorded_flights(const std::filesystem::path& folder) {
     std::vector<std::string> flights;
     for (const auto& file : file_names(folder)) {
@@ -153,7 +157,7 @@ std::vector<std::string> recorded_flights(const std::filesystem::path& folder) {
 
 void remove_results(const std::filesystem::path& out, const std::string& flight) {
     std::error_code ignored;
-    for (const auto* ending : result_endings) std::filesystem::remove(out / "flights" / (flight + ending), ignored);
+    for (const auto* ending : result_endings) std::filesystem::remove(result_path(out, flight, ending), ignored);
 }
 
 std::string results_fingerprint(const std::filesystem::path& out, const std::string& flight) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flightwatt::batch {
@@ -24,6 +25,9 @@ inline constexpr auto fit_name = "fit.json";                    ///< see BatchFi
 inline constexpr std::array table_names{"table1.txt", "table1.csv", "table1.md"};
 inline constexpr std::array model_names{model_name,     model_errors_name, fit_name,
                                         table_names[0], table_names[1],    table_names[2]};
+
+/// Where one of these stands: OUT/flights/NAME.series.csv, ...
+std::filesystem::path result_path(const std::filesystem::path& out, std::string_view flight, const char* ending);
 
 /// The flights that have a record in the folder OUT/flights, by name.
 std::vector<std::string> recorded_flights(const std::filesystem::path& folder);

@@ -25,16 +25,12 @@
 namespace flightwatt::batch {
 namespace {
 
-std::filesystem::path result_path(const BatchOptions& options, const std::string& flight, const char* ending) {
-    return options.out / "flights" / (flight + ending);
-}
-
 void write_result(const BatchOptions& options, const std::string& flight, const char* ending,
                   const std::string& content) {
     std::optional<WriteGate::Pass> pass;
     if (options.gate != nullptr) pass.emplace(*options.gate);
     const OwnFiles own;  // its name is no other's: what a batch writes is not kept in mind file by file
-    write_file_atomically(result_path(options, flight, ending), content, options.out / unfinished_folder);
+    write_file_atomically(result_path(options.out, flight, ending), content, options.out / unfinished_folder);
 }
 
 /// Of everything that the result depends on.
@@ -57,8 +53,8 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
 }
 
 bool has_results(const BatchOptions& options, const std::string& flight) {
-    return std::filesystem::exists(result_path(options, flight, series_ending)) ||
-           std::filesystem::exists(result_path(options, flight, phases_ending));
+    return std::filesystem::exists(result_path(options.out, flight, series_ending)) ||
+           std::filesystem::exists(result_path(options.out, flight, phases_ending));
 }
 
 /// The remembered result of a log, if it is that of this fingerprint and its files are as they were written.
@@ -66,7 +62,8 @@ std::optional<FlightRecord> remembered(const BatchOptions& options, const LogFil
                                        const std::string& fingerprint) {
     const OwnFiles own;
     std::error_code none;
-    if (!std::filesystem::is_regular_file(result_path(options, log.flight, record_ending), none)) return std::nullopt;
+    if (!std::filesystem::is_regular_file(result_path(options.out, log.flight, record_ending), none))
+        return std::nullopt;
     try {
         auto record = read_intact_record(options.out, log.flight);
         if (record.fingerprint != fingerprint || (!record.accepted && has_results(options, log.flight))) {
@@ -231,7 +228,7 @@ std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights
     for_each_in_parallel(selected.size(), [&](std::size_t i) {
         const auto flight = flights[selected[i]];
         const OwnFiles own;
-        const auto file = result_path(options, flight.record.flight, record_ending);
+        const auto file = result_path(options.out, flight.record.flight, record_ending);
         auto record = record_from_json(read_file(file));
         if (!record) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
         record->flight = flight.record.flight;  // of a name that is no UTF-8, too

@@ -104,7 +104,7 @@ std::optional<LogFile> flight_of_record(const std::filesystem::path& file, const
 Manifest manifest_of_records(const std::filesystem::path& out) {
     Manifest manifest;
     for (const auto& name : recorded_flights(out / "flights")) {
-        const auto flight = flight_of_record(out / "flights" / (name + record_ending), name);
+        const auto flight = flight_of_record(result_path(out, name, record_ending), name);
         if (flight) manifest.flights.push_back(*flight);
     }
     manifest.is_of_earlier_version = !manifest.flights.empty();
@@ -161,7 +161,7 @@ std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const
 /// Whether a flight without its log has a result worth keeping; a damaged record may be of one.
 bool was_usable(const std::filesystem::path& out, const std::string& flight) {
     const OwnFiles own;
-    const auto file = out / "flights" / (flight + record_ending);
+    const auto file = result_path(out, flight, record_ending);
     std::error_code none;
     if (!std::filesystem::is_regular_file(file, none)) return false;
     const auto record = record_from_json(read_file(file));
@@ -316,12 +316,12 @@ void refuse_files_of_others(const BatchPlan& plan, const std::filesystem::path& 
     declare_output(out / manifest_name);
     refuse_links(out);
     for (const auto& dropped : plan.dropped)
-        for (const auto* ending : result_endings) refuse_to_lose(out / "flights" / (dropped.flight + ending));
+        for (const auto* ending : result_endings) refuse_to_lose(result_path(out, dropped.flight, ending));
     const auto earlier = names_of(plan.earlier.flights);
     const auto& flights = plan.manifest.flights;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         for (const auto* ending : result_endings) {
-            const auto file = out / "flights" / (std::string(flights.flight(i)) + ending);
+            const auto file = result_path(out, flights.flight(i), ending);
             refuse_to_lose(file);  // a log, say
             refuse_if_in_the_way(file, earlier.contains(flights.flight(i)));
         }

@@ -21,10 +21,6 @@
 namespace flightwatt::batch {
 namespace {
 
-std::filesystem::path result_of(const std::filesystem::path& out, const std::string& flight, const char* ending) {
-    return out / "flights" / (flight + ending);
-}
-
 /// A flight of one of the batches, as its list has it.
 struct ListedFlight {
     std::filesystem::path from;
@@ -42,7 +38,7 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
     const auto listed_flights = read_manifest(batch).flights;
     for (std::size_t i = 0; i < listed_flights.size(); ++i) {
         auto listed = listed_flights[i];
-        if (!std::filesystem::exists(result_of(batch, listed.flight, record_ending), none)) {
+        if (!std::filesystem::exists(result_path(batch, listed.flight, record_ending), none)) {
             throw InputError({batch.string()},
                              fmt::format("this batch was not finished: {} has no record", listed.flight),
                              "run the command that makes it again; it goes on where it stopped");
@@ -127,7 +123,7 @@ class FlightMerger {
         const auto& [from, flight] = plan_.sources[number];
         const std::string name(plan_.folder.logs.flight(number));
         BatchFlight merged;
-        const auto text = read_file(result_of(from, flight, record_ending));
+        const auto text = read_file(result_path(from, flight, record_ending));
         merged.record = read_intact_record(from, flight);
         merged.was_up_to_date = name == flight ? is_there(name, text) : false;
         if (name == flight) {
@@ -144,7 +140,7 @@ class FlightMerger {
     bool is_there(const std::string& name, const std::string& record) const {
         try {
             std::error_code none;
-            const auto file = result_of(options_.out, name, record_ending);
+            const auto file = result_path(options_.out, name, record_ending);
             if (!std::filesystem::is_regular_file(file, none) || read_file(file) != record) return false;
             read_intact_record(options_.out, name);
             return true;
@@ -159,7 +155,7 @@ class FlightMerger {
         remove_results(options_.out, name);
         for (const auto* ending : {series_ending, phases_ending, record_ending}) {
             if (!is_accepted && ending != std::string_view(record_ending)) continue;
-            link_or_copy_file(result_of(from, name, ending), result_of(options_.out, name, ending),
+            link_or_copy_file(result_path(from, name, ending), result_path(options_.out, name, ending),
                               options_.out / unfinished_folder);
         }
     }
@@ -169,8 +165,8 @@ class FlightMerger {
         std::string series_text;
         std::string phases_text;
         if (record.accepted) {
-            auto series = flight::read_series_csv(result_of(from, flight, series_ending));
-            const auto phases = flight::read_phases_csv(result_of(from, flight, phases_ending));
+            auto series = flight::read_series_csv(result_path(from, flight, series_ending));
+            const auto phases = flight::read_phases_csv(result_path(from, flight, phases_ending));
             series.flight = name;
             series_text = to_csv(series);
             phases_text = flight::phases_csv(series, phases);
@@ -187,7 +183,7 @@ class FlightMerger {
     }
 
     void write(const std::string& name, const char* ending, const std::string& text) const {
-        write_file_atomically(result_of(options_.out, name, ending), text, options_.out / unfinished_folder);
+        write_file_atomically(result_path(options_.out, name, ending), text, options_.out / unfinished_folder);
     }
 
     const MergePlan& plan_;

@@ -59,7 +59,7 @@ struct NamedContent {
 
 NamedContent content_of(const FlightRecord& record, const std::filesystem::path& out) {
     const OwnFiles own;
-    const auto file = out / "flights" / (record.flight + record_ending);
+    const auto file = result_path(out, record.flight, record_ending);
     auto marks = marks_from_json(read_file(file));
     if (!marks) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
     NamedContent named{record.flight, record.lacks_power.empty(), record.content};
