@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -130,7 +131,14 @@ FlightPhases segment(const ChosenTracks& tracks, const SegmentationOptions& opti
                 "latter counts",
                 grid.time_s(activity.moving.begin), *activity.ground_before_m, *activity.ground_after_m));
         }
-        phases.sorties.push_back(make_sortie(tracks, grid, activity, heights, options));
+        auto sortie = make_sortie(tracks, grid, activity, heights, options);
+        if (sortie.phases.empty()) {
+            phases.ground_events.push_back({grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1),
+                                            fmt::format("height of {:.0f} m for less than {} s: too short for a phase",
+                                                        heights.highest_m, grid.step_s)});
+            continue;
+        }
+        phases.sorties.push_back(std::move(sortie));
         phases.sorties.back().number = phases.sorties.size();
         warn_of_gaps(phases.sorties.back(), phases.warnings);
     }

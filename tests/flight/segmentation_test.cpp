@@ -45,6 +45,20 @@ TEST(Segmentation, FindsThePhasesOfAPlainFlight) {
     EXPECT_TRUE(phases.ground_events.empty());
 }
 
+/// A height above the flight plan's ground for less than a step of the grid: no phase, so no sortie.
+TEST(Segmentation, FindsNoSortieWithoutDuration) {
+    test::SampleColumns columns;
+    columns.time_s = {100.0, 100.4};
+    columns.altitude_m = {289.5, 289.8};
+    columns.throttle_percent = {94.0, 94.0};
+    auto series = test::series_of(columns);
+    series.planned_ground_altitude_m = 185.0;
+    const auto phases = segment(series);
+    EXPECT_TRUE(phases.sorties.empty());
+    ASSERT_EQ(phases.ground_events.size(), 1u);
+    EXPECT_THAT(phases.ground_events[0].what, HasSubstr("too short for a phase"));
+}
+
 TEST(Segmentation, DoesNotDependOnTheUnitOfHeightOrTheHourOfTheLog) {
     auto series = columns_of(sortie(100));
     const auto before = segment(test::series_of(series));
