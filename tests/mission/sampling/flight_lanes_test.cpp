@@ -20,7 +20,7 @@ std::vector<std::vector<double>> drawn_numbers(const MissionSetup& setup, std::s
 
 /// A made-up mission, flown with most and least computing by turns; of less charge, so that some flights fail.
 Mission flown_mission(unsigned seed, double charge_part) {
-    auto problem = test::generated_mission(seed).problem;
+    auto problem = test::generated_mission(seed, false).problem;
     problem.battery.capacity_ah *= charge_part;
     Mission mission{problem, {}};
     for (const auto phase : all_phases) {
