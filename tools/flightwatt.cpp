@@ -6,6 +6,7 @@
 #include "base/toml_reader.h"
 #include "cli/help_pages.h"
 #include "cli/stage.h"
+#include "cli/version.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -133,7 +134,7 @@ int run(int argc, char** argv) {
     } else if (stage == "--list-stages") {  // for completion and man pages
         for (const auto& [name, summary] : stages) cli::print(fmt::format("{}\t{}\n", name, summary));
     } else if (stage == "--version") {
-        cli::print("flightwatt " FLIGHTWATT_VERSION "\n");
+        cli::print(fmt::format("flightwatt {}\n", cli::version_text()));
     } else if (stage != "help") {
         run_program(stage, argv + 1);
     } else if (argc > 3) {

@@ -6,6 +6,7 @@
 #include "base/toml_reader.h"
 #include "cli/screen_table.h"
 #include "cli/terminal.h"
+#include "cli/version.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -186,7 +187,7 @@ int run(int argc, char** argv, const StageDefinition& definition, const StageBod
         return ok;
     }
     if (call.has("version")) {
-        print(fmt::format("{} {}\n", call.program, FLIGHTWATT_VERSION));
+        print(fmt::format("{} {}\n", call.program, version_text()));
         return ok;
     }
     if (call.inputs.size() < definition.min_inputs) {

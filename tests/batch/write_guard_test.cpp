@@ -34,7 +34,7 @@ TEST(WriteGate, WaitsForThoseInside) {
         left = true;
     });
     while (!inside) std::this_thread::yield();
-    EXPECT_TRUE(gate.close(10s));
+    EXPECT_TRUE(gate.close(60s));
     EXPECT_TRUE(left);
 }
 
@@ -44,8 +44,9 @@ TEST(WriteGate, DoesNotWaitForever) {
     EXPECT_FALSE(gate.close(10ms));
 }
 
-/// Runs `body` in a process of its own. Once that has called its argument, it is sent `signals`, 20 ms apart.
-/// Returns the status of waitpid(): SIGALRM where the process did not end for a minute.
+/// Runs `body` in a process of its own. Once that has called its argument, it is sent the first of `signals`, and each
+/// other once it has called its argument again. Returns the status of waitpid(): SIGALRM where the process did not end
+/// for a minute.
 int end_by(const std::vector<int>& signals, const std::function<void(const std::function<void()>&)>& body) {
     int ready[2] = {};
     if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
@@ -59,16 +60,15 @@ int end_by(const std::vector<int>& signals, const std::function<void(const std::
         });
         ::_exit(0);
     }
-    char byte = 0;
-    if (::read(ready[0], &byte, 1) != 1) throw std::runtime_error("the child ended early");
+    ::close(ready[1]);
     for (const int signal : signals) {
+        char byte = 0;
+        if (::read(ready[0], &byte, 1) != 1) throw std::runtime_error("the child ended early");
         ::kill(child, signal);
-        std::this_thread::sleep_for(20ms);
     }
     int status = -1;
     ::waitpid(child, &status, 0);
     ::close(ready[0]);
-    ::close(ready[1]);
     return status;
 }
 
@@ -102,7 +102,7 @@ TEST(Interruption, LetsAFileBeWrittenFirstAndNoOther) {
         {
             const WriteGate::Pass pass(gate);
             ready();
-            std::this_thread::sleep_for(200ms);
+            std::this_thread::sleep_for(50ms);  // much less than what a writer is given
             whole = true;
         }
         const WriteGate::Pass pass(gate);
@@ -126,7 +126,10 @@ TEST(Interruption, EndsThoughAFileTakesForEver) {
 TEST(Interruption, EndsAtOnceAtTheSecondSignal) {
     const int status = end_by({SIGINT, SIGINT}, [](const auto& ready) {
         WriteGate gate;
-        const Interruption interruption(gate, [](int) { std::this_thread::sleep_for(10s); });
+        const Interruption interruption(gate, [&](int) {
+            ready();
+            std::this_thread::sleep_for(50s);
+        });
         compute(ready);
     });
     ASSERT_TRUE(WIFSIGNALED(status));
@@ -139,6 +142,7 @@ TEST(Interruption, LeavesIgnoredSignalsIgnored) {
         std::signal(SIGINT, SIG_IGN);
         WriteGate gate;
         const Interruption interruption(gate, [](int) {});
+        for (int signals = 0; signals < 2; ++signals) ready();
         compute(ready);
     });
     ASSERT_TRUE(WIFEXITED(status));

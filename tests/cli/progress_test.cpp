@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -68,12 +69,20 @@ class Terminal {
     Terminal& operator=(const Terminal&) = delete;
 
     std::FILE* stream() { return stream_; }
+    /// What was printed since the last call. The kernel brings it to this end when it has time: a mark behind it shows
+    /// that all of it has come.
     std::string printed() {
+        constexpr char mark = '\1';
         std::string text;
-        std::array<char, 4096> part{};
-        for (auto n = ::read(master_, part.data(), part.size()); n > 0; n = ::read(master_, part.data(), part.size())) {
-            text.append(part.data(), static_cast<std::size_t>(n));
+        if (::write(::fileno(stream_), &mark, 1) != 1) throw std::runtime_error("the terminal takes nothing");
+        constexpr int limit_ms = 60'000;
+        for (::pollfd line{master_, POLLIN, 0}; !text.ends_with(mark) && ::poll(&line, 1, limit_ms) == 1;) {
+            std::array<char, 4096> part{};
+            const auto n = ::read(master_, part.data(), part.size());
+            if (n > 0) text.append(part.data(), static_cast<std::size_t>(n));
         }
+        if (!text.ends_with(mark)) throw std::runtime_error("what was printed never came");
+        text.pop_back();
         return text;
     }
 

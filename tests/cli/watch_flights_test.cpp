@@ -116,6 +116,8 @@ class WatchFlights : public testing::Test {
 
     static constexpr double log_end_s = 1200.0;   ///< landed; the aircraft's last messages are later
     static constexpr double flight_end_s = 1100;  ///< in its cruise
+    /// Times of arrival are as late as the machine is busy: 0.1 s late is 6 s at 60 times the speed.
+    static constexpr double of_arrivals = 0.1;
     const std::filesystem::path folder = test::scratch_dir();
     Words basis;
 };
@@ -159,7 +161,7 @@ TEST_F(WatchFlights, OverUdp) {
         {"--udp", fmt::format("{}", port), "--messages", "flown.log", "--clock-factor", "60", "--aircraft", "20"});
     ASSERT_TRUE(test::wait_until([&] { return test::is_taken(port); }));
     play(fmt::format("udp:127.0.0.1:{}", port), 60);
-    expect_as_predicted(ended(watching, log_end_s - 30.0), "flown.data", 0.02);
+    expect_as_predicted(ended(watching, log_end_s - 30.0), "flown.data", of_arrivals);
 }
 
 TEST_F(WatchFlights, OverASerialLine) {
@@ -175,7 +177,7 @@ TEST_F(WatchFlights, OverASerialLine) {
     };
     ASSERT_TRUE(test::wait_until(is_open));
     play("serial:aircraft:57600", 60);
-    expect_as_predicted(ended(watching, log_end_s - 30.0), "flown.data", 0.02);
+    expect_as_predicted(ended(watching, log_end_s - 30.0), "flown.data", of_arrivals);
 }
 
 }  // namespace

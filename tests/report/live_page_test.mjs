@@ -2,7 +2,7 @@
 // console, and it comes back when its server does. Environment: BIN, SOURCE, SCRATCH, PORT, FLIGHTWATT_WEB, CHROMIUM.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { createWriteStream, rmSync } from "node:fs";
+import { createWriteStream, existsSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import path from "node:path";
 import { after, before, test } from "node:test";
@@ -47,8 +47,8 @@ after(async () => {
 });
 
 test("charts move while a flight is played, and the page outlives its server", async () => {
-  start("flightwatt-play", `${log}.data`, "--to", `file:${growing}`, "--speed", "30");
-  await new Promise((resolve) => setTimeout(resolve, 500));
+  start("flightwatt-play", `${log}.data`, "--to", `file:${growing}`, "--speed", "15");
+  await eventually("the log is there", () => existsSync(growing));
   const first = watch();
   await eventually("the server answers", answers);
   const page = await (await browser.newContext({ viewport: { width: 1100, height: 900 } })).newPage();

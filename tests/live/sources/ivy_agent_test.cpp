@@ -239,8 +239,10 @@ TEST_F(IvyAgentTest, SendsWhatOthersSubscribeTo) {
     IvyAgent sender(own, {.bus = parse_ivy_bus(fmt::format("127:{}", port)), .name = "player", .sends = true});
     sender.start();
     const auto run_until = [&](const auto& condition) {
-        for (int i = 0; i < 1000 && !condition(); ++i) own.run_for(milliseconds(5));
-        return condition();
+        return test::wait_until([&] {
+            own.run_for(milliseconds(5));
+            return condition();
+        });
     };
     auto peer = connect();
     peer->say("6 4321\002Link\n1 7\002^([^ ]*) +(ENERGY( .*|$))\n1 8\002(broken\n1 9\002ALIVE\n5 0\002\n");
