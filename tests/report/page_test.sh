@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Makes the pages of page_test.mjs and opens them in Chromium: page_test.sh BIN WEB SCRATCH. Exits with 77 (skipped)
-# where node, its modules or Chromium are missing.
+# Makes the pages of page_test.mjs and opens them in Chromium: page_test.sh BIN WEB SCRATCH [FLIGHTS]. FLIGHTS, 30 if not
+# given, are on the page of many flights. With 300 there is a second such page of them, and the page of six flights is
+# opened on every screen. Exits with 77 (skipped) where node, its modules or Chromium are missing.
 set -euo pipefail
 bin=$1
 web=$2
 pages=$3
+flights=${4:-30}
 source=$(cd "$(dirname "$0")/../.." && pwd)
 
 skip() {
@@ -16,7 +18,7 @@ command -v node >/dev/null || skip node
 chromium=$(command -v chromium || command -v chromium-browser) || skip chromium
 
 rm -rf "$pages"
-mkdir -p "$pages/hostile" "$pages/three_hundred"
+mkdir -p "$pages/hostile"
 quiet() { "$@" >/dev/null 2>"$pages/stderr" || { cat "$pages/stderr" >&2 && exit 1; }; }
 
 quiet "$bin/flightwatt-batch" "$source/logs" -o "$pages/six"
@@ -46,14 +48,18 @@ mission twice 'αβγ ✈ 無人機'
 quiet "$bin/flightwatt-batch" "$pages/hostile" -o "$pages/hostile_out"
 quiet "$bin/flightwatt-report" "$pages/hostile_out" "$pages"/hostile/*.toml --title '<b>"title"</b>' -o "$pages/hostile.html"
 
-quiet "$bin/flightwatt-synthesize" "$source/fits/mechanical/opterra-table1.toml" --flights 300 --seed 3 -o "$pages/three_hundred"
-quiet "$bin/flightwatt-batch" "$pages/three_hundred" -o "$pages/three_hundred_out"
-quiet "$bin/flightwatt-report" "$pages/three_hundred_out" "$source"/missions/paper/*.toml -o "$pages/three_hundred.html"
-
-# As many flights as are compressed, and their figures as files: without node, specifications alone.
-quiet "$bin/flightwatt-batch" "$pages"/three_hundred/*_[12]?.data "$pages"/three_hundred/*_30.data -o "$pages/many_out"
+# Pages of many flights, which are compressed; figures of the smaller as files: without node, specifications alone.
 mkdir "$pages/empty"
-PATH=$pages/empty quiet "$bin/flightwatt-report" "$pages/many_out" -o "$pages/many.html" --figures "$pages/many_figures"
-rm -rf "$pages/three_hundred" "$pages/three_hundred_out" "$pages/many_out"
+many_flights() {
+    local count=$1 name=$2
+    shift 2
+    quiet "$bin/flightwatt-synthesize" "$source/fits/mechanical/opterra-table1.toml" --flights "$count" --seed 3 -o "$pages/logs"
+    quiet "$bin/flightwatt-batch" "$pages/logs" -o "$pages/logs_out"
+    PATH=$pages/empty quiet "$bin/flightwatt-report" "$pages/logs_out" "$source/missions/paper/phased.toml" -o "$pages/$name.html" "$@"
+    rm -rf "$pages/logs" "$pages/logs_out"
+}
+many_flights 30 many --figures "$pages/many_figures"
+((flights <= 30)) || many_flights "$flights" more
 
-PAGES=$pages FLIGHTWATT_WEB=$web CHROMIUM=$chromium node --test --test-reporter=spec "$source/tests/report/page_test.mjs"
+PAGES=$pages FLIGHTS=$flights FLIGHTWATT_WEB=$web CHROMIUM=$chromium \
+    node --test --test-reporter=spec "$source/tests/report/page_test.mjs"
