@@ -1,5 +1,6 @@
-// How often the 95 % interval of a prediction in flight holds the energy of a generated cruise, and how wide it is.
-// usage: in_flight_coverage_bench [FLIGHTS]: excluded in turn, or not seen, of each row, about; 2000 if not said
+// How often the 95 % interval of a prediction before flight and of one in flight covers the energy of a generated cruise,
+// and how wide it is. Exit code 1 where a row covers less than 92 % or more than 98 %, beyond three standard errors.
+// usage: in_flight_coverage_bench [FLIGHTS]: excluded in turn, or not seen, of each row, about (2000)
 
 #include "base/number.h"
 #include "base/units.h"
@@ -20,36 +21,53 @@ using namespace flightwatt;
 
 constexpr unsigned first_seed = 1001;  // the tests use those from 1 on
 
+constexpr double least_share = 0.92;
+constexpr double largest_share = 0.98;
+
 /// Sums over the flights of a row.
 struct Row {
     double covered = 0.0;
+    double covered_before = 0.0;  ///< by the interval of the prediction that does not look at the flight
     double half_width_wh = 0.0;
     double error_wh = 0.0;
-    double before_wh = 0.0;  ///< error of the prediction that does not look at the flight
+    double before_wh = 0.0;  ///< error of that prediction
     std::size_t flights = 0;
 };
 
-void add(Row& row, double measured_wh, const mechanical::EnergyEstimate& estimate, double before_error_wh) {
+void add(Row& row, double measured_wh, const mechanical::EnergyEstimate& before,
+         const mechanical::EnergyEstimate& estimate) {
     const auto interval = interval_95(estimate).value();
     row.covered += interval.contains(measured_wh) ? 1.0 : 0.0;
+    row.covered_before += interval_95(before).value().contains(measured_wh) ? 1.0 : 0.0;
     row.half_width_wh += 0.5 * (interval.high_wh - interval.low_wh);
     row.error_wh += std::abs(estimate.energy_wh - measured_wh);
-    row.before_wh += std::abs(before_error_wh);
+    row.before_wh += std::abs(before.energy_wh - measured_wh);
     ++row.flights;
 }
 
-void print(std::size_t flights_of_model, double part, const Row& row) {
+double binomial_error(double share, std::size_t count) {
+    return std::sqrt(share * (1.0 - share) / static_cast<double>(count));
+}
+
+/// Prints a row; whether both shares are within the limits.
+bool print(std::size_t flights_of_model, double part, const Row& row) {
     const auto count = static_cast<double>(row.flights);
-    const double covered = row.covered / count;
-    const double error = std::sqrt(covered * (1.0 - covered) / count);
-    fmt::print("{:>14}  {:>6.0f}  {:>8}  {:>6.1f} +- {:.1f}  {:>13.3f}  {:>15.3f}  {:>15.3f}\n", flights_of_model,
-               units::percent_of(part, 1.0), row.flights, units::percent_of(covered, 1.0),
-               units::percent_of(error, 1.0), row.half_width_wh / count, row.before_wh / count, row.error_wh / count);
+    bool within = true;
+    fmt::print("{:>14}  {:>6.0f}  {:>8}", flights_of_model, units::percent_of(part, 1.0), row.flights);
+    for (const double share : {row.covered_before / count, row.covered / count}) {
+        fmt::print("  {:>6.1f} +- {:.1f}", units::percent_of(share, 1.0),
+                   units::percent_of(binomial_error(share, row.flights), 1.0));
+        within = within && share >= least_share - 3.0 * binomial_error(least_share, row.flights) &&
+                 share <= largest_share + 3.0 * binomial_error(largest_share, row.flights);
+    }
+    fmt::print("  {:>13.3f}  {:>15.3f}  {:>15.3f}{}\n", row.half_width_wh / count, row.before_wh / count,
+               row.error_wh / count, within ? "" : "  outside 92 to 98 %");
     std::fflush(stdout);
+    return within;
 }
 
 /// Cruises of the published model's shape and spread, without a path.
-void print_by_curve(std::size_t flights, double part, std::size_t left_out) {
+bool print_by_curve(std::size_t flights, double part, std::size_t left_out) {
     constexpr double cruise_s = 600.0;
     const auto sets = static_cast<unsigned>((left_out + flights - 1) / flights);
     Row row;
@@ -62,14 +80,14 @@ void print_by_curve(std::size_t flights, double part, std::size_t left_out) {
         for (const auto& flight : leave_one_out(generated)) {
             const auto during = predicted_energy(flight, "in_flight", flight::Phase::cruise).value();
             const auto before = predicted_energy(flight, "fourier", flight::Phase::cruise).value();
-            add(row, during.measured_wh, during.estimate, before.estimate.energy_wh - before.measured_wh);
+            add(row, during.measured_wh, before.estimate, during.estimate);
         }
     }
-    print(flights - 1, part, row);
+    return print(flights - 1, part, row);
 }
 
 /// Flights of 1800 s with the drift of the real ones, whose path is known.
-void print_by_path(std::size_t flights, double part, std::size_t unseen) {
+bool print_by_path(std::size_t flights, double part, std::size_t unseen) {
     constexpr std::size_t bins = 60;
     const test::MotionTruth truth{.level_sd = 0.05, .drift_sd_w = 6.5, .correlation_s = 60.0};
     Row row;
@@ -89,22 +107,28 @@ void print_by_path(std::size_t flights, double part, std::size_t unseen) {
         const double remaining_s = mechanical::usual_bin_s * static_cast<double>(ahead.size());
         const auto values = mean_values(ahead);
         const auto before = predict_by_motion(model, values, remaining_s);
-        add(row, measured_wh, predict_rest_by_motion(model, flown, values, remaining_s).energy,
-            before.energy_wh - measured_wh);
+        add(row, measured_wh, before, predict_rest_by_motion(model, flown, values, remaining_s).energy);
     }
-    print(flights, part, row);
+    return print(flights, part, row);
 }
 
-void run(std::size_t flights_of_row) {
+/// Whether all rows are within the limits.
+bool run(std::size_t flights_of_row) {
     constexpr auto head =
-        "flights a model  flown %   flights  covered, %     half width, Wh  error before, Wh  error during, Wh\n";
-    fmt::print("Seeds from {}; +- is the binomial error, as if folds shared no flights.\n\n", first_seed);
+        "flights a model  flown %   flights   before, %      during, %      half width, Wh  error before, Wh  error during, Wh\n";
+    bool within = true;
+    fmt::print(
+        "Seeds from {}; covered before flight and in flight; +- is the binomial error, as if folds shared no flights.\n\n",
+        first_seed);
     fmt::print("By the curve, cruises of about 600 s:\n{}", head);
     for (const std::size_t flights : {4U, 5U, 9U, 12U})
-        for (const double part : {0.10, 0.25, 0.50, 0.75}) print_by_curve(flights, part, flights_of_row);
+        for (const double part : {0.10, 0.25, 0.50, 0.75})
+            within = print_by_curve(flights, part, flights_of_row) && within;
     fmt::print("\nBy the path that is known, flights of 1800 s whose drift is that of the real ones:\n{}", head);
     for (const std::size_t flights : {2U, 3U, 4U, 8U})
-        for (const double part : {0.10, 0.25, 0.50, 0.75}) print_by_path(flights, part, flights_of_row);
+        for (const double part : {0.10, 0.25, 0.50, 0.75})
+            within = print_by_path(flights, part, flights_of_row) && within;
+    return within;
 }
 
 }  // namespace
@@ -116,10 +140,9 @@ int main(int argc, char** argv) {
         return 2;
     }
     try {
-        run(*flights);
+        return run(*flights) ? 0 : 1;
     } catch (const std::exception& error) {
         fmt::print(stderr, "in_flight_coverage_bench: error: {}\n", error.what());
         return 1;
     }
-    return 0;
 }

@@ -72,7 +72,7 @@ void expect_same_of_all(const std::vector<std::filesystem::path>& logs) {
 
 TEST(SameOnEveryWay, FitsTheSampleLogs) { expect_same_of_all(sample_logs()); }
 
-TEST(SameOnEveryWay, FitsTheRealFlights) {
+TEST(SameOnEveryWayStudy, FitsTheRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     expect_same_of_all(real_logs());
     const auto folder = test::scratch_dir();

@@ -111,7 +111,7 @@ void type_five_commands(const std::filesystem::path& flights, const std::filesys
 
 TEST(Examples, TheFiveCommandsOfTheReadmeRun) { type_five_commands(source_dir() / "logs", scratch_dir()); }
 
-TEST(Examples, TheFiveCommandsOfTheReadmeRunOnRealFlights) {
+TEST(ExamplesStudy, TheFiveCommandsOfTheReadmeRunOnRealFlights) {
     const auto shared = source_dir() / ".." / "shared" / "flights";
     if (!std::filesystem::exists(shared)) GTEST_SKIP() << "no " << shared;
     const auto folder = scratch_dir();

@@ -18,7 +18,7 @@ void expect_honest(const test::CoverageCase& made, unsigned seed) {
     }
 }
 
-TEST(IntervalCoverage, OfSingleFlights) { expect_honest({.noise_w = 1.0, .flights = 16}, 1); }
+TEST(IntervalCoverageStudy, OfSingleFlights) { expect_honest({.noise_w = 1.0, .flights = 16}, 1); }
 
 TEST(IntervalCoverage, OfFlightsInFours) {
     expect_honest({.noise_w = 0.24, .autocorrelation = 0.4, .flights = 40, .together = 4}, 2);
@@ -28,7 +28,7 @@ double cruise_coverage(const test::CoverageCase& made) {
     return test::coverage_of(flight::Phase::cruise, made, 3).covered;
 }
 
-TEST(IntervalCoverage, OfLongPhasesWhoseNoiseIsNotIndependent) {
+TEST(IntervalCoverageStudy, OfLongPhasesWhoseNoiseIsNotIndependent) {
     EXPECT_GE(cruise_coverage({.autocorrelation = 0.6, .flights = 8}), 0.85);
 }
 

@@ -74,7 +74,7 @@ TEST(Validate, RefusesOneFlightAndMomentsThatAreNone) {
     EXPECT_THAT(late.err, HasSubstr("opterra_synthetic_01 is excluded"));
 }
 
-TEST(Validate, InFlightBeatsBeforeFlightOnRealFlights) {
+TEST(ValidateStudy, InFlightBeatsBeforeFlightOnRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto folder = test::scratch_dir();
     const auto before = Json::parse(run(folder, "validate --json" + real_flights()).out);

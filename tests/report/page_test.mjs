@@ -1,5 +1,5 @@
 // The report's pages in headless Chromium. Environment: PAGES is the folder of what page_test.sh makes, where screenshots
-// are left; FLIGHTS are on more.html (up to 30: there is none, and what repeats another test is left out);
+// are left; FLIGHTS are on more.html (none: the page of six flights alone is tested, the rest is skipped);
 // FLIGHTWATT_WEB is the folder with node_modules, CHROMIUM the browser.
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, statSync } from "node:fs";
@@ -14,7 +14,8 @@ const axe = require("axe-core");
 
 const folder = process.env.PAGES;
 const flights = Number(process.env.FLIGHTS);
-const isWhole = flights > 30;
+const isWhole = flights > 0;
+const inCheck = { skip: isWhole ? false : "scripts/check integration runs it" };
 const screenshots = path.join(folder, "screenshots");
 const address = (name) => pathToFileURL(path.join(folder, name)).href;
 let browser;
@@ -92,11 +93,10 @@ const withoutMarks = (page) =>
 const domain = (page, name) => page.evaluate((figure) => window.flightwatt.views.get(document.querySelector(`[data-name="${figure}"]`)).scale("x").domain(), name);
 const width = ([low, high]) => high - low;
 
-/** What axe finds in a part of the page; quickly: without the figures' points and lines, of which there are thousands. */
+/** What axe finds in a part of the page. */
 async function seriousFaults(page, part = "html") {
   await page.evaluate(axe.source);
-  const context = { include: [part], exclude: isWhole ? [] : [".role-mark"] };
-  const { violations } = await page.evaluate((where) => window.axe.run(where), context);
+  const { violations } = await page.evaluate((where) => window.axe.run(where), part);
   return violations.filter(({ impact }) => ["serious", "critical"].includes(impact));
 }
 
@@ -260,18 +260,24 @@ test("a phone's tables name the columns that they leave out, and show them when 
   await page.context().close();
 });
 
+const faultsOf = (violations) => violations.map(({ id, nodes }) => [id, nodes.length, nodes[0].html.slice(0, 200), nodes[0].failureSummary]);
+
+test("axe finds nothing serious in the answers", async () => {
+  const { page } = await open("six.html");
+  assert.deepEqual(faultsOf(await seriousFaults(page, "#answers")), []);
+  await page.context().close();
+});
+
 for (const scheme of ["light", "dark"]) {
-  test(`axe finds nothing serious, ${scheme}`, async () => {
+  test(`axe finds nothing serious, ${scheme}`, inCheck, async () => {
     const { page } = await open("six.html", { colorScheme: scheme });
-    if (isWhole) await drawAll(page);
-    else await drawShown(page);
-    const serious = await seriousFaults(page);
-    assert.deepEqual(serious.map(({ id, nodes }) => [id, nodes.length, nodes[0].html.slice(0, 200), nodes[0].failureSummary]), []);
+    await drawAll(page);
+    assert.deepEqual(faultsOf(await seriousFaults(page)), []);
     await page.context().close();
   });
 }
 
-test("two folders: one table of flights that names the folder, a model of each", async () => {
+test("two folders: one table of flights that names the folder, a model of each", inCheck, async () => {
   const { page, faults } = await open("folders.html");
   await drawAll(page);
   const seen = await page.evaluate(() => {
@@ -294,7 +300,7 @@ test("two folders: one table of flights that names the folder, a model of each",
   await page.context().close();
 });
 
-test("names with markup, quotes, unicode and 300 characters break nothing", async () => {
+test("names with markup, quotes, unicode and 300 characters break nothing", inCheck, async () => {
   const { page, faults } = await open("hostile.html");
   await drawAll(page);
   assert.deepEqual(await withoutMarks(page), []);
@@ -319,7 +325,7 @@ function tablesOf(part) {
   return Object.values(part).flatMap(tablesOf);
 }
 
-test("many flights are compressed, and each opens to what its figures are as files", async () => {
+test("many flights are compressed, and each opens to what its figures are as files", inCheck, async () => {
   const { page, faults } = await open("many.html");
   const flights = page.locator("details.flight");
   const count = await flights.count();
@@ -346,7 +352,7 @@ test("many flights are compressed, and each opens to what its figures are as fil
   await page.context().close();
 });
 
-test("a link to a compressed flight opens it, and paper has what is open", async () => {
+test("a link to a compressed flight opens it, and paper has what is open", inCheck, async () => {
   const { page, faults } = await open("many.html");
   const link = page.locator("#flights table.sortable tbody tr:last-child a");
   const target = await link.getAttribute("href");
@@ -359,7 +365,7 @@ test("a link to a compressed flight opens it, and paper has what is open", async
   await page.context().close();
 });
 
-test("a browser that cannot open a compressed flight says what to do; so does a damaged page", async () => {
+test("a browser that cannot open a compressed flight says what to do; so does a damaged page", inCheck, async () => {
   const context = await browser.newContext();
   const page = await context.newPage();
   await page.addInitScript(() => delete window.DecompressionStream);
@@ -377,8 +383,8 @@ test("a browser that cannot open a compressed flight says what to do; so does a 
   await damaged.context().close();
 });
 
-for (const [name, count] of [["many.html", 30], ...(isWhole ? [["more.html", flights]] : [])]) {
-  test(`${count} flights open with few figures drawn and no block unpacked`, async () => {
+for (const [name, count] of [["many.html", 30], ["more.html", flights]]) {
+  test(`${count} flights open with few figures drawn and no block unpacked`, inCheck, async () => {
     const { size } = statSync(path.join(folder, name));
     assert.ok(size < 5e6, `${size} bytes`);
     const begin = performance.now();
@@ -401,12 +407,12 @@ for (const [name, count] of [["many.html", 30], ...(isWhole ? [["more.html", fli
   });
 }
 
-// Quickly: the narrowest screen and the usual one.
+// Without FLIGHTS: the narrowest screen.
 const sizes = { phone: { width: 390, height: 844 }, tablet: { width: 1024, height: 768 }, desktop: { width: 1440, height: 900 }, wide: { width: 1920, height: 1080 } };
 for (const colorScheme of ["light", "dark"]) {
   for (const [name, viewport] of Object.entries(sizes)) {
-    if (!isWhole && !["phone light", "desktop dark"].includes(`${name} ${colorScheme}`)) continue;
-    test(`${name} in ${colorScheme}: nothing stands beside the page`, async () => {
+    const isQuick = name === "phone" && colorScheme === "light";
+    test(`${name} in ${colorScheme}: nothing stands beside the page`, isQuick ? {} : inCheck, async () => {
       const { page, faults } = await open("six.html", { colorScheme, viewport });
       await page.evaluate(() => document.querySelectorAll("details.flight").forEach((details, i) => (details.open = i === 0)));
       await drawShown(page);
@@ -425,7 +431,7 @@ for (const colorScheme of ["light", "dark"]) {
   }
 }
 
-test("print: light, whatever the screen, and all of what is open is drawn", async () => {
+test("print: light, whatever the screen, and all of what is open is drawn", inCheck, async () => {
   const { page, faults } = await open("six.html", { colorScheme: "dark" });
   const pdf = await page.pdf({ format: "A4", path: path.join(screenshots, "print.pdf") });
   assert.ok(pdf.length > 50_000, `${pdf.length} bytes`);

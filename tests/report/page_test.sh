@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Makes the pages of page_test.mjs and opens them in Chromium: page_test.sh BIN WEB SCRATCH [FLIGHTS]. FLIGHTS, 30 if not
-# given, are on the page of many flights. With 300 there is a second such page of them, and the page of six flights is
-# opened on every screen. Exits with 77 (skipped) where node, its modules or Chromium are missing.
+# Makes the pages of page_test.mjs and opens them in Chromium: page_test.sh BIN WEB SCRATCH [FLIGHTS]. Without FLIGHTS that
+# is a page of six flights; with it also pages of 30 and of FLIGHTS flights, of two folders and of hostile names, on every
+# screen and on paper. Exits with 77 (skipped) where node, its modules or Chromium are missing.
 set -euo pipefail
 bin=$1
 web=$2
 pages=$3
-flights=${4:-30}
+flights=${4:-0}
 source=$(cd "$(dirname "$0")/../.." && pwd)
 
 skip() {
@@ -24,6 +24,15 @@ quiet() { "$@" >/dev/null 2>"$pages/stderr" || { cat "$pages/stderr" >&2 && exit
 quiet "$bin/flightwatt-batch" "$source/logs" -o "$pages/six"
 quiet "$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml -o "$pages/six.html"
 "$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml --json >"$pages/six.json" 2>/dev/null
+
+browse() {
+    PAGES=$pages FLIGHTS=$flights FLIGHTWATT_WEB=$web CHROMIUM=$chromium \
+        node --test --test-reporter=spec "$source/tests/report/page_test.mjs"
+}
+if ((flights == 0)); then
+    browse
+    exit
+fi
 
 # Two folders on one page: one flight is in both.
 quiet "$bin/flightwatt-batch" "$source"/logs/opterra_synthetic_0[1-2].data -o "$pages/first"
@@ -59,7 +68,5 @@ many_flights() {
     rm -rf "$pages/logs" "$pages/logs_out"
 }
 many_flights 30 many --figures "$pages/many_figures"
-((flights <= 30)) || many_flights "$flights" more
-
-PAGES=$pages FLIGHTS=$flights FLIGHTWATT_WEB=$web CHROMIUM=$chromium \
-    node --test --test-reporter=spec "$source/tests/report/page_test.mjs"
+many_flights "$flights" more
+browse

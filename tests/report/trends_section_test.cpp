@@ -45,7 +45,7 @@ std::map<std::string, batch::Trend> told(const std::vector<AircraftTrend>& trend
 
 constexpr std::size_t seeds = 20;
 
-TEST(Trends, HoldTheAgeingThatIsThere) {
+TEST(TrendsStudy, HoldTheAgeingThatIsThere) {
     const test::Ageing ageing{0.0001, 0.001, 9};
     constexpr double power_part_a_day = 0.002;
     std::map<std::string, std::size_t> held;
@@ -75,7 +75,7 @@ TEST(Trends, HoldTheAgeingThatIsThere) {
     }
 }
 
-TEST(Trends, AreNotFoundWhereNothingAges) {
+TEST(TrendsStudy, AreNotFoundWhereNothingAges) {
     std::size_t judged = 0;
     std::size_t found = 0;
     for (std::uint64_t seed = 11; seed < 11 + seeds; ++seed) {

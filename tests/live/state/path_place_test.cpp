@@ -233,7 +233,7 @@ PlaceFilter second_anew(const mission::PathForecast& plan, const flight::FlightS
 }
 
 /// A second pass that is behind by some seconds costs a place little, and its verdict nothing.
-TEST(PathPlace, ASecondPassInPartsTellsWhatAWholeOneDoes) {
+TEST(PathPlaceStudy, ASecondPassInPartsTellsWhatAWholeOneDoes) {
     const auto path = survey();
     const mission::PathForecast plan({path, {}, test::made_up_wing()});
     const auto places = places_of(plan);

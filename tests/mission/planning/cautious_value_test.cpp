@@ -10,7 +10,7 @@ namespace {
 
 /// With a cut-off just below what the least power leads to, most of what a bound promises cannot be flown: plans used to
 /// have a twentieth of the utility of plans of the same mission whose choices have to stay for three slots.
-TEST(CautiousValue, FindsPlansBeforeALateCutOff) {
+TEST(CautiousValueStudy, FindsPlansBeforeALateCutOff) {
     auto free = test::SmallMissionGenerator(71017).make_long(false, true).problem;
     auto staying = free;
     staying.plan.dwell_s = 3.0 * free.plan.slot_s;

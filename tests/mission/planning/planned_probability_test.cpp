@@ -23,10 +23,8 @@ double standard_errors(double share, double probability) {
     return (share - (1.0 - probability)) / std::sqrt(probability * (1.0 - probability) / static_cast<double>(samples));
 }
 
-class PlannedProbability : public testing::TestWithParam<unsigned> {};
-
-TEST_P(PlannedProbability, IsWhatTheFlightsOfThePlanKeep) {
-    const auto [problem, probability, kind] = test::generated_mission(GetParam());
+void expect_what_the_flights_keep(unsigned seed) {
+    const auto [problem, probability, kind] = test::generated_mission(seed);
     const auto plan = plan_mission(problem, probability);
     ASSERT_TRUE(plan.plan.feasible) << kind;
     const double errors = standard_errors(share_below(plan.flown), probability);
@@ -36,7 +34,13 @@ TEST_P(PlannedProbability, IsWhatTheFlightsOfThePlanKeep) {
     EXPECT_GE(*plan.summary.final_soc_percent, problem.reserve_soc_percent + plan.margin_percent - 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Generated, PlannedProbability, testing::Range(1U, 6U));
+TEST(PlannedProbability, IsWhatTheFlightsOfThePlanKeep) {
+    for (const unsigned seed : {2U, 5U}) expect_what_the_flights_keep(seed);
+}
+
+TEST(PlannedProbabilityStudy, IsWhatTheFlightsOfThePlanKeep) {
+    for (const unsigned seed : {1U, 3U, 4U}) expect_what_the_flights_keep(seed);
+}
 
 TEST(PlannedProbability, IsWhatTheFlightsOfAnAnswerKeep) {
     const auto generated = test::generated_mission(5);

@@ -121,7 +121,7 @@ TEST_P(SmallMissions, HaveNoBetterScheduleThanThePlan) {
 // All schedules of 6 and 8 take seconds.
 INSTANTIATE_TEST_SUITE_P(Generated, SmallMissions, testing::Values(1U, 2U, 3U, 4U, 5U, 7U, 9U, 10U, 11U, 12U));
 
-TEST(SimulatedPlan, IsProvenForManySlotsAndChoices) {
+TEST(SimulatedPlanStudy, IsProvenForManySlotsAndChoices) {
     for (const unsigned seed : {1U, 2U, 3U}) {
         for (const bool dwells : {false, true}) {
             const auto made = test::SmallMissionGenerator(seed).make_long(dwells, false);
@@ -134,7 +134,7 @@ TEST(SimulatedPlan, IsProvenForManySlotsAndChoices) {
     }
 }
 
-TEST(SimulatedPlan, UsesWhatATightCutOffLeaves) {
+TEST(SimulatedPlanStudy, UsesWhatATightCutOffLeaves) {
     // What nothing but the least power at the end can land with: most of the power of a beam is cut off there.
     const auto made = test::SmallMissionGenerator(4).make_long(false, true);
     const auto plan = plan_mission(made.problem);
@@ -207,7 +207,7 @@ TEST(PlanRest, AnswersALearnedFactorOnAPackWhoseVoltageFalls) {
     EXPECT_EQ(lost.schedule.back().run, least_power_configuration(problem)) << "it does the least";
 }
 
-TEST(SimulatedPlan, KeepsTheReserveWithAProbability) {
+TEST(SimulatedPlanStudy, KeepsTheReserveWithAProbability) {
     auto mission = thevenin_plan()(1800.0);
     EXPECT_THROW(plan_mission(mission, 0.95), InputError) << "a model that does not say how flights differ";
     for (const auto phase : flight::all_phases) {

@@ -144,7 +144,7 @@ Mission weak_in_takeoff(unsigned seed, double failing) {
 
 /// Levels of three flights are Student t with two degrees of freedom: far out in one way, a flight is far out in others
 /// too, so that lines of flights fail on both of their sides.
-TEST(LandingChance, AgreesWithDrawnFlightsOfWeakPacks) {
+TEST(LandingChanceStudy, AgreesWithDrawnFlightsOfWeakPacks) {
     for (unsigned seed = 1; seed <= 6; ++seed) {
         const double failing = seed % 3 == 0 ? 0.1 : seed % 3 == 1 ? 0.02 : 0.04;
         const auto mission = weak_in_takeoff(seed, failing);
