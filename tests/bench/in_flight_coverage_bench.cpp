@@ -4,6 +4,7 @@
 
 #include "base/number.h"
 #include "base/units.h"
+#include "helpers/binomial.h"
 #include "helpers/generated_flights.h"
 #include "helpers/generated_motion.h"
 #include "mechanical/prediction.h"
@@ -45,10 +46,6 @@ void add(Row& row, double measured_wh, const mechanical::EnergyEstimate& before,
     ++row.flights;
 }
 
-double binomial_error(double share, std::size_t count) {
-    return std::sqrt(share * (1.0 - share) / static_cast<double>(count));
-}
-
 /// Prints a row; whether both shares are within the limits.
 bool print(std::size_t flights_of_model, double part, const Row& row) {
     const auto count = static_cast<double>(row.flights);
@@ -56,9 +53,9 @@ bool print(std::size_t flights_of_model, double part, const Row& row) {
     fmt::print("{:>14}  {:>6.0f}  {:>8}", flights_of_model, units::percent_of(part, 1.0), row.flights);
     for (const double share : {row.covered_before / count, row.covered / count}) {
         fmt::print("  {:>6.1f} +- {:.1f}", units::percent_of(share, 1.0),
-                   units::percent_of(binomial_error(share, row.flights), 1.0));
-        within = within && share >= least_share - 3.0 * binomial_error(least_share, row.flights) &&
-                 share <= largest_share + 3.0 * binomial_error(largest_share, row.flights);
+                   units::percent_of(test::binomial_error(share, row.flights), 1.0));
+        within = within && test::is_at_least(share, least_share, row.flights) &&
+                 test::is_at_least(1.0 - share, 1.0 - largest_share, row.flights);
     }
     fmt::print("  {:>13.3f}  {:>15.3f}  {:>15.3f}{}\n", row.half_width_wh / count, row.before_wh / count,
                row.error_wh / count, within ? "" : "  outside 92 to 98 %");

@@ -1,9 +1,11 @@
 // How often 95 % intervals of a phase's curve and of its constant hold the truth, over many synthetic flights, and how
-// far the curves of regularly sampled flights are off.
+// far the curves of regularly sampled flights are off. Exit code 1 where a row covers less than 90 %, beyond three
+// standard errors.
 // usage: interval_coverage_bench [FITS [PHASE]]: of each kind, 1000 if not said; of one phase alone
 
 #include "base/number.h"
 #include "base/units.h"
+#include "helpers/binomial.h"
 #include "helpers/interval_coverage.h"
 
 #include <cmath>
@@ -18,13 +20,13 @@ namespace {
 
 using namespace flightwatt;
 
-/// Standard error of a part of `count` independent trials.
-double binomial_error(double part, std::size_t count) {
-    return std::sqrt(part * (1.0 - part) / static_cast<double>(count));
-}
+using test::binomial_error;
 
-/// The points of one fit's curve are not independent: their part has the error of so many fits at most.
-void print_row(flight::Phase phase, const test::CoverageCase& made, const test::Coverage& coverage) {
+constexpr double least_share = 0.90;
+
+/// Whether both shares are at least that. The points of one fit's curve are not independent: their part has the error of
+/// so many fits at most.
+bool print_row(flight::Phase phase, const test::CoverageCase& made, const test::Coverage& coverage) {
     const auto percent = [](double part) { return units::percent_of(part, 1.0); };
     fmt::print(
         "| {} | {} | {:.2f} | {:.1f} | {:.1f} ± {:.1f} | {:.1f} ± {:.1f} "
@@ -34,12 +36,16 @@ void print_row(flight::Phase phase, const test::CoverageCase& made, const test::
         percent(binomial_error(coverage.a0_covered, coverage.fits)), coverage.half_width_w, coverage.a0_half_width_w,
         coverage.curve_error_w, coverage.worst_curve_error_w, coverage.mean_curves, coverage.without_answer);
     std::fflush(stdout);
+    return test::is_at_least(coverage.covered, least_share, coverage.fits) &&
+           test::is_at_least(coverage.a0_covered, least_share, coverage.fits);
 }
 
 /// Seeds are fixed; those of the tests are others.
 constexpr unsigned seed = 7;
 
-void run_coverage(std::size_t fits, std::span<const flight::Phase> phases) {
+/// Whether all rows cover enough.
+bool run_coverage(std::size_t fits, std::span<const flight::Phase> phases) {
+    bool all_cover = true;
     fmt::print("{} fits a row, seed {}; half widths and errors in W, medians of the fits.\n\n", fits, seed);
     fmt::print(
         "| phase | flights | noise W | r | curve, % | a0, % | half width | of a0 | error | worst | mean curves "
@@ -53,11 +59,12 @@ void run_coverage(std::size_t fits, std::span<const flight::Phase> phases) {
                                                   .autocorrelation = autocorrelation,
                                                   .flights = fits * together,
                                                   .together = together};
-                    print_row(phase, made, test::coverage_of(phase, made, seed));
+                    all_cover = print_row(phase, made, test::coverage_of(phase, made, seed)) && all_cover;
                 }
             }
         }
     }
+    return all_cover;
 }
 
 /// Regularly sampled flights of 1 W noise: what their curves are off, at worst.
@@ -71,9 +78,10 @@ void run_regular(std::size_t fits, std::span<const flight::Phase> phases) {
     }
 }
 
-void run(std::size_t fits, std::span<const flight::Phase> phases) {
-    run_coverage(fits, phases);
+bool run(std::size_t fits, std::span<const flight::Phase> phases) {
+    const bool all_cover = run_coverage(fits, phases);
     run_regular(fits, phases);
+    return all_cover;
 }
 
 }  // namespace
@@ -86,10 +94,10 @@ int main(int argc, char** argv) {
         return 2;
     }
     try {
-        run(*fits, phase ? std::span(&*phase, 1) : std::span<const flight::Phase>(flight::all_phases));
+        const auto phases = phase ? std::span(&*phase, 1) : std::span<const flight::Phase>(flight::all_phases);
+        return run(*fits, phases) ? 0 : 1;
     } catch (const std::exception& error) {
         fmt::print(stderr, "interval_coverage_bench: error: {}\n", error.what());
         return 1;
     }
-    return 0;
 }
