@@ -20,6 +20,12 @@ namespace {
     throw InputError({path.string()}, fmt::format("cannot be read: {}", std::strerror(error)));
 }
 
+/// A descriptor that the program was started with, such as the shell's <(COMMAND): who writes it is there.
+bool is_open_already(const std::filesystem::path& path) {
+    const auto folder = path.parent_path();
+    return folder == "/dev/fd" || folder == "/proc/self/fd" || path == "/dev/stdin";
+}
+
 /// Up to `most` bytes more; 0 at the end.
 std::size_t read_some(const InputFile& file, char* to, std::size_t most) {
     while (true) {
@@ -33,16 +39,18 @@ std::size_t read_some(const InputFile& file, char* to, std::size_t most) {
 
 InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
     note_input(path);
-    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe would wait for who writes it
     if (descriptor_ < 0) cannot_read(path, errno);
     struct stat status {};
     const int error = ::fstat(descriptor_, &status) == 0 ? 0 : errno;
     is_regular_ = S_ISREG(status.st_mode);
     if (is_regular_) size_ = static_cast<std::size_t>(status.st_size);
-    if (error == 0 && !S_ISDIR(status.st_mode)) return;
+    const bool is_read = is_regular_ || (S_ISFIFO(status.st_mode) && is_open_already(path));
+    if (error == 0 && is_read && ::fcntl(descriptor_, F_SETFL, O_RDONLY) == 0) return;
     ::close(descriptor_);  // no destructor runs behind a constructor that throws
     if (error != 0) cannot_read(path, error);
-    throw InputError({path.string()}, "is a folder, expected a file");
+    const auto* const kind = S_ISDIR(status.st_mode) ? "folder" : S_ISFIFO(status.st_mode) ? "pipe" : "device";
+    throw InputError({path.string()}, fmt::format("is a {}, expected a file", kind));
 }
 
 InputFile::~InputFile() { ::close(descriptor_); }

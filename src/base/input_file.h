@@ -12,7 +12,8 @@ namespace flightwatt {
 /// one (/dev/zero, a pipe that never ends) is refused before it fills the memory.
 inline constexpr std::size_t most_file_bytes = 128'000'000;
 
-/// A file that is open for reading. Throws InputError where it cannot be opened, in the system's words.
+/// A file that is open for reading, or a pipe that the program was started with (/dev/fd/63). Throws InputError where it
+/// cannot be opened, in the system's words, and at once for folders, devices and named pipes.
 class InputFile {
   public:
     explicit InputFile(const std::filesystem::path& path);
@@ -22,7 +23,6 @@ class InputFile {
 
     int descriptor() const { return descriptor_; }
     const std::filesystem::path& path() const { return path_; }
-    bool is_regular() const { return is_regular_; }
     /// Of a regular file, when it was opened; 0 for pipes and devices.
     std::size_t size() const { return size_; }
     /// Throws InputError if the file is shorter now than it was then. One that grows is as good as it was.
@@ -35,7 +35,7 @@ class InputFile {
     std::size_t size_ = 0;
 };
 
-/// The whole file, which may be a pipe. Throws InputError where it is missing, a folder, unreadable, cut while it is
+/// The whole file. Throws InputError where it is missing, a folder, unreadable, cut while it is
 /// read, or holds more than `most_bytes`; `hint` says what to do about that.
 std::string read_file(const std::filesystem::path& path, std::size_t most_bytes = most_file_bytes,
                       std::string_view hint = "is it the file that was meant?");

@@ -139,8 +139,9 @@ std::vector<std::string> listed_paths(std::string_view text, const std::string& 
     }
     std::vector<std::string> paths;
     while (!text.empty()) {
-        const auto line = text.substr(0, text.find('\n'));
+        auto line = text.substr(0, text.find('\n'));
         text.remove_prefix(std::min(text.size(), line.size() + 1));
+        if (line.ends_with('\r')) line.remove_suffix(1);  // a list that was written on Windows
         if (!line.empty()) paths.emplace_back(line);
     }
     return paths;

@@ -207,7 +207,8 @@ int run(int argc, char** argv, const StageDefinition& definition, const StageBod
 }  // namespace
 
 int run_guarded(const std::string& program, const std::function<int()>& body) {
-    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is then a failed write: see print() and tell()
+    // A closed pipe and a file beyond the limit (ulimit -f) are then failed writes: see print() and tell().
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
     occupy_closed_streams();
     try {
         const int code = body();
@@ -261,9 +262,19 @@ void write_result(const StageCall& call, std::string_view content) {
 }
 
 std::string one_line(std::string_view text) {
-    std::string line(text);
-    std::ranges::replace_if(
-        line, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+    constexpr unsigned char first_printed = 0x20;
+    constexpr unsigned char delete_character = 0x7F;
+    std::string line;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '\n' || c == '\t') {
+            line += ' ';
+        } else if (code < first_printed || code == delete_character) {
+            line += fmt::format("\\x{:02x}", code);
+        } else {
+            line += c;
+        }
+    }
     return line;
 }
 

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -25,6 +26,37 @@ void refuse_what_is_no_file(const std::filesystem::path& path) {
     if (!std::filesystem::is_regular_file(status)) throw InputError({path.string()}, "is not a regular file");
 }
 
+/// Bytes of the file that were never written and read as zeros, as far as its file system tells: those between its parts.
+std::size_t unwritten_bytes(const InputFile& file) {
+    constexpr int max_parts = 1000;  // of a file in more parts, those of the others
+    std::size_t unwritten = 0;
+    off_t at = 0;
+    const auto size = static_cast<off_t>(file.size());
+    for (int part = 0; part < max_parts && at < size; ++part) {
+        auto written = ::lseek(file.descriptor(), at, SEEK_DATA);
+        if (written < 0 && errno != ENXIO) break;  // it cannot tell
+        if (written < 0) written = size;           // nothing behind it
+        unwritten += static_cast<std::size_t>(written - at);
+        at = written < size ? ::lseek(file.descriptor(), written, SEEK_HOLE) : size;
+        if (at < written) break;
+    }
+    return unwritten;
+}
+
+std::string size_text(std::size_t bytes) {
+    const auto size = static_cast<double>(bytes);
+    return bytes < 1'000'000'000 ? fmt::format("{:.3g} MB", size / 1e6) : fmt::format("{:.3g} GB", size / 1e9);
+}
+
+void reject_unwritten(const InputFile& file, std::size_t max_bytes) {
+    const auto unwritten = unwritten_bytes(file);
+    if (unwritten <= max_bytes) return;
+    throw InputError(
+        {file.path().string()},
+        fmt::format("{} of its {} were never written and are zeros", size_text(unwritten), size_text(file.size())),
+        "expected a telemetry log");
+}
+
 }  // namespace
 
 DataFile::DataFile(const std::filesystem::path& path, std::size_t most_bytes) {
@@ -33,6 +65,7 @@ DataFile::DataFile(const std::filesystem::path& path, std::size_t most_bytes) {
     if (file_->size() == 0) {
         throw InputError({path.string()}, "is empty, expected telemetry lines: TIME SENDER NAME FIELD ...");
     }
+    reject_unwritten(*file_, most_bytes);
     mapped_.emplace(*file_);
     text_ = mapped_->text();
     if (text_.starts_with("PK\x03\x04"sv)) {

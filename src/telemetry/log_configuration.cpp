@@ -117,6 +117,8 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
 }  // namespace
 
 bool begins_as_xml(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe would wait
     std::ifstream file(path, std::ios::binary);
     char first = '\0';
     return static_cast<bool>(file >> first) && (first == '<' || first == '\xEF');

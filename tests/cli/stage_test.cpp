@@ -166,7 +166,8 @@ TEST(RunStage, PassesTheBodysExitCodeOn) {
 
 TEST(RunStage, KeepsDiagnosticsOnOneLine) {
     const auto error = run({"a"}, failing_with(InputError({"a\nb", 1}, "holds '\x1b[2J\r\n'")));
-    EXPECT_EQ(error.err, "flightwatt-trial: a b:1: error: holds ' [2J  '\n");
+    EXPECT_EQ(error.err, R"(flightwatt-trial: a b:1: error: holds '\x1b[2J\x0d ')"
+                         "\n");
     const auto notes = run({"a"}, [](const StageCall& call) {
         warn(call, "one\ntwo");
         note(call, "three\tfour");

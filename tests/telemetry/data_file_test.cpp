@@ -57,6 +57,16 @@ TEST_F(RefusedFile, IsNone) {
     EXPECT_EQ(reading("device.data"), "device.data: is not a regular file");
 }
 
+TEST_F(RefusedFile, WasNeverWritten) {
+    write("log.data", "1 20 PONG \n");
+    std::filesystem::resize_file(folder / "log.data", 1'100'000);
+    const auto read = [&](std::size_t max_bytes) {
+        return test::rejected([&] { DataFile(folder / "log.data", max_bytes).text(); }, folder);
+    };
+    EXPECT_EQ(read(1'200'000), "") << "room that was set aside";
+    EXPECT_THAT(read(1'000'000), StartsWith("log.data: 1.1 MB of its 1.1 MB were never written and are zeros"));
+}
+
 TEST_F(RefusedFile, HoldsNothing) {
     write("empty.data", "");
     EXPECT_EQ(reading("empty.data"), "empty.data: is empty, expected telemetry lines: TIME SENDER NAME FIELD ...");

@@ -23,6 +23,8 @@ constexpr std::array links{"udp", "serial", "ivy"};
 /// Whether the file that is to be followed is binary: by its content, and while it has none by its name.
 bool is_binary_log(const std::filesystem::path& path) {
     constexpr std::size_t enough = 65'536;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;  // rejected when it is followed
     std::string bytes(enough, '\0');
     std::ifstream file(path, std::ios::binary);
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

@@ -76,7 +76,7 @@ void tell(int events, Event event) {
     ::dup2(nothing, STDIN_FILENO);
     ::dup2(options.output >= 0 ? options.output : nothing, STDOUT_FILENO);
     ::dup2(options.errors >= 0 ? options.errors : nothing, STDERR_FILENO);
-    for (const int signal : {SIGPIPE, SIGCHLD, SIGTERM, SIGINT, SIGHUP}) ::signal(signal, SIG_DFL);
+    for (const int signal : {SIGPIPE, SIGXFSZ, SIGCHLD, SIGTERM, SIGINT, SIGHUP}) ::signal(signal, SIG_DFL);
     sigset_t none;
     sigemptyset(&none);
     ::sigprocmask(SIG_SETMASK, &none, nullptr);

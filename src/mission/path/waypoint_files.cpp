@@ -276,6 +276,12 @@ std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& f
     } catch (const Json::parse_error& error) {
         throw InputError({file, line_at(text, error.byte == 0 ? 0 : error.byte - 1)}, "is not JSON",
                          "expected GeoJSON: Points and LineStrings");
+    } catch (const Json::out_of_range& error) {  // names the number in quotation marks, and no place
+        std::string number = error.what();
+        number = number.substr(number.find('\'') + 1);
+        number = number.substr(0, number.find('\''));
+        throw InputError({file, line_at(text, std::min(text.find(number), text.size()))},
+                         fmt::format("a number is out of range: '{}'", number), "expected a coordinate");
     }
     if (reader.entries.empty()) throw InputError({file}, "has no waypoints");
     return std::move(reader.entries);
