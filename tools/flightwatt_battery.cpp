@@ -24,7 +24,7 @@ using namespace flightwatt;
 
 battery::IdentificationOptions read_options(const cli::StageCall& call) {
     battery::IdentificationOptions options;
-    options.capacity_ah = cli::positive_option(call, "capacity", "Ah", 1e4);
+    options.capacity_ah = cli::capacity_option(call);
     if (call.has("cells")) options.cells = static_cast<int>(cli::count_option(call, "cells", 1, 24));
     options.chain = !call.has("no-chain");
     options.name = call.maybe<std::string>("name").value_or(
@@ -135,14 +135,15 @@ int identify(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "battery", "FLIGHT.data|SERIES.csv...",
+        "battery", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Identifies the battery from the flights' own voltage, current and charge: open-circuit voltage over
 state of charge, series resistance and one RC pair, with 95 % intervals, for missions (model =
 "thevenin"). The battery goes to the standard output as TOML; with -o it goes to the file, and its
 parameters and flights are shown: how well each flight's voltage is met, and how well the others
 predict it. What was missing from the pack when a flight began is estimated with it, and a flight that
 follows another on what looks like the same pack is chained to it. Each flight's own resistance tells
-the pack's state of health. Flights whose current was computed from throttle are refused.)"};
+the pack's state of health. Flights whose current was computed from throttle are refused.)" +
+            std::string(cli::several_flights_text)};
     stage.shows_table = true;
     auto add = stage.options.add_options();
     add("capacity", cli::value<double>("AH"),

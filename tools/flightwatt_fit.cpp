@@ -129,11 +129,11 @@ int fit(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "fit", "FLIGHT.data|SERIES.csv|OUT...",
+        "fit", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
-as TOML; with -o it goes to the file and Table I is shown. OUT is a folder of flightwatt batch: the flights
-that it accepted.)"};
+as TOML; with -o it goes to the file and Table I is shown.)" +
+            std::string(cli::several_flights_text)};
     stage.shows_table = true;
     add_fit_options(stage.options, cli::AutoOrder::accepted);
     cli::add_model_option(stage.options);

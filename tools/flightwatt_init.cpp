@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "cli/numeric_options.h"
+#include "cli/output/battery_output.h"
 #include "cli/output/json_text.h"
 #include "cli/stage.h"
 
@@ -40,18 +40,18 @@ missions/first.toml: | fits/model.toml fits/pack.toml
 
 # The battery that they flew on.
 fits/pack.toml: fits/model.toml
-	flightwatt battery $(wildcard logs/*.data logs/*.data.*) --capacity $(CAPACITY_AH) -o fits/pack.toml
+	flightwatt battery fits --capacity $(CAPACITY_AH) -o fits/pack.toml
 
-# Phases, energies, and the model of take-off, cruise and landing.
+# Phases, energies, and the model of take-off, cruise and landing. Exit code 3: a log was skipped, the others were used.
 fits/model.toml: logs $(wildcard logs/*)
-	flightwatt batch logs -o fits
+	flightwatt batch logs -o fits || test $$? = 3
 )",
         capacity_ah);
 }
 
 int make_folder(const cli::StageCall& call) {
     constexpr double usual_ah = 5.0;
-    const auto capacity_ah = cli::positive_option(call, "capacity", "Ah").value_or(usual_ah);
+    const auto capacity_ah = cli::capacity_option(call).value_or(usual_ah);
     const std::filesystem::path root = call.inputs.front();
     const std::filesystem::path list = call.output ? std::filesystem::path(*call.output) : root / "Makefile";
     std::error_code none;

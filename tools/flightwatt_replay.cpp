@@ -11,9 +11,7 @@
 #include "mechanical/measured_flight.h"
 #include "mission/mission_file.h"
 #include "mission/replay.h"
-#include "telemetry/log_configuration.h"
 
-#include <exception>
 #include <filesystem>
 #include <set>
 
@@ -37,30 +35,6 @@ std::vector<mission::AnyMission> read_missions(const cli::StageCall& call) {
     return missions;
 }
 
-struct UnusableFlight {
-    std::string file;
-    std::string reason;
-};
-
-/// The call with the flights that can be read. Throws what is wrong with the first, where none can.
-cli::StageCall with_usable_flights(const cli::StageCall& call, std::vector<UnusableFlight>& unusable) {
-    const auto options = cli::read_flight_options(call);
-    auto usable = call;
-    usable.inputs.clear();
-    std::exception_ptr first;
-    for (const auto& file : call.inputs) {
-        try {
-            flight::load_flight(std::filesystem::path(file), options);
-            usable.inputs.push_back(file);
-        } catch (const InputError& error) {
-            if (!first) first = std::current_exception();
-            unusable.push_back({file, error.what()});
-        }
-    }
-    if (usable.inputs.empty() && first) std::rethrow_exception(first);
-    return usable;
-}
-
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, std::size_t needed_samples) {
     const auto options = cli::read_flight_options(call);
     return cli::from_flights<mechanical::MeasuredFlight>(call, options, [&](const auto&, const auto& loaded) {
@@ -76,17 +50,13 @@ int replay(const cli::StageCall& call) {
     options.durations_are_known = call.has("know-durations");
     const auto missions = read_missions(call);
     if (const auto file = call.maybe<std::string>("model")) options.model = mechanical::read_mechanical_model(*file);
-    std::vector<UnusableFlight> unusable;
-    const auto usable = with_usable_flights(call, unusable);
-    for (const auto& flight : unusable) cli::warn(call, fmt::format("{} is left out: {}", flight.file, flight.reason));
-    const auto flights = read_flights(usable, mechanical::samples_needed(options.fit.phases.order));
+    const auto flights = read_flights(call, mechanical::samples_needed(options.fit.phases.order));
     auto replays = replay_flights(missions, flights, options);
     for (const auto& left : replays.not_replayed)
         cli::warn(call, fmt::format("{}: {} is not flown on it: {}", left.flight, left.mission, left.reason));
-    for (const auto& flight : unusable)
+    for (const auto& flight : *call.skipped)
         for (const auto& mission : missions)
-            replays.not_replayed.push_back(
-                {telemetry::flight_name(flight.file), setup_of(mission).name, flight.reason});
+            replays.not_replayed.push_back({cli::flight_of_file(flight.file), setup_of(mission).name, flight.reason});
     for (const auto& replay : replays.replays)
         for (const auto& text : replay.notes)
             cli::note(call, fmt::format("{}, {}: {}", replay.flight, replay.mission, text));
@@ -103,7 +73,7 @@ int replay(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "replay", "FLIGHT.data|SERIES.csv... --mission MISSION.toml",
+        "replay", "FLIGHT.data|SERIES.csv|FOLDER... --mission MISSION.toml",
         R"(Judges schedules on flights that were flown: the power that each flight measured, phase by phase, and
 the computing power of a schedule deplete the mission's battery together. What is known before a flight is
 a model fitted to the other flights alone. Schedules:
@@ -115,9 +85,9 @@ a model fitted to the other flights alone. Schedules:
   replanned            in flight, from the charge reached and the power seen so far ([policy], or its defaults)
   hindsight            by the power and durations that were measured: no schedule does better
 Where no plan keeps the reserve, what demands least energy is run, and the table says so. Regret is the
-utility that hindsight has more; schedules that do not keep the reserve have none. A flight that cannot
-be used is told and left out. Last is said what replanning in flight was worth against planning
-beforehand. -o writes the table of schedules as CSV.)"};
+utility that hindsight has more; schedules that do not keep the reserve have none. Last is said what replanning in flight was worth against planning
+beforehand. -o writes the table of schedules as CSV.)" +
+            std::string(cli::several_flights_text)};
     stage.shows_table = true;
     stage.output_help = "write the table of schedules to FILE, as CSV";
     auto add = stage.options.add_options();

@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "base/parallel.h"
 #include "cli/numeric_options.h"
+#include "cli/output/battery_output.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/json_text.h"
 #include "cli/output/mission_output.h"
@@ -151,7 +152,7 @@ report::Section section_of_flights(std::span<const report::ReportFlight> flights
 void add_batches(Page& page, const cli::StageCall& call, std::vector<report::BatchContent>& batches,
                  const report::PublishedFigures& figures) {
     battery::IdentificationOptions identification;
-    identification.capacity_ah = cli::positive_option(call, "capacity", "Ah");
+    identification.capacity_ah = cli::capacity_option(call);
     std::vector<std::future<std::optional<report::ReportBattery>>> batteries;
     std::vector<std::string> mixes;
     for (const auto& content : batches) {
@@ -290,7 +291,7 @@ void write_figure_files(const cli::StageCall& call, const std::vector<report::Se
 /// Before any work, and whether they will be needed or not.
 void refuse_bad_numbers(const cli::StageCall& call) {
     for (const auto* option : {"max-validation-flights", "max-battery-flights"}) cli::count_option(call, option);
-    cli::positive_option(call, "capacity", "Ah");
+    cli::capacity_option(call);
     figure_width_pt(call);
 }
 

@@ -185,12 +185,12 @@ int show_trends(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "trends", "OUT|FLIGHT.data|SERIES.csv...",
+        "trends", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Says how aircraft and pack age: of every flight its energy by minute and by kilometre over ground and through
 the air, the mean power of its cruise, the pack's resistance, its capacity where the flight draws enough to
 tell it, and the charge drawn, as CSV; and whether they rise or fall over the flights' dates, with 95 %
-intervals, each aircraft by itself. OUT is a folder of flightwatt batch: the flights that it accepted; a
-flight that is in two of them counts once.)"};
+intervals, each aircraft by itself. A flight that is in two folders of batch counts once.)" +
+            std::string(cli::several_flights_text)};
     stage.shows_table = true;
     stage.options.add_options()("mix-aircraft", "take flights of several aircraft: each gets its own trends");
     stage.options.add_options()("figures", cli::output_file("DIR"),

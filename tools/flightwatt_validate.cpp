@@ -108,7 +108,7 @@ int validate_flights(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "validate", "FLIGHT.data|SERIES.csv...",
+        "validate", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Leaves one flight out, fits the others, and predicts the energy of each of its phases and of the whole
 from their durations alone; then compares with the integral of the power that was measured. Models:
   fourier         the Fourier series of this project
@@ -127,7 +127,8 @@ the cruise and the landing are predicted, by the models above as before the flig
   in_flight_path      the physical model at this flight's own level, on the airspeed and climb of the
                       rest as they were flown, as if they had been known
 Errors in percent are parts of the phase's measured energy, the flown part included; none for landing,
-whose power is near zero. Bias is predicted less measured.)"};
+whose power is near zero. Bias is predicted less measured.)" +
+            std::string(cli::several_flights_text)};
     stage.shows_table = true;
     cli::add_fit_options(stage.options);
     auto add = stage.options.add_options();

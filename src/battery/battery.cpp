@@ -178,7 +178,7 @@ Battery battery_from(const TomlTable& table) {
     }
     if (model == "paper") battery.voltage_v = number_in(more_than_up_to(0.0, greatest_number), table, "voltage_v");
     battery.resistance_ohm = number_in(at_least(0.0), table, "resistance_ohm");
-    battery.capacity_ah = number_in(more_than_up_to(0.0, greatest_number), table, "capacity_ah");
+    battery.capacity_ah = number_in(more_than_up_to(0.0, max_capacity_ah), table, "capacity_ah", capacity_hint);
     if (model == "thevenin") battery.thevenin = read_circuit(table, battery.intervals);
     if (const auto intervals = table.optional_table("intervals")) read_intervals(*intervals, battery);
     table.refuse_unknown_keys();
@@ -196,7 +196,6 @@ std::vector<std::string> battery_warnings(const Battery& battery) {
     constexpr double least_v = 2.5;
     constexpr double greatest_v = 60.0;
     constexpr double least_ah = 0.05;
-    constexpr double greatest_ah = 200.0;
     constexpr double least_limit_w = 1.0;
     std::vector<std::string> warnings;
     const auto full_v = open_circuit_voltage_v(battery, units::percent_per_whole);
@@ -204,7 +203,7 @@ std::vector<std::string> battery_warnings(const Battery& battery) {
         warnings.push_back(fmt::format("battery: {:.4g} V when full is {}: is its unit V?", full_v,
                                        full_v < least_v ? "less than one cell's" : "more than 14 LiPo cells'"));
     }
-    if (battery.capacity_ah < least_ah || battery.capacity_ah > greatest_ah) {
+    if (battery.capacity_ah < least_ah) {
         warnings.push_back(fmt::format("battery: {:.4g} Ah is the capacity of no small drone's pack: is its unit Ah?",
                                        battery.capacity_ah));
     }

@@ -9,6 +9,9 @@
 
 namespace flightwatt::battery {
 
+inline constexpr double max_capacity_ah = 200.0;  ///< of a pack; a number above is one in mAh
+inline constexpr auto capacity_hint = "the unit is Ah: 5000 mAh is 5 Ah";
+
 /// Open-circuit voltage over state of charge: straight lines between knots.
 struct OpenCircuitVoltage {
     std::vector<double> soc_percent;  ///< from 0 to 100, rising strictly

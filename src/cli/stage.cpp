@@ -201,7 +201,13 @@ int run(int argc, char** argv, const StageDefinition& definition, const StageBod
             fmt::format("unexpected argument '{}'; {}", call.inputs[definition.max_inputs], usage_line(definition)));
     }
     declare_files(call, visible);
-    return body(call);
+    const int code = body(call);
+    return code == ok && !call.skipped->empty() ? input_rejected : code;
+}
+
+/// What is wrong with an input, with the way out.
+std::string reason_of(const InputError& error) {
+    return error.hint().empty() ? std::string(error.what()) : fmt::format("{}; {}", error.what(), error.hint());
 }
 
 }  // namespace
@@ -215,8 +221,7 @@ int run_guarded(const std::string& program, const std::function<int()>& body) {
         close_standard_output();
         return code;
     } catch (const InputError& error) {
-        const auto hint = error.hint().empty() ? "" : "; " + error.hint();
-        return failed(input_rejected, program, error.what() + hint, to_string(error.where()));
+        return failed(input_rejected, program, reason_of(error), to_string(error.where()));
     } catch (const NoAnswerError& error) {
         return failed(no_answer, program, error.what());
     } catch (const UsageError& error) {
@@ -236,6 +241,11 @@ int run_guarded(const std::string& program, const std::function<int()>& body) {
 
 int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body) {
     return run_guarded("flightwatt-" + definition.name, [&] { return run(argc, argv, definition, body); });
+}
+
+void skip_input(const StageCall& call, const std::string& file, const InputError& error) {
+    failed(input_rejected, call.program, reason_of(error) + " (skipped)", to_string(error.where()));
+    call.skipped->push_back({file, reason_of(error)});
 }
 
 void print(std::string_view text) {

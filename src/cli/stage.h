@@ -1,6 +1,9 @@
 #pragma once
 
+#include "base/error.h"
+
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -54,6 +57,12 @@ struct StageDefinition {
     std::string output_help = "write the result to FILE instead of the standard output";
 };
 
+/// An input of several that cannot be used.
+struct SkippedInput {
+    std::string file;
+    std::string reason;
+};
+
 /// What the user gave.
 struct StageCall {
     std::string program;  ///< "flightwatt-fit", for diagnostics
@@ -61,6 +70,8 @@ struct StageCall {
     std::vector<std::string> inputs;
     bool json = false;
     std::optional<std::string> output;
+    /// See skip_input; shared by copies of the call.
+    std::shared_ptr<std::vector<SkippedInput>> skipped = std::make_shared<std::vector<SkippedInput>>();
 
     bool has(const std::string& option) const { return options.count(option) > 0; }
     template <typename T>
@@ -78,6 +89,10 @@ using StageBody = std::function<int(const StageCall&)>;
 
 /// Parses the options of a stage, answers --help and --version, and runs the body, guarded as below.
 int run_stage(int argc, char** argv, const StageDefinition& definition, const StageBody& body);
+
+/// Names an input that cannot be used, on the standard error, so that the others go on. The exit code of the stage is then
+/// input_rejected instead of ok.
+void skip_input(const StageCall& call, const std::string& file, const InputError& error);
 
 /// The exit code of the body. An exception becomes one line on the standard error and its exit code; a standard
 /// output that was not written (full disk, closed) is an error as well. Where its reader has left (head), the body runs

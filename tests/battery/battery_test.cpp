@@ -58,8 +58,9 @@ TEST(BatteryWarnings, TellOfUnitsThatNoPackHas) {
         const auto warnings = battery_warnings(battery);
         return warnings.size() == 1 ? warnings.front() : "";
     };
-    EXPECT_EQ(said(&Battery::capacity_ah, 3200.0),
-              "battery: 3200 Ah is the capacity of no small drone's pack: is its unit Ah?");
+    EXPECT_EQ(said(&Battery::capacity_ah, 0.049),
+              "battery: 0.049 Ah is the capacity of no small drone's pack: is its unit Ah?");
+    EXPECT_EQ(said(&Battery::capacity_ah, 0.051), "");
     EXPECT_EQ(said(&Battery::voltage_v, 111.0), "battery: 111 V when full is more than 14 LiPo cells': is its unit V?");
     EXPECT_EQ(said(&Battery::voltage_v, 1.11), "battery: 1.11 V when full is less than one cell's: is its unit V?");
     EXPECT_EQ(said(&Battery::resistance_ohm, 50.0),

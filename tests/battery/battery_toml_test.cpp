@@ -79,7 +79,10 @@ TEST(BatteryToml, RefusesWhatIsNoPaperBattery) {
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = -0.1\ncapacity_ah = 1\n"),
               "b.toml:2:1: resistance_ohm = -0.1, expected 0 or more");
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = -1\n"),
-              "b.toml:3:1: capacity_ah = -1, expected more than 0 and at most 1000000");
+              "b.toml:3:1: capacity_ah = -1, expected more than 0 and at most 200; the unit is Ah: 5000 mAh is 5 Ah");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 201\n"),
+              "b.toml:3:1: capacity_ah = 201, expected more than 0 and at most 200; the unit is Ah: 5000 mAh is 5 Ah");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 200\n"), "");
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_mah = 1\n"),
               "b.toml:3:1: has no key 'capacity_ah'; 'capacity_mah' is here; was that meant?");
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 3\n"),

@@ -55,6 +55,30 @@ TEST(Disturbance, ChangesTheDepletion) {
     }
 }
 
+TEST(Disturbance, TogetherMultiplyFirstAndAddThenInAnyOrder) {
+    const double calm = 100.0 - 20.0 * 1000.0 / 360.0;
+    Disturbance wind;
+    wind.mechanical_factor = 2.0;
+    wind.compute_w = 1.0;
+    Disturbance payload;
+    payload.mechanical_w = 3.0;
+    payload.compute_factor = 1.2;
+    const double expected = calm - (5.0 + 3.0 + 3.0 + 1.0) * 1000.0 / 360.0;  // 2 * 5 + 3, 1.2 * 15 + 1
+    EXPECT_NEAR(final_soc({wind, payload}), expected, 1e-9);
+    EXPECT_NEAR(final_soc({payload, wind}), expected, 1e-9);
+}
+
+TEST(Disturbance, AddsPowerWhereNothingFlew) {
+    auto mission = steady_flight();
+    mission.mechanical.reset();
+    Disturbance wind;
+    wind.mechanical_factor = 2.0;
+    wind.mechanical_w = 3.0;
+    wind.end_s = 500.0;
+    const auto soc = simulate(mission, {}, {wind}).summary.final_soc_percent;
+    EXPECT_NEAR(*soc, 100.0 - (15.0 * 1000.0 + 3.0 * 500.0) / 360.0, 1e-9);
+}
+
 TEST(Disturbance, DropsBelowEmptyEndTheFlight) {
     Disturbance drop;
     drop.start_s = 400.0;

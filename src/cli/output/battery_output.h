@@ -2,6 +2,7 @@
 
 #include "base/text_table.h"
 #include "battery/identification.h"
+#include "cli/stage.h"
 
 #include <string>
 #include <vector>
@@ -36,5 +37,8 @@ std::string provenance(const battery::BatteryIdentification& identified);
 /// The stage's JSON: units are in the keys, null stands for what is not known.
 nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
                                const std::vector<battery::LeftOutCheck>& left_out);
+
+/// --capacity [Ah] of a pack, or std::nullopt where it was not given. Throws UsageError for one that no pack has.
+std::optional<double> capacity_option(const StageCall& call);
 
 }  // namespace flightwatt::cli

@@ -4,6 +4,7 @@
 #include "base/input_file.h"
 #include "batch/batch_files.h"
 #include "batch/batch_fit.h"
+#include "batch/log_files.h"
 #include "batch/manifest.h"
 #include "cli/output/flight_options.h"
 #include "flight/log_name.h"
@@ -142,6 +143,22 @@ void add_flights_of_batch(const StageCall& call, std::vector<SeriesFile> of_batc
     }
 }
 
+bool is_of_batch(const std::filesystem::path& folder) {
+    return std::filesystem::exists(folder / batch::manifest_name) || std::filesystem::is_directory(folder / "flights");
+}
+
+void add_logs_of_folder(const StageCall& call, const std::string& folder, const flight::LoadOptions& options,
+                        std::vector<std::string>& files) {
+    for (const auto& log : batch::find_logs({folder})) {
+        if (!log.problem.empty())
+            skip_input(call, log.path, InputError({log.path}, log.problem));
+        else if (!log.why_not_fitted.empty() && !options.keep.contains(log.flight))
+            note(call, fmt::format("{} is left out: {}", log.path, log.why_not_fitted));
+        else
+            files.push_back(log.path);
+    }
+}
+
 }  // namespace
 
 void add_choice_options(boost::program_options::options_description& options) {
@@ -180,7 +197,7 @@ std::vector<bool> chosen_flights(const StageCall& call, const std::vector<std::s
     return chosen;
 }
 
-StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options) {
+std::vector<std::string> files_of(const StageCall& call, const flight::LoadOptions& options) {
     std::vector<std::string> files;
     std::vector<SeriesFile> of_batches;
     std::map<std::string, std::string> by_name;
@@ -190,11 +207,21 @@ StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options
             files.push_back(input);
             continue;
         }
+        if (!is_of_batch(input)) {
+            add_logs_of_folder(call, input, options, files);
+            continue;
+        }
         add_flights_of_batch(call, series_of_batch(call, input, options), by_name, of_batches);
     }
     // As one batch of all has them, so that the same comes out however they were cut.
     std::ranges::stable_sort(of_batches, {}, &SeriesFile::log);
     for (auto& [log, file] : of_batches) files.push_back(std::move(file));
+    if (files.empty()) throw InputError({}, "none of the folders holds a flight that can be used");
+    return files;
+}
+
+StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options) {
+    const auto files = files_of(call, options);
     std::vector<std::string> names;
     names.reserve(files.size());
     for (const auto& file : files) names.push_back(flight_of_file(file));
@@ -202,7 +229,6 @@ StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options
     call.inputs.clear();
     for (std::size_t i = 0; i < files.size(); ++i)
         if (chosen[i]) call.inputs.push_back(files[i]);
-    if (call.inputs.empty()) throw InputError({}, "none of the folders holds a flight that can be used");
     return call;
 }
 

@@ -173,16 +173,18 @@ void add_mix_option(po::options_description& options) {
 std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::LoadOptions& given,
                                          const std::function<void(const std::string&, flight::LoadedFlight&)>& read) {
     auto options = given;
+    const auto inputs = files_of(call, given);
     std::vector<std::string> flights;
-    for (const auto& file : call.inputs) flights.push_back(flight_of_file(file));
+    for (const auto& file : inputs) flights.push_back(flight_of_file(file));
     options.excluded = with_matching(given.excluded, "exclude", flights);
     flights.clear();
     UsedFlights used(call);
     std::optional<flight::OtherAircraftError> other;
+    std::optional<InputError> unusable;
     TerminalProgress reading("logs");
     std::size_t done = 0;
-    for (const auto& file : call.inputs) {
-        if (call.inputs.size() > 1) reading.show(done++, call.inputs.size());
+    for (const auto& file : inputs) {
+        if (inputs.size() > 1) reading.show(done++, inputs.size());
         flight::LoadedFlight loaded;
         try {
             loaded = flight::load_flight(std::filesystem::path(file), options);
@@ -192,6 +194,13 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
             flights.push_back(flight_of_file(file));
             note(call, fmt::format("{} is left out: {}; {}", flights.back(), error.what(), error.hint()));
             other = error;
+            continue;
+        } catch (const InputError& error) {
+            reading.hide();
+            if (inputs.size() == 1) throw;
+            flights.push_back(flight_of_file(file));
+            if (!options.excluded.contains(flights.back())) skip_input(call, file, error);
+            unusable = error;
             continue;
         }
         const auto name = loaded.series.flight;
@@ -204,6 +213,7 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     }
     refuse_unknown_flights(options, flights);
     if (other && used.counting().empty()) throw *other;
+    if (unusable && used.counting().empty()) throw InputError({}, "no flight is left", "see the reasons above");
     if (call.has("mix-aircraft")) return used.counting();
     if (const auto mix = describe_mix(used.flown()); !mix.empty()) {
         throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),

@@ -26,6 +26,11 @@ void warn_of(const StageCall& call, const std::string& file, const flight::Loade
 /// load_flight, with its warnings.
 flight::LoadedFlight load_flight(const StageCall& call, const std::string& file, const flight::LoadOptions& options);
 
+/// The end of the description of every stage that makes one result of several flights.
+inline constexpr auto several_flights_text =
+    " FOLDER holds logs, or is\none of flightwatt batch: the flights that it accepted. A flight that cannot be used is named and skipped, and\n"
+    "the exit code is then 3.";
+
 /// --mix-aircraft, of every stage that makes one result of several flights.
 void add_mix_option(boost::program_options::options_description& options);
 
@@ -33,7 +38,8 @@ void add_mix_option(boost::program_options::options_description& options);
 /// count. A flight that is there under two names counts once, with a warning: it would be counted twice, and predict
 /// itself. The one with its .log counts, then the one with more samples, then the first. Throws UsageError for two of one
 /// name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those of
-/// several aircraft, or synthetic ones beside real ones, unless --mix-aircraft is given.
+/// several aircraft, or synthetic ones beside real ones, unless --mix-aircraft is given. One of several that cannot be
+/// used is skipped (skip_input); where none is left, InputError is thrown.
 std::vector<std::size_t> for_each_flight(
     const StageCall& call, const flight::LoadOptions& options,
     const std::function<void(const std::string& file, flight::LoadedFlight& flight)>& read);
@@ -56,8 +62,11 @@ void add_choice_options(boost::program_options::options_description& options);
 /// InputError where none is left.
 std::vector<bool> chosen_flights(const StageCall& call, const std::vector<std::string>& flights);
 
-/// The call with the flights of its folders of flightwatt batch in place of them, and of all flights those that are
-/// chosen. Throws InputError for a folder that is no batch's, and where no flight is left.
+/// The call's inputs with the flights of its folders in place of them: those that flightwatt batch accepted, or the logs
+/// of another folder, searched to the bottom. Throws InputError for a folder without any.
+std::vector<std::string> files_of(const StageCall& call, const flight::LoadOptions& options);
+
+/// The call with those flights of its inputs and their folders that are chosen. Throws InputError where none is left.
 StageCall with_chosen_flights(StageCall call, const flight::LoadOptions& options);
 
 /// The name of a flight by that of its file, also of a series that a batch wrote.

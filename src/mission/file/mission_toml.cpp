@@ -68,7 +68,8 @@ void read_mission_battery(const TomlTable& root, MissionSetup& mission) {
     auto& battery = mission.battery;
     battery = root.is_table("battery") ? battery::battery_from(root.table("battery"))
                                        : battery::read_battery(file_of(root, "battery"));
-    const auto capacity_ah = optional_number_in(between(least_capacity_ah_of_a_pack, 1e6), root, "capacity_ah");
+    const auto capacity_ah = optional_number_in(between(least_capacity_ah_of_a_pack, battery::max_capacity_ah), root,
+                                                "capacity_ah", battery::capacity_hint);
     mission.capacity_is_stated = capacity_ah.has_value();
     if (!capacity_ah && battery.capacity_ah < least_capacity_ah_of_a_pack)
         throw InputError(root.where("battery"), fmt::format("the battery holds {:.3g} Ah", battery.capacity_ah),

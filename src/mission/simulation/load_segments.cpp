@@ -32,7 +32,8 @@ std::vector<double> cuts_of(const LoadSegment& segment, const Disturbances& dist
 
 void disturb_power(const Disturbance& disturbance, LoadSegment& segment) {
     segment.compute_w = segment.compute_w * disturbance.compute_factor + disturbance.compute_w;
-    if (!segment.mechanical) return;
+    if (!segment.mechanical && disturbance.mechanical_w == 0.0) return;
+    if (!segment.mechanical) segment.mechanical = mechanical::FourierModel{};  // computing alone
     auto& curve = *segment.mechanical;
     curve.a0_w = curve.a0_w * disturbance.mechanical_factor + disturbance.mechanical_w;
     for (auto* terms_w : {&curve.cos_w, &curve.sin_w})
@@ -163,13 +164,18 @@ std::vector<LoadSegment> disturbed(const std::vector<LoadSegment>& segments, con
             auto& part = result.back();
             part.start_s = start_s;
             part.end_s = end_s;
+            Disturbance together;  // all factors, then all powers: in any order
             for (const auto& disturbance : disturbances) {
                 if (disturbance.start_s >= end_s - edge_tolerance_s || disturbance.end_s <= start_s + edge_tolerance_s)
                     continue;
-                disturb_power(disturbance, part);
+                together.mechanical_factor *= disturbance.mechanical_factor;
+                together.mechanical_w += disturbance.mechanical_w;
+                together.compute_factor *= disturbance.compute_factor;
+                together.compute_w += disturbance.compute_w;
                 if (disturbance.start_s >= start_s - edge_tolerance_s)
                     part.soc_drop_percent += disturbance.soc_drop_percent;
             }
+            disturb_power(together, part);
             start_s = end_s;
         }
     }
