@@ -175,6 +175,7 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const flight::Lo
     auto options = given;
     const auto inputs = files_of(call, given);
     std::vector<std::string> flights;
+    flights.reserve(inputs.size());
     for (const auto& file : inputs) flights.push_back(flight_of_file(file));
     options.excluded = with_matching(given.excluded, "exclude", flights);
     flights.clear();
