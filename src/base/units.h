@@ -13,6 +13,7 @@ inline constexpr double pprz_full_scale = 9600.0;  ///< Paparazzi's MAX_PPRZ: fu
 inline constexpr double percent_per_whole = 100.0;
 inline constexpr double rad_per_turn = 2.0 * std::numbers::pi;
 inline constexpr double degree_per_rad = 180.0 / std::numbers::pi;
+inline constexpr double standard_gravity_m_per_s2 = 9.80665;
 inline constexpr double metre_per_degree = 111195.0;  ///< of a great circle on a sphere as large as the earth
 /// The paper's Table I counts time in units of which every phase lasts 28, whatever its seconds.
 inline constexpr double table_one_time_per_phase = 28.0;

@@ -4,13 +4,18 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/checks/runs.h"
+#include "flight/flight_phases.h"
+#include "flight/phase_statistics.h"
 #include "flight/sources/device_check.h"
 #include "flight/sources/device_sum.h"
+#include "flight/sources/made_tracks.h"
 #include "flight/sources/power_source.h"
 #include "flight/sources/wild_samples.h"
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -107,15 +112,56 @@ void scale_fraction(const FlightSeries& series, Choice& throttle) {
     for (auto& value : track.value) value = units::percent_of(value, 1.0);
 }
 
+/// The commands, if they are those of a throttle; nullptr if there are none.
+const Track* commands_of(const FlightSeries& series) {
+    const auto found = std::ranges::find(series.tracks, commanded_throttle, &Track::source);
+    const bool is_throttle = found != series.tracks.end() && !found->empty() &&
+                             std::ranges::none_of(found->value, [](double percent) { return percent < 0.0; });
+    return is_throttle ? &*found : nullptr;
+}
+
+/// Takes the commands while the throttle idles where they do not for half a minute in all, as in manual mode.
+void follow_commands(const FlightSeries& series, Choice& throttle) {
+    constexpr SegmentationOptions limits;
+    const auto* commands = commands_of(series);
+    if (commands == nullptr || throttle.track().empty() || throttle.track().source == commanded_throttle) return;
+    const auto& track = throttle.track();
+    const auto percent = resample(*commands, track.time_s);
+    const auto idles = [&](std::size_t i) { return track.value[i] <= limits.idle_throttle_percent; };
+    const auto runs = [&](std::size_t i) { return percent[i] >= limits.flight_throttle_percent; };
+    double together_s = 0.0;
+    std::optional<double> first_s;
+    for (const auto& run : runs_of({0, track.time_s.size()}, idles)) {
+        const double running_s = time_where(track.time_s, run, runs);
+        if (running_s < contradicted_s) continue;
+        std::copy_n(percent.begin() + static_cast<std::ptrdiff_t>(run.first), run.size(),
+                    to_change(throttle).value.begin() + static_cast<std::ptrdiff_t>(run.first));
+        together_s += running_s;
+        if (!first_s) first_s = track.time_s[run.first];
+    }
+    if (!first_s) return;
+    throttle.said.push_back(
+        fmt::format("{} is at idle while {} is not for {:.0f} s, first from {:.0f} s on: the latter "
+                    "counts there",
+                    throttle.track().source, commanded_throttle, together_s, *first_s));
+}
+
 Choice throttle(const FlightSeries& series) {
+    constexpr double often_s = 2.0;  // of commands that come more seldom a throttle is only made where nothing else is
+    const auto* commands = commands_of(series);
+    const bool counts =
+        commands != nullptr && (usual_interval_s(commands->time_s) <= often_s || choose_power(series).power_w.empty());
     const auto is_thrust = [](const Track& track) { return track.source == "ROTORCRAFT_FP.thrust"; };
-    auto found = first_that_varies(series, "throttle_percent", [&](const Track& track) { return !is_thrust(track); });
+    auto found = first_that_varies(series, "throttle_percent", [&](const Track& track) {
+        return !is_thrust(track) && (track.source != commanded_throttle || counts);
+    });
     if (found.track().empty()) {
         auto thrust = first_that_varies(series, "throttle_percent", is_thrust);
         thrust.said.insert(thrust.said.begin(), found.said.begin(), found.said.end());
         found = std::move(thrust);
     }
     scale_fraction(series, found);
+    follow_commands(series, found);
     return found;
 }
 

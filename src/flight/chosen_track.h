@@ -51,6 +51,9 @@ class ChosenTracks {
     mutable std::map<std::string, TrackChoice, std::less<>> made_;
 };
 
+/// A throttle at idle is contradicted by power, or by the commands to the motor, that last so long [s].
+inline constexpr double contradicted_s = 30.0;
+
 /// The power samples, whose clock most programs compute on.
 inline Track power_track(const FlightSeries& series) { return chosen_track(series, "power_w"); }
 

@@ -23,7 +23,10 @@ double usual_interval_s(const std::vector<double>& time_s) {
     return intervals.empty() ? 0.0 : upper_median(std::move(intervals));
 }
 
-double gap_threshold_s(const std::vector<double>& time_s) { return 3.0 * usual_interval_s(time_s); }
+double gap_threshold_s(const std::vector<double>& time_s) {
+    constexpr double longest_s = 10.0;  // however seldom there are samples
+    return std::min(3.0 * usual_interval_s(time_s), longest_s);
+}
 
 double integrated(const std::vector<double>& time_s, const std::vector<double>& values, double start_s, double end_s) {
     double integral = 0.0;

@@ -14,7 +14,7 @@ struct PhaseStatistics {
     double mean_power_w = 0.0;                ///< the energy over the duration; 0 of no duration
     double energy_wh = 0.0;                   ///< integral of the power, linear between samples
     std::optional<double> counter_energy_wh;  ///< what the on-board counter counted meanwhile
-    std::size_t gaps = 0;                     ///< times without a sample, longer than three usual intervals
+    std::size_t gaps = 0;                     ///< times without a sample, see gap_threshold_s()
     double longest_gap_s = 0.0;
 };
 
@@ -48,7 +48,7 @@ double integrated(const std::vector<double>& time_s, const std::vector<double>& 
 /// std::nullopt if fewer than half of the seconds between have a sample within 5 s.
 std::optional<double> mean_cubed_airspeed_m3_per_s3(const Track& airspeed, double start_s, double end_s);
 
-/// A longer interval without a power sample is a gap: three usual ones [s].
+/// A longer interval without a power sample is a gap: three usual ones, and 10 s at most [s].
 double gap_threshold_s(const std::vector<double>& time_s);
 
 /// Median interval of the power samples [s].

@@ -3,6 +3,7 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/checks/sample_rules.h"
 #include "flight/phase_statistics.h"
 #include "flight/power_record/power_record.h"
 #include "flight/power_record/power_warnings.h"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,11 +21,9 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double faulty_idle_current_a = 5.0;
 constexpr double faulty_power_difference = 0.10;
 constexpr double compared_power_w = 1.0;  // below, rounding and offsets rule
 constexpr double faulty_counter_return = 0.05;
-constexpr double faulty_rest_part = 0.10;  // of the samples at rest
 
 /// The autopilot switches loads on the ground too (a burst after landing): the middle half of the samples is idle.
 std::optional<IdleCurrent> idle_current(const std::vector<double>& current_a, const std::vector<std::size_t>& resting) {
@@ -80,7 +80,7 @@ double counter_return(const std::vector<double>& counter, const std::vector<Samp
 /// Median of |power - voltage * current| over the product, where that is large enough; 0 if it cannot be compared, as
 /// where devices have voltages of their own.
 double power_difference(const PowerRecord& record) {
-    if (record.is_sum || record.voltage_v.empty() || record.current_a.empty()) return 0.0;
+    if (record.is_sum_of_circuits || record.voltage_v.empty() || record.current_a.empty()) return 0.0;
     std::vector<double> differences;
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
         const double product = record.voltage_v[i] * record.current_a[i];
@@ -98,16 +98,6 @@ bool is_constant_in_flight(const PowerRecord& record) {
     });
 }
 
-/// What part of the samples at rest has a current that only a running motor draws.
-double loaded_rest_part(const PowerRecord& record, const std::vector<std::size_t>& resting) {
-    if (record.current_a.empty() || resting.empty()) return 0.0;
-    const auto loaded = std::count_if(resting.begin(), resting.end(), [&](std::size_t i) {
-        return std::abs(record.current_a[i]) > faulty_idle_current_a;
-    });
-    constexpr std::ptrdiff_t enough = 10;
-    return loaded < enough ? 0.0 : static_cast<double>(loaded) / static_cast<double>(resting.size());
-}
-
 /// Of the samples' power, whose mean has the same sign.
 double power_sum_in_flight_w(const PowerRecord& record) {
     double sum_w = 0.0;
@@ -116,14 +106,9 @@ double power_sum_in_flight_w(const PowerRecord& record) {
     return sum_w;
 }
 
-std::vector<std::string> power_faults_of(const PowerRecord& record, const std::vector<std::size_t>& resting,
+std::vector<std::string> power_faults_of(const PowerRecord& record, std::vector<std::string> faults,
                                          const PowerReport& report) {
-    std::vector<std::string> faults;
     const auto add = [&](std::string text) { faults.push_back(std::move(text)); };
-    if (const double part = loaded_rest_part(record, resting); part > faulty_rest_part) {
-        add(fmt::format("more than {:.0f} A in {:.0f} % of the samples on the ground with the motor off",
-                        faulty_idle_current_a, part * units::percent_per_whole));
-    }
     if (const double apart = power_difference(record); apart > faulty_power_difference) {
         add(fmt::format("power is {:.0f} % away from voltage times current", apart * units::percent_per_whole));
     }
@@ -134,9 +119,10 @@ std::vector<std::string> power_faults_of(const PowerRecord& record, const std::v
                             part * units::percent_per_whole));
         }
     }
-    for (const auto& [name, closure] :
-         {std::pair{"energy", report.energy_closure_percent}, std::pair{"charge", report.charge_closure_percent}}) {
-        if (closure && std::abs(*closure) > faulty_closure_percent) {
+    for (const auto& [name, closure, rounding_percent] :
+         {std::tuple{"energy", report.energy_closure_percent, report.energy_rounding_percent},
+          std::tuple{"charge", report.charge_closure_percent, report.charge_rounding_percent}}) {
+        if (closure && std::abs(*closure) > faulty_closure_percent + rounding_percent) {
             add(fmt::format("what was measured is {:+.0f} % away from the on-board {} counter", *closure, name));
         }
     }
@@ -145,10 +131,15 @@ std::vector<std::string> power_faults_of(const PowerRecord& record, const std::v
     return faults;
 }
 
-/// Integral over counter, less 100 %, over all sorties; absent without a counter that counted.
-std::optional<double> closure_percent(const std::vector<double>& time_s, const std::vector<double>& rate,
-                                      const std::vector<double>& counter, const FlightPhases& phases) {
-    if (rate.empty() || counter.empty()) return std::nullopt;
+struct Closure {
+    std::optional<double> percent;  ///< integral over counter, less 100 %; absent without a counter that counted
+    double rounding_percent = 0.0;
+};
+
+/// Over all sorties. `resolution`: of the counter.
+Closure closure_of(const std::vector<double>& time_s, const std::vector<double>& rate,
+                   const std::vector<double>& counter, double resolution, const FlightPhases& phases) {
+    if (rate.empty() || counter.empty()) return {};
     double integral = 0.0;
     double difference = 0.0;
     for (const auto& sortie : phases.sorties) {
@@ -156,8 +147,8 @@ std::optional<double> closure_percent(const std::vector<double>& time_s, const s
         difference += interpolate_clamped(time_s, counter, sortie.end_s()) -
                       interpolate_clamped(time_s, counter, sortie.start_s());
     }
-    if (!(difference > 0.0)) return std::nullopt;
-    return (integral / difference - 1.0) * units::percent_per_whole;
+    if (!(difference > 0.0)) return {};
+    return {(integral / difference - 1.0) * units::percent_per_whole, units::percent_of(2.0 * resolution, difference)};
 }
 
 /// A log that goes on without power: what is flown then is not seen.
@@ -195,8 +186,12 @@ PowerReport check_power_record(const ChosenTracks& tracks, const FlightPhases& p
     const auto at_rest = idle_current(record.current_a, resting);
     const bool motor_known = !record.throttle_percent.empty();
     if (motor_known) report.idle = at_rest;
-    report.energy_closure_percent = closure_percent(time_s, record.power_w, record.energy_wh, phases);
-    report.charge_closure_percent = closure_percent(time_s, record.current_a, record.charge_ah, phases);
+    const auto energy = closure_of(time_s, record.power_w, record.energy_wh, record.energy_resolution_wh, phases);
+    const auto charge = closure_of(time_s, record.current_a, record.charge_ah, record.charge_resolution_ah, phases);
+    report.energy_closure_percent = energy.percent;
+    report.energy_rounding_percent = energy.rounding_percent;
+    report.charge_closure_percent = charge.percent;
+    report.charge_rounding_percent = charge.rounding_percent;
     const double gap_s = gap_threshold_s(time_s);
     for (const auto& [first, last] : record.flown) {
         for (auto i = first + 1; i < last; ++i) {
@@ -204,8 +199,10 @@ PowerReport check_power_record(const ChosenTracks& tracks, const FlightPhases& p
             if (interval_s > gap_s) report.gaps.push_back({time_s[i - 1], interval_s});
         }
     }
-    report.power_faults = power_faults_of(record, motor_known ? resting : std::vector<std::size_t>{}, report);
-    report.warnings = power_warnings_of({record, phases, report, at_rest, idle_currents(record, resting)});
+    const auto motor_off = motor_known ? resting : std::vector<std::size_t>{};
+    const auto samples = apply_sample_rules(record, motor_off);
+    report.power_faults = power_faults_of(record, samples.faults, report);
+    report.warnings = power_warnings_of({record, phases, samples, report, at_rest, idle_currents(record, resting)});
     warn_of_short_record(tracks, time_s, report.warnings);
     return report;
 }

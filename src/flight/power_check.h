@@ -33,9 +33,11 @@ struct PowerReport {
     std::optional<IdleCurrent> idle;
     std::optional<double> energy_closure_percent;  ///< in flight: integral of power over counter, less 100 %
     std::optional<double> charge_closure_percent;  ///< the same of current and the charge counter
-    std::vector<PowerGap> gaps;                    ///< within the sorties
-    std::vector<std::string> power_faults;         ///< what cannot be: such a record is not fitted
-    std::vector<std::string> warnings;             ///< what is doubtful, though it can be
+    double energy_rounding_percent = 0.0;          ///< what the counter's rounding may add to its closure
+    double charge_rounding_percent = 0.0;
+    std::vector<PowerGap> gaps;             ///< within the sorties
+    std::vector<std::string> power_faults;  ///< what cannot be: such a record is not fitted
+    std::vector<std::string> warnings;      ///< what is doubtful, though it can be
 };
 
 /// Checks a power record. The closure is over the sorties, lift-off to touchdown (that of a phase stands in its

@@ -131,6 +131,8 @@ FlightPhases segment(const ChosenTracks& tracks, const SegmentationOptions& opti
                 "latter counts",
                 grid.time_s(activity.moving.begin), *activity.ground_before_m, *activity.ground_after_m));
         }
+        if (auto doubt = motor_doubt(grid, activity, options); !doubt.empty())
+            phases.warnings.push_back(std::move(doubt));
         auto sortie = make_sortie(tracks, grid, activity, heights, options);
         if (sortie.phases.empty()) {
             phases.ground_events.push_back({grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1),

@@ -182,6 +182,7 @@ std::vector<telemetry::MessageRequest> flight_messages() {
         {"BAT", {"throttle", "voltage", "amps", "energy"}},
         {"ESC", {"amps", "bat_volts", "power", "node_id", "motor_id"}},
         {"POWER_DEVICE", {"node_id", "circuit", "current", "voltage"}},
+        {"COMMANDS", {"values[0]"}},
         {"ESTIMATOR", {"z", "z_dot"}},
         {"GPS", {"utm_east", "utm_north", "course", "alt", "speed", "climb", "utm_zone"}},
         {"GPS_INT", {"lat", "lon", "hmsl", "ecef_xd", "ecef_yd", "ecef_zd"}},

@@ -112,7 +112,8 @@ std::vector<Report> reports_of(const SyntheticSensors& sensors) {
     const auto read = flight::flight_messages();
     std::erase_if(reports, [&](const Report& report) {
         return std::none_of(read.begin(), read.end(), [&](const telemetry::MessageRequest& request) {
-            return request.message == report.definition.name;
+            return request.message == report.definition.name &&
+                   request.message != "COMMANDS";  // ENERGY has the throttle
         });
     });
     return reports;

@@ -187,7 +187,8 @@ class FrameReader {
                 std::size_t elements = field.elements;
                 if (field.count == WireCount::counted) elements = wire_number<std::uint8_t>(found.fields.data() + at++);
                 if (i == target.field) {
-                    offsets.push_back(elements == 1 && field.type != WireType::text ? at : none);
+                    const bool is_number = elements == 1 || (elements > 1 && target.is_first_element);
+                    offsets.push_back(is_number && field.type != WireType::text ? at : none);
                     break;
                 }
                 at += elements * size_of(field.type);

@@ -27,6 +27,7 @@ constexpr BuiltinLayout builtin_layouts[] = {
     {"ESC", "10 fields",
      "amps:A bat_volts:V power:W rpm motor_volts:V energy:Wh temperature temperature_dev node_id motor_id"},
     {"POWER_DEVICE", "2024 (4 fields)", "node_id circuit current:A voltage:V"},
+    {"COMMANDS", "1 field", "values"},
     {"ESTIMATOR", "2 fields", "z:m z_dot:m/s"},
     {"GPS", "before 2011 (10 fields)",
      "mode utm_east:cm utm_north:cm course:decideg alt:cm speed:cm/s climb:cm/s itow:ms utm_zone gps_nb_err"},

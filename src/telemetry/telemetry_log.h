@@ -12,7 +12,8 @@
 
 namespace flightwatt::telemetry {
 
-/// A message that is wanted, and which of its fields (those that the flight's definition has are read).
+/// A message that is wanted, and which of its fields (those that the flight's definition has are read). "values[0]" is
+/// the first element of an array, as a number without a unit.
 struct MessageRequest {
     std::string message;
     std::vector<std::string> fields;

@@ -70,5 +70,10 @@ TEST(Airspeed, IsUnknownWhereItWasHardlyMeasured) {
     EXPECT_FALSE(mean_cubed_airspeed_m3_per_s3(airspeed, 0.0, 13.0).has_value());
 }
 
+TEST(PhaseStatistics, CountsGapsInTimeHoweverSeldomThereAreSamples) {
+    EXPECT_EQ(gap_threshold_s({0.0, 1.0, 2.0}), 3.0);
+    EXPECT_EQ(gap_threshold_s({0.0, 20.0, 40.0}), 10.0);
+}
+
 }  // namespace
 }  // namespace flightwatt::flight

@@ -6,7 +6,10 @@
 #include "helpers/test_paths.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -271,6 +274,76 @@ TEST(Segmentation, MatchesWhatWasReadOffPlotsOfTheRealFlights) {
         ASSERT_TRUE(lift_off.takeoff_after_s.has_value());
         EXPECT_LT(std::abs(*lift_off.takeoff_after_s), 3.0) << "TAKEOFF is a witness";
     }
+}
+
+/// One random change of a track: it loses a part, keeps one alone, is thinned, stands still, is moved in time, or goes.
+void disturb(Track& track, std::mt19937& random) {
+    const auto size = track.time_s.size();
+    const auto keep = [&](const auto& keeps) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < size; ++i) {
+            if (!keeps(i)) continue;
+            track.time_s[kept] = track.time_s[i];
+            track.value[kept++] = track.value[i];
+        }
+        track.time_s.resize(kept);
+        track.value.resize(kept);
+    };
+    const std::size_t begin = size == 0 ? 0 : random() % size;
+    const std::size_t end = begin + (size == 0 ? 0 : random() % (size - begin + 1));
+    switch (random() % 8) {
+        case 0:
+            return keep([&](std::size_t i) { return i < begin || i >= end; });
+        case 1:
+            return keep([&](std::size_t i) { return i >= begin && i < end; });
+        case 2:
+            return keep([&](std::size_t i) { return i % 50 == 0; });
+        case 3:
+            return keep([&](std::size_t i) { return i == begin; });
+        case 4:
+            return std::fill(track.value.begin() + static_cast<std::ptrdiff_t>(begin), track.value.end(), 0.0);
+        case 5: {
+            const double by_s = static_cast<double>(random() % 2000) - 1000.0;
+            for (auto& time_s : track.time_s) time_s += by_s;
+            return;
+        }
+        case 6:
+            return keep([](std::size_t) { return false; });
+        default:
+            return;
+    }
+}
+
+/// Whatever comes of the tracks: phases in order and finite, or an error that says what is missing.
+TEST(Segmentation, IsATotalFunctionOfAnyCutsOrdersAndGaps) {
+    const auto log = test::source_dir() / "logs" / "opterra_synthetic_01.data";
+    const auto series = read_candidates(FlightFile(log), std::nullopt).at(0);
+    std::mt19937 random(11);
+    std::size_t segmented = 0;
+    for (int round = 0; round < 400; ++round) {
+        auto disturbed = series;
+        for (auto& track : disturbed.tracks) disturb(track, random);
+        std::erase_if(disturbed.tracks, [](const Track& track) { return track.empty(); });
+        std::ranges::shuffle(disturbed.tracks, random);
+        try {
+            const auto phases = segment(disturbed);
+            ++segmented;
+            double last_s = -std::numeric_limits<double>::infinity();
+            for (const auto& sortie : phases.sorties) {
+                ASSERT_FALSE(sortie.phases.empty()) << round;
+                for (const auto& span : sortie.phases) {
+                    ASSERT_GE(span.start.time_s, last_s) << round;
+                    ASSERT_GE(span.end.time_s, span.start.time_s) << round;
+                    ASSERT_TRUE(std::isfinite(span.end.altitude_m)) << round;
+                    last_s = span.end.time_s;
+                }
+            }
+            judge(ChosenTracks(disturbed), phases);
+        } catch (const InputError& error) {
+            ASSERT_THAT(error.what(), testing::HasSubstr("has no altitude")) << round;
+        }
+    }
+    EXPECT_GT(segmented, 200U);
 }
 
 }  // namespace

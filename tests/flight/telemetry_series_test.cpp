@@ -6,6 +6,7 @@
 #include "flight/series_file.h"
 #include "helpers/test_paths.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -240,6 +241,41 @@ TEST_F(ReadFlight, RefusesTheRealLogsThatMeasuredNoPower) {
     const auto flights = test::shared_dir() / "flights";
     EXPECT_THAT(refusal(flights / "17_07_06__10_21_07_SD.data"), HasSubstr("ENERGY.power is 0 throughout"));
     EXPECT_THAT(refusal(flights / "09_05_13__14_38_13.data"), HasSubstr("BAT has no current"));
+}
+
+/// Throttle 50 %, but for `manual_s` 0 as in manual mode, while the commands go on.
+FlightSeries with_commands(double manual_s, const std::string& commands) {
+    std::string text;
+    for (int i = 0; i <= 200; ++i) {
+        text += fmt::format("{} 20 ENERGY {} 11. 2. 22. 0.1 1.\n", i, i < 100 || i > 100 + manual_s ? 50 : 0);
+        if (i % 5 == 0) text += fmt::format("{} 20 COMMANDS {}\n", i, commands);
+    }
+    return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
+}
+
+TEST(TelemetrySeries, TakesTheCommandsWhereTheThrottleIdlesInManualMode) {
+    const auto lowest = [](const FlightSeries& series) {
+        const auto throttle = chosen_track(series, "throttle_percent");
+        return *std::ranges::min_element(throttle.value);
+    };
+    const auto manual = with_commands(40.0, "4800,-20,30");
+    EXPECT_EQ(lowest(manual), 50.0);
+    EXPECT_THAT(warnings_of(manual), Contains(HasSubstr("ENERGY.throttle is at idle while COMMANDS.throttle is not for "
+                                                        "40 s, first from 100 s on: the latter counts there")));
+    EXPECT_EQ(lowest(with_commands(29.0, "4800,-20,30")), 0.0) << "half a minute";
+    EXPECT_EQ(lowest(with_commands(40.0, "1900,-20,30")), 0.0) << "less than any flight takes";
+    EXPECT_NEAR(lowest(with_commands(40.0, "1930,-20,30")), 20.1, 0.01);
+}
+
+TEST(TelemetrySeries, TakesTheFirstCommandForAThrottleWhereItIsNeverNegative) {
+    const auto series_with = [](int first) {
+        std::string text;
+        for (int i = 0; i <= 20; ++i) text += fmt::format("{} 20 COMMANDS {},7,8\n", i, i == 9 ? first : 96 * i);
+        return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
+    };
+    EXPECT_EQ(source_of(series_with(0), "throttle_percent"), "COMMANDS.throttle");
+    EXPECT_EQ(chosen_track(series_with(0), "throttle_percent").value.back(), 20.0);
+    EXPECT_EQ(source_of(series_with(-1), "throttle_percent"), "") << "a roll command";
 }
 
 }  // namespace

@@ -224,5 +224,17 @@ TEST(BinaryLog, HoldsWhatTheGroundReceived) {
     EXPECT_LE(missing, 4u);
 }
 
+TEST(BinaryLog, ReadsTheFirstElementOfAnArray) {
+    const std::string data =
+        "40.0 7 ARRAYS 3,4 1.5,2.5,3.5 ab cdefg 9600,-20,1\n40.1 7 ARRAYS 3,4 1.5,2.5,3.5 ab cdefg -5\n";
+    const std::vector<MessageRequest> requests{{"ARRAYS", {"b[0]", "e[0]", "c[0]", "a"}}};
+    const auto log = binary(card_log(data, binary_dictionary(), LinkVersion::v2), requests);
+    const auto* table = log.senders.at(0).table("ARRAYS");
+    EXPECT_THAT(table->column("b")->values, ElementsAre(1.5, 1.5));
+    EXPECT_THAT(table->column("e")->values, ElementsAre(9600.0, -5.0));
+    EXPECT_TRUE(std::isnan(table->column("c")->values[0])) << "is a text";
+    EXPECT_TRUE(std::isnan(table->column("a")->values[0])) << "is an array of two";
+}
+
 }  // namespace
 }  // namespace flightwatt::telemetry

@@ -244,5 +244,19 @@ TEST(TelemetryLog, ReadsTheRealLogs) {
     EXPECT_TRUE(log.assumed_definitions.empty());
 }
 
+TEST(TelemetryLog, ReadsTheFirstElementOfAnArray) {
+    const std::vector<MessageRequest> first{{"COMMANDS", {"values[0]"}}};
+    const auto log = parse_telemetry("1 20 COMMANDS 7889,-2927,-945\n2 20 COMMANDS 12\n3 20 COMMANDS ,1\n", "x.data",
+                                     std::nullopt, first);
+    const auto& values = log.senders[0].table("COMMANDS")->column("values")->values;
+    ASSERT_EQ(values.size(), 3U);
+    EXPECT_EQ(values[0], 7889.0);
+    EXPECT_EQ(values[1], 12.0);
+    EXPECT_TRUE(std::isnan(values[2]));
+    const std::vector<MessageRequest> whole{{"COMMANDS", {"values"}}};
+    const auto other = parse_telemetry("1 20 COMMANDS 7889,-2927,-945\n", "x.data", std::nullopt, whole);
+    EXPECT_TRUE(std::isnan(other.senders[0].table("COMMANDS")->column("values")->values[0])) << "is no number";
+}
+
 }  // namespace
 }  // namespace flightwatt::telemetry

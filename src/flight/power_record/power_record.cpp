@@ -1,10 +1,31 @@
 #include "flight/power_record/power_record.h"
 
+#include "flight/phase_statistics.h"
 #include "flight/sources/device_sum.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flightwatt::flight {
+
+namespace {
+
+/// The decimal place that a counter is rounded to, from 1 down to a millionth: the first of which all its values are
+/// multiples. However seldom it is logged, that is how well it is known.
+double resolution_of(const Track& counter) {
+    constexpr double finest = 1e-6;
+    constexpr double logged_digits = 1e-6;
+    const auto is_multiple = [](double value, double unit) {
+        const double units = value / unit;
+        return std::abs(units - std::round(units)) <= logged_digits * std::max(1.0, std::abs(units));
+    };
+    double unit = 1.0;
+    while (unit > finest && !std::ranges::all_of(counter.value, [&](double value) { return is_multiple(value, unit); }))
+        unit /= 10.0;
+    return unit;
+}
+
+}  // namespace
 
 PowerRecord record_of(const ChosenTracks& tracks, const FlightPhases& phases) {
     const auto& power = tracks["power_w"];
@@ -17,10 +38,13 @@ PowerRecord record_of(const ChosenTracks& tracks, const FlightPhases& phases) {
     record.current_a = on_clock("current_a");
     record.charge_ah = on_clock("charge_ah");
     record.energy_wh = on_clock("energy_wh");
+    record.charge_resolution_ah = resolution_of(tracks["charge_ah"]);
+    record.energy_resolution_wh = resolution_of(tracks["energy_wh"]);
     record.throttle_percent = on_clock("throttle_percent");
     record.altitude_m = on_clock("altitude_m");
     record.altitude_time_s = tracks["altitude_m"].time_s;
-    record.is_sum = is_sum_over_devices(power);
+    record.is_sum_of_circuits = is_sum_over_devices(power) && power.source.starts_with("POWER_DEVICE");
+    record.power_source = power.source;
     record.time_s = power.time_s;
     record.power_w = power.value;
     const auto& time_s = record.time_s;
@@ -29,6 +53,8 @@ PowerRecord record_of(const ChosenTracks& tracks, const FlightPhases& phases) {
         const auto last = std::upper_bound(first, time_s.end(), sortie.end_s());
         record.flown.push_back(
             {static_cast<std::size_t>(first - time_s.begin()), static_cast<std::size_t>(last - time_s.begin())});
+        if (!time_s.empty()) record.energy_j += integrated(time_s, record.power_w, sortie.start_s(), sortie.end_s());
+        record.duration_s += sortie.end_s() - sortie.start_s();
     }
     return record;
 }

@@ -1,19 +1,15 @@
 #pragma once
 
+#include "flight/checks/runs.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 #include "flight/segmentation.h"
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace flightwatt::flight {
-
-/// The samples [first, last).
-struct SampleRange {
-    std::size_t first;
-    std::size_t last;
-};
 
 /// What the power's sensor and counters say, on the clock of the power samples; empty where not logged.
 struct PowerRecord {
@@ -23,11 +19,16 @@ struct PowerRecord {
     std::vector<double> current_a;
     std::vector<double> charge_ah;
     std::vector<double> energy_wh;
+    double charge_resolution_ah = 0.0;  ///< the decimal place that the counter is rounded to
+    double energy_resolution_wh = 0.0;
     std::vector<double> throttle_percent;
     std::vector<double> altitude_m;
     std::vector<double> altitude_time_s;  ///< the altitude's own clock
-    bool is_sum = false;                  ///< of several devices
+    bool is_sum_of_circuits = false;      ///< with voltages of their own
+    std::string power_source;             ///< "ENERGY.power"
     std::vector<SampleRange> flown;       ///< the samples of each sortie
+    double energy_j = 0.0;                ///< in flight
+    double duration_s = 0.0;
 };
 
 PowerRecord record_of(const ChosenTracks& tracks, const FlightPhases& phases);

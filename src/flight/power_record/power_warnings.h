@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/checks/sample_rules.h"
 #include "flight/flight_phases.h"
 #include "flight/power_check.h"
 #include "flight/power_record/power_record.h"
@@ -14,6 +15,7 @@ namespace flightwatt::flight {
 struct PowerEvidence {
     const PowerRecord& record;
     const FlightPhases& phases;
+    const SampleFindings& samples;
     const PowerReport& report;                      ///< closures and faults are known
     std::optional<IdleCurrent> at_rest;             ///< also where no throttle tells that the motor is off
     std::vector<std::optional<IdleCurrent>> rests;  ///< the same before the first sortie, after it, ... the last

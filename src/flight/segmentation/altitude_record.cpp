@@ -1,5 +1,7 @@
 #include "flight/segmentation/altitude_record.h"
 
+#include "flight/checks/runs.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -39,13 +41,16 @@ std::size_t leave_out(Track& track, const std::vector<bool>& out) {
     return left_out;
 }
 
+void mark(std::vector<bool>& out, std::size_t begin, std::size_t end) {
+    std::fill(out.begin() + static_cast<std::ptrdiff_t>(begin), out.begin() + static_cast<std::ptrdiff_t>(end), true);
+}
+
 /// Which samples repeat one value for long.
 std::vector<bool> stuck_samples(const Track& track) {
     std::vector<bool> stuck(track.value.size(), false);
-    for (std::size_t begin = 0, end = 0; begin < stuck.size(); begin = end) {
-        while (end < stuck.size() && track.value[end] == track.value[begin]) ++end;
-        const bool is_stuck = end - begin >= stuck_count && track.time_s[end - 1] - track.time_s[begin] >= stuck_s;
-        if (is_stuck) std::fill_n(stuck.begin() + static_cast<std::ptrdiff_t>(begin), end - begin, true);
+    for (const auto& run : runs_of_equal(track.value, {0, track.value.size()})) {
+        if (run.size() >= stuck_count && track.time_s[run.last - 1] - track.time_s[run.first] >= stuck_s)
+            mark(stuck, run.first, run.last);
     }
     return stuck;
 }
@@ -63,10 +68,6 @@ std::vector<std::size_t> jumps_of(const Track& track) {
         if (without_fix || is_beyond(track, i, i + 1, jump_m, jump_m_per_s)) jumps.push_back(i + 1);
     }
     return jumps;
-}
-
-void mark(std::vector<bool>& out, std::size_t begin, std::size_t end) {
-    std::fill(out.begin() + static_cast<std::ptrdiff_t>(begin), out.begin() + static_cast<std::ptrdiff_t>(end), true);
 }
 
 /// Leaves out what lies between a jump and one back. Returns how many samples.

@@ -2,12 +2,14 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/checks/runs.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -65,18 +67,54 @@ Track throttle_of(const ChosenTracks& tracks, const Track& power) {
 std::size_t take_out_glitches(Track& throttle, const Track& power, const PowerLevels& levels, double idle_percent) {
     std::size_t count = 0;
     const auto& time_s = throttle.time_s;
-    for (std::size_t begin = 0, end = 0; begin < time_s.size(); begin = end) {
-        const bool opens = throttle.value[begin] > idle_percent;
-        bool without_power = opens;
-        for (; end < time_s.size() && (throttle.value[end] > idle_percent) == opens; ++end) {
-            without_power = without_power && levels.percent(power.value[end]) <= idle_power_percent;
-        }
-        if (!without_power || time_s[end - 1] - time_s[begin] > glitch_s) continue;
+    const auto opens = [&](std::size_t i) { return throttle.value[i] > idle_percent; };
+    for (const auto& [begin, end] : runs_of({0, time_s.size()}, opens)) {
+        const auto has_power = [&](double power_w) { return levels.percent(power_w) > idle_power_percent; };
+        const auto first_w = power.value.begin() + static_cast<std::ptrdiff_t>(begin);
+        const auto last_w = power.value.begin() + static_cast<std::ptrdiff_t>(end);
+        if (time_s[end - 1] - time_s[begin] > glitch_s || std::any_of(first_w, last_w, has_power)) continue;
         std::fill(throttle.value.begin() + static_cast<std::ptrdiff_t>(begin),
                   throttle.value.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
         count += end - begin;
     }
     return count;
+}
+
+/// A throttle that idles while the power is that of a running motor for half a minute in all (manual mode, which the
+/// field of some autopilots leaves out): the power's percent, where the aircraft moves. Says where.
+std::string follow_power(const ChosenTracks& tracks, Track& throttle, const Track& power, const PowerLevels& levels,
+                         double idle_percent) {
+    const auto& time_s = throttle.time_s;
+    const auto& speed = tracks["ground_speed_m_per_s"];
+    const auto speed_m_per_s = speed.empty() ? std::vector<double>{} : resample(speed, time_s);
+    const auto moves = [&](std::size_t i) {
+        return speed_m_per_s.empty() || speed_m_per_s[i] > SegmentationOptions{}.rest_speed_m_per_s;
+    };
+    const auto runs_by_power = [&](std::size_t i) {
+        return moves(i) && levels.percent(power.value[i]) > idle_power_percent;
+    };
+    const auto idles = [&](std::size_t i) { return throttle.value[i] <= idle_percent; };
+    double together_s = 0.0;
+    double mean_w = 0.0;
+    std::optional<double> first_s;
+    for (const auto& run : runs_of({0, time_s.size()}, idles)) {
+        const double running_s = time_where(time_s, run, runs_by_power);
+        if (running_s < contradicted_s) continue;
+        std::vector<double> running_w;
+        for (auto i = run.first; i < run.last; ++i)
+            if (runs_by_power(i)) running_w.push_back(power.value[i]);
+        if (levels.percent(mean(running_w)) < flight_power_percent) continue;
+        for (auto i = run.first; i < run.last; ++i)
+            if (moves(i)) throttle.value[i] = levels.percent(power.value[i]);
+        if (!first_s) first_s = time_s[run.first];
+        mean_w = (mean_w * together_s + mean(running_w) * running_s) / (together_s + running_s);
+        together_s += running_s;
+    }
+    if (!first_s) return "";
+    return fmt::format(
+        "{} is at idle while the power is that of a running motor for {:.0f} s ({:.1f} W; idle {:.1f} W), "
+        "first from {:.0f} s on: the power counts there",
+        throttle.source, together_s, mean_w, levels.idle_w, *first_s);
 }
 
 }  // namespace
@@ -99,6 +137,9 @@ MotorRecord motor_record(const ChosenTracks& tracks, const Track& altitude_m) {
                     "{} throttles say that the motor runs while the power stays at its idle: they were left out",
                     glitches));
             }
+            auto said =
+                follow_power(tracks, throttle, power, *levels, least + SegmentationOptions{}.idle_throttle_percent);
+            if (!said.empty()) record.warnings.push_back(std::move(said));
         }
         record.percent = std::move(throttle);
         return record;

@@ -172,6 +172,88 @@ std::string why_on_a_road(const ChosenTracks& tracks, const FlightGrid& grid, co
                        units::percent_of(road_slope, 1.0));
 }
 
+/// A track's values on the grid's points of an activity that are above half of its height, in order of size.
+std::vector<double> values_when_high(const std::vector<double>& values, const Activity& activity,
+                                     const Heights& heights) {
+    std::vector<double> high;
+    high.reserve(heights.height_m.size());
+    for (std::size_t i = 0; i < heights.height_m.size(); ++i)
+        if (heights.height_m[i] > 0.5 * heights.highest_m) high.push_back(values[activity.span.begin + i]);
+    std::ranges::sort(high);
+    return high;
+}
+
+bool changes_often(const Track& track, double start_s, double end_s) {
+    constexpr std::size_t enough = 10;
+    std::size_t changes = 0;
+    for (std::size_t i = 1; i < track.value.size(); ++i) {
+        const bool is_within = track.time_s[i - 1] >= start_s && track.time_s[i] <= end_s;
+        changes += is_within && track.value[i] != track.value[i - 1] ? 1 : 0;
+    }
+    return changes >= enough;
+}
+
+/// Whether ground speed and position, both measured, show that it stood still or was carried while its altitude shows a
+/// height. A rotorcraft hovers, and a fixed wing may stand against the wind, but not within the width of a field.
+std::string why_standing(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
+                         const Heights& heights) {
+    const auto& source = tracks["altitude_m"].source;
+    if (source == plain_source || source.starts_with("ROTORCRAFT_FP") || tracks.series().firmware == "rotorcraft")
+        return "";
+    const double start_s = grid.time_s(activity.span.begin);
+    const double end_s = grid.time_s(activity.span.end - 1);
+    const auto& east = tracks["east_m"];
+    const auto& north = tracks["north_m"];
+    const bool is_measured = changes_often(tracks["ground_speed_m_per_s"], start_s, end_s) &&
+                             changes_often(east, start_s, end_s) && changes_often(north, start_s, end_s);
+    if (!is_measured) return "";
+    std::vector<double> time_s(grid.size());
+    for (std::size_t i = 0; i < time_s.size(); ++i) time_s[i] = grid.time_s(i);
+    const auto east_m = resample(east, time_s);
+    const auto north_m = resample(north, time_s);
+    const auto steps = grid.steps(position_window_s);
+    std::vector<double> moved_m_per_s(grid.size(), 0.0);
+    for (std::size_t i = steps; i < grid.size(); ++i)
+        moved_m_per_s[i] =
+            std::hypot(east_m[i] - east_m[i - steps], north_m[i] - north_m[i - steps]) / position_window_s;
+    const auto fast = [&](const std::vector<double>& values) {
+        return quantile(values_when_high(values, activity, heights), 0.9);
+    };
+    const double speed = fast(grid.ground_speed_m_per_s);
+    const auto extent = [&](const std::vector<double>& values) {
+        const auto high = values_when_high(values, activity, heights);
+        return quantile(high, 0.95) - quantile(high, 0.05);
+    };
+    const double extent_m = std::max(extent(east_m), extent(north_m));
+    if (speed >= slowest_flight_m_per_s || fast(moved_m_per_s) >= slowest_flight_m_per_s) return "";
+    if (!tracks["airspeed_m_per_s"].empty() && extent_m >= standing_extent_m) return "";
+    return fmt::format(
+        "altitude shows a height of {:.0f} m, but it moves at {:.1f} m/s over ground, within {:.0f} m: "
+        "it stood still or was carried",
+        heights.highest_m, speed, extent_m);
+}
+
+/// Whether the airspeed shows flight: so much energy of height and speed is gained within a window of flying speed.
+bool flies_by_airspeed(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity) {
+    const auto& airspeed = tracks["airspeed_m_per_s"];
+    if (airspeed.empty()) return false;
+    const auto [begin, end] = activity.span;
+    std::vector<double> time_s;
+    time_s.reserve(end - begin);
+    for (auto i = begin; i < end; ++i) time_s.push_back(grid.time_s(i));
+    const auto speed = resample(airspeed, time_s);
+    const auto energy_height_m = [&](std::size_t i) {
+        return grid.altitude_m[begin + i] + speed[i] * speed[i] / (2.0 * units::standard_gravity_m_per_s2);
+    };
+    const auto steps = grid.steps(climb_window_s);
+    std::size_t flying = 0;  // points in a row at flying speed
+    for (std::size_t i = 0; i < speed.size(); ++i) {
+        flying = speed[i] >= least_airspeed_m_per_s ? flying + 1 : 0;
+        if (flying > steps && energy_height_m(i) - energy_height_m(i - steps) >= climbed_by_motor_m) return true;
+    }
+    return false;
+}
+
 /// How many times as much `b` moves as `a` (as long), where one of them moves; std::nullopt where they hardly do, or have
 /// nothing to do with each other.
 std::optional<double> times_as_much(const std::vector<double>& a, const std::vector<double>& b) {
@@ -246,7 +328,8 @@ std::string why_no_flight(const ChosenTracks& tracks, const FlightGrid& grid, co
                           const Heights& heights, const SegmentationOptions& options) {
     const double motor_percent = highest_motor_percent(grid, activity.span);
     if (heights.highest_m < options.flight_height_m) return low_text(grid, motor_percent, heights.highest_m, options);
-    if (grid.motor_sign != MotorSign::unknown && motor_percent < flight_motor_percent(grid, options)) {
+    if (grid.motor_sign != MotorSign::unknown && motor_percent < flight_motor_percent(grid, options) &&
+        !flies_by_airspeed(tracks, grid, activity)) {
         return fmt::format("altitude moved by {:.0f} m with {}: an estimator without a fix", heights.highest_m,
                            grid.motor_sign == MotorSign::power ? "the power at its idle" : "the motor off");
     }
@@ -262,7 +345,17 @@ std::string why_no_flight(const ChosenTracks& tracks, const FlightGrid& grid, co
     if (auto why = contradiction(tracks, grid, activity, options); !why.empty()) return why;
     if (auto why = why_only_settling(tracks, grid, activity, heights, options); !why.empty()) return why;
     if (auto why = why_on_a_road(tracks, grid, activity); !why.empty()) return why;
-    return why_only_driven(tracks, grid, activity, options);
+    if (auto why = why_only_driven(tracks, grid, activity, options); !why.empty()) return why;
+    return why_standing(tracks, grid, activity, heights);
+}
+
+std::string motor_doubt(const FlightGrid& grid, const Activity& activity, const SegmentationOptions& options) {
+    if (grid.motor_sign == MotorSign::unknown) return "";
+    if (highest_motor_percent(grid, activity.span) >= flight_motor_percent(grid, options)) return "";
+    return fmt::format(
+        "{} says that the motor is off from {:.0f} to {:.0f} s, airspeed and climb that it flies: the "
+        "latter count",
+        grid.motor_evidence, grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1));
 }
 
 std::string unit_doubt(const ChosenTracks& tracks, const FlightGrid& grid) {

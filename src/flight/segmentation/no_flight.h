@@ -27,12 +27,25 @@ inline constexpr double least_heights = 2.0;
 inline constexpr double road_slope = 0.03;
 inline constexpr double road_slack_m = 2.0;
 
+/// Position is compared over this time; with an airspeed, what stays within this extent stands [s, m].
+inline constexpr double position_window_s = 10.0;
+inline constexpr double standing_extent_m = 30.0;
+/// The motor runs, whatever the throttle says, where at this airspeed for this time so much height (or the energy of as
+/// much) is gained [m/s, s, m]. A thermal does the same: that is flight, too.
+inline constexpr double least_airspeed_m_per_s = 7.0;
+inline constexpr double climb_window_s = 20.0;
+inline constexpr double climbed_by_motor_m = 15.0;
+
 /// Why the vehicle is none that flies; empty if that is not said: "a ground vehicle: it sends ROVER_STATUS".
 std::string why_ground_vehicle(const ChosenTracks& tracks);
 
 /// Why an activity is no flight; empty if it is one.
 std::string why_no_flight(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
                           const Heights& heights, const SegmentationOptions& options);
+
+/// What contradicts the motor of an activity that is a flight: "ENERGY.throttle says that the motor is off ..."; empty if
+/// nothing does.
+std::string motor_doubt(const FlightGrid& grid, const Activity& activity, const SegmentationOptions& options);
 
 /// Whether the altitude moves, all in all, much more or less than the climb rate or another altitude of the log says:
 /// "ESTIMATOR.z moves 100 times as much as GPS.alt says: is one of them in cm?"; empty if it does not.

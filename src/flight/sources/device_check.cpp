@@ -2,16 +2,22 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/checks/runs.h"
 #include "flight/phase_statistics.h"
 #include "flight/sources/device_tracks.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
@@ -55,10 +61,8 @@ struct Standstill {
 
 std::vector<Standstill> standstills_of(const Track& track) {
     std::vector<Standstill> found;
-    for (std::size_t begin = 0, end = 0; begin < track.value.size(); begin = end) {
-        while (end < track.value.size() && track.value[end] == track.value[begin]) ++end;
-        if (end - begin >= alike_reports) found.push_back({track.time_s[begin], track.time_s[end - 1]});
-    }
+    for (const auto& run : runs_of_equal(track.value, {0, track.value.size()}))
+        if (run.size() >= alike_reports) found.push_back({track.time_s[run.first], track.time_s[run.last - 1]});
     return found;
 }
 
@@ -165,6 +169,25 @@ std::string odd_part(const DeviceTable& table, const Beside& beside, double all_
     return "";
 }
 
+/// Which ids are missing between others: of "node/motor" the motor's, where all differ.
+std::string missing_ids(const std::vector<Device>& devices, std::string_view message) {
+    std::set<int> ids;
+    for (const auto& device : devices) {
+        int id = 0;
+        const auto* const end = device.id.data() + device.id.size();
+        const auto parsed = std::from_chars(device.id.data() + device.id.rfind('/') + 1, end, id);
+        if (parsed.ec != std::errc() || parsed.ptr != end || !ids.insert(id).second) return "";
+    }
+    std::vector<int> missing;
+    for (int id = *ids.begin(); id < *ids.rbegin() && missing.size() < ids.size(); ++id)
+        if (!ids.contains(id)) missing.push_back(id);
+    if (missing.empty() || missing.size() == ids.size()) return "";  // numbered by other rules
+    return fmt::format("{} {} {} missing between {} and {}: what {} is not in the sum", message,
+                       fmt::join(missing, ", "), missing.size() > 1 ? "are" : "is",
+                       *std::prev(ids.lower_bound(missing.front())), *ids.upper_bound(missing.back()),
+                       missing.size() > 1 ? "they draw" : "it draws");
+}
+
 std::string said_of(const Doubt& doubt, std::string_view message, const std::string& id, double all_j) {
     const bool nothing = doubt.own_j < next_to_nothing_part * doubt.expected_j;
     const auto what = nothing ? fmt::format("next to nothing ({:.2f} W)", doubt.own_j / doubt.lasts_s)
@@ -182,6 +205,7 @@ std::vector<std::string> device_doubts(const FlightSeries& series, std::string_v
     std::vector<std::string> doubts;
     auto devices = devices_of(series, "power_w", message);
     if (devices.empty()) return doubts;
+    if (auto missing = missing_ids(devices, message); !missing.empty()) doubts.push_back(std::move(missing));
     const auto most = devices.front().track.time_s.size();
     std::erase_if(devices, [&](const Device& device) { return hardly_reports_at_all(device, most); });
     if (devices.size() < 2 || most < alike_reports) return doubts;

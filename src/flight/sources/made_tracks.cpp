@@ -93,6 +93,13 @@ const std::vector<MadeTrack>& made_tracks() {
          {},
          "ROTORCRAFT_FP.thrust",
          [](const Row& row) { return units::percent_from_pprz(row[0]); }},
+        // What the motor is commanded, also in manual mode.
+        {"throttle_percent",
+         "COMMANDS",
+         {"values"},
+         {},
+         commanded_throttle,
+         [](const Row& row) { return units::percent_from_pprz(row[0]); }},
         {"ground_speed_m_per_s",
          "GPS_INT",
          {"ecef_xd", "ecef_yd", "ecef_zd"},

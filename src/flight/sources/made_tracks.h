@@ -8,6 +8,9 @@
 
 namespace flightwatt::flight {
 
+/// The first of the commands to the actuators: a throttle where it is never negative.
+inline constexpr auto commanded_throttle = "COMMANDS.throttle";
+
 /// A candidate of a track from raw values at the times of a table, which has rows.
 Track as_track(const std::string& name, const std::string& source, const telemetry::MessageTable& table,
                std::vector<double> values, Merge merge);

@@ -12,7 +12,6 @@
 namespace flightwatt::mechanical {
 namespace {
 
-constexpr double gravity_m_per_s2 = 9.80665;
 constexpr double reach_s = 5.0;        // of a sample
 constexpr double edge_window_s = 2.5;  // to both sides of a bin's edge, for the airspeed there
 constexpr double steepest_turn_deg = 60.0;
@@ -58,7 +57,7 @@ struct MotionTracks {
 double energy_height_m(const MotionTracks& tracks, double time_s) {
     const auto near = values_between(tracks.airspeed, time_s - edge_window_s, time_s + edge_window_s);
     const double airspeed = near.empty() ? value_at(tracks.airspeed, time_s) : mean(near);
-    return value_at(tracks.altitude, time_s) + airspeed * airspeed / (2.0 * gravity_m_per_s2);
+    return value_at(tracks.altitude, time_s) + airspeed * airspeed / (2.0 * units::standard_gravity_m_per_s2);
 }
 
 MotionBin motion_bin(const MotionTracks& tracks, const MotionSpan& span) {

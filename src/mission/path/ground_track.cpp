@@ -11,7 +11,6 @@
 namespace flightwatt::mission {
 namespace {
 
-constexpr double standard_gravity_m_per_s2 = 9.80665;
 constexpr double pieces_a_turn = 12.0;
 constexpr double most_pieces = 240.0;  // of one element: longer ones have longer pieces, with exact means
 
@@ -98,7 +97,7 @@ double GroundTrack::time_s(double from_m, double to_m, double horizontal_m_per_s
 double GroundTrack::load_factor_squared(double from_m, double to_m, double horizontal_m_per_s) const {
     if (curvature_rad_m_ == 0.0 || !(to_m > from_m)) return 1.0;
     // Of a coordinated turn: tan(bank) = ground speed^2 / (g radius cos(drift)), and n^2 = 1 + tan^2.
-    const double curvature_per_g = curvature_rad_m_ / standard_gravity_m_per_s2;
+    const double curvature_per_g = curvature_rad_m_ / units::standard_gravity_m_per_s2;
     if (is_steady()) {
         const double tangent = horizontal_m_per_s * horizontal_m_per_s * curvature_per_g;
         return 1.0 + tangent * tangent;

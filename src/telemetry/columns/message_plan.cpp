@@ -10,6 +10,8 @@
 namespace flightwatt::telemetry {
 namespace {
 
+constexpr std::string_view first_element = "[0]";
+
 /// Paparazzi's ids are bytes; some ground programs send under names.
 constexpr std::size_t most_senders = 300;
 
@@ -64,11 +66,14 @@ bool choose_definition(MessagePlan& plan, std::size_t field_count) {
     plan.definition = &*found;
     plan.fields_wanted = 0;
     for (const auto& field : plan.request.fields) {
-        const auto index = field_index(*found, field);
+        const bool is_first_element = field.ends_with(first_element);
+        const auto index =
+            field_index(*found, field.substr(0, field.size() - (is_first_element ? first_element.size() : 0)));
         if (!index) continue;
-        const auto conversion =
-            plan.from_log ? declared_conversion(plan, *index) : conversion_of(found->name, found->fields[*index]);
-        plan.targets.push_back({*index, conversion.quantity, conversion.factor});
+        const auto conversion = is_first_element ? FieldConversion{}
+                                : plan.from_log  ? declared_conversion(plan, *index)
+                                                 : conversion_of(found->name, found->fields[*index]);
+        plan.targets.push_back({*index, conversion.quantity, conversion.factor, is_first_element});
         plan.fields_wanted = std::max(plan.fields_wanted, *index + 1);
     }
     return true;

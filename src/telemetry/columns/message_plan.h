@@ -26,6 +26,7 @@ struct MessagePlan {
         std::size_t field;
         std::optional<units::Quantity> quantity;
         double factor;
+        bool is_first_element = false;  ///< of an array
     };
     std::vector<Target> targets;
     std::vector<std::string> units;          ///< what is odd about the .log's units, and what is done about it

@@ -133,7 +133,8 @@ class LogReader {
             const auto& target = plan.targets[i];
             const char* const begin = begins[target.field];
             const auto size = static_cast<std::size_t>(begins[target.field + 1] - begin - 1);
-            const double number = number_or_nan({begin, size});
+            const std::string_view word(begin, size);
+            const double number = number_or_nan(target.is_first_element ? word.substr(0, word.find(',')) : word);
             if (std::isnan(number)) {
                 skips_.add({Reason::not_a_number, index * max_fields + target.field}, time_s, line.number);
             }

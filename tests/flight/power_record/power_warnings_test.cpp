@@ -2,6 +2,7 @@
 
 #include "base/number.h"
 #include "flight/chosen_track.h"
+#include "flight/phase_statistics.h"
 #include "helpers/damaged_logs.h"
 #include "helpers/rejected.h"
 
@@ -10,6 +11,8 @@
 #include <functional>
 #include <string>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -228,6 +231,91 @@ TEST(PowerWarnings, TellOfTheCounterFromThreePercentOn) {
     EXPECT_THAT(test::said_of(apart), HasSubstr("away from the on-board energy counter"));
     const auto near = with_energy(true, [](test::Words& words, int) { scale(words, energy, 1.02); });
     EXPECT_THAT(near.warnings, testing::IsEmpty());
+}
+
+/// The first sample log with four ESCs instead of ENERGY. `report`: amperes, volts and watts of each, from the pack's.
+LoadedFlight with_escs(const std::function<void(double time_s, double& amps, double& volts, double& watts)>& report) {
+    std::string text;
+    test::damaged_sample([&](test::Words& words) {
+        if (words[2] != "ENERGY") {
+            text += fmt::format("{}\n", fmt::join(words, " "));
+            return;
+        }
+        double amps = value(words, current) / 4.0;
+        double volts = value(words, voltage);
+        double watts = amps * volts;
+        report(value(words, time), amps, volts, watts);
+        for (int motor = 0; motor < 4; ++motor)
+            text += fmt::format("{:.3f} {} ESC {:.5f} {} {:.6f} 5000 {} 0 {}\n", value(words, time) + 0.001 * motor,
+                                words[1], amps, volts, watts, volts, motor);
+    });
+    return examine_flight(flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"), {});
+}
+
+TEST(PowerWarnings, CompareThePowerOfEscsWithVoltageTimesCurrent) {
+    const auto wrong = with_escs([](double, double&, double&, double& watts) { watts += 10.0; });
+    EXPECT_THAT(wrong.warnings,
+                testing::Contains("the power of ESC, summed over 4 devices makes 12.28 Wh in flight, its "
+                                  "voltage times current 5.02 Wh (+145 %): one of them is wrong"));
+    const auto compares = testing::Contains(HasSubstr("one of them is wrong"));
+    const auto scaled = [](double by) {
+        return with_escs([by](double, double&, double&, double& watts) { watts *= by; }).warnings;
+    };
+    EXPECT_THAT(scaled(1.06), compares);
+    EXPECT_THAT(scaled(1.04), Not(compares));
+}
+
+TEST(PowerWarnings, TellOfDevicesThatAllReportNothingInFlight) {
+    const auto dead_for = [](double dead_s) {
+        return with_escs([dead_s](double time_s, double& amps, double&, double& watts) {
+            if (time_s > 200.0 && time_s < 200.0 + dead_s) amps = watts = 0.0;
+        });
+    };
+    const auto dead = testing::Contains(HasSubstr("in flight without a descent, the longest from 20"));
+    EXPECT_THAT(dead_for(40.0).warnings, dead);
+    EXPECT_THAT(dead_for(8.0).warnings, Not(dead)) << "2 % of the flight";
+    EXPECT_THAT(dead_for(0.0).warnings, Not(dead)) << "it glides down with its motor off";
+}
+
+TEST(PowerWarnings, CompareEachPhaseWithItsCounterAlsoWhereTheWholeIsDoubtful) {
+    const auto lacking = [](double in_takeoff) {
+        return with_energy(true, [in_takeoff](test::Words& words, int) {
+            const double by = value(words, time) < 92.0 ? in_takeoff : 0.95;
+            scale(words, power, by);
+            scale(words, current, by);
+            words[charge] = "0";
+        });
+    };
+    const auto whole = testing::Contains(HasSubstr("away from the on-board energy counter"));
+    const auto phase = testing::Contains(testing::ContainsRegex("takeoff at .* Wh were measured and .* Wh counted"));
+    EXPECT_THAT(lacking(0.5).warnings, testing::AllOf(whole, phase));
+    EXPECT_THAT(lacking(0.95).warnings, testing::AllOf(whole, Not(phase)));
+}
+
+TEST(PowerWarnings, KnowACounterByItsDecimalsHoweverSeldomItIsLogged) {
+    const auto seldom = with_energy(true, [](test::Words& words, int number) {
+        scale(words, power, 0.94);
+        scale(words, current, 0.94);
+        words[charge] = "0";
+        if (number % 18 != 0) words.clear();
+    });
+    EXPECT_THAT(seldom.warnings, testing::Contains(HasSubstr("away from the on-board energy counter")));
+    const auto& sortie = seldom.phases.sorties.at(0);
+    EXPECT_GT(phase_statistics(seldom.series, sortie.start_s(), sortie.end_s()).gaps, 10U) << "counted in time";
+}
+
+TEST(PowerWarnings, TellOfAGainThatDriftsAgainstTheCounter) {
+    const auto drifting = [](double most) {
+        return with_energy(true, [most](test::Words& words, int) {
+            const double gain = 1.0 + most * (std::clamp(value(words, time), 64.0, 700.0) - 382.0) / 318.0;
+            scale(words, power, gain);
+            scale(words, current, gain);
+            words[charge] = "0";
+        });
+    };
+    const auto drifts = testing::Contains(HasSubstr("the gain of its sensor drifts"));
+    EXPECT_THAT(drifting(0.09).warnings, drifts);
+    EXPECT_THAT(drifting(0.05).warnings, Not(drifts));
 }
 
 }  // namespace

@@ -120,5 +120,45 @@ TEST(MotorRecord, BelievesNoThrottleBeyondFull) {
     EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor is taken to run above")));
 }
 
+/// Two flights, of which the second has a throttle of 0: flown in manual mode.
+FlightSeries manual_flight(double speed_m_per_s) {
+    auto points = sortie(100);
+    for (const auto& point : sortie(700)) points.push_back(point);
+    auto columns = columns_of(points);
+    columns.ground_speed_m_per_s.assign(columns.time_s.size(), 0.0);
+    for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
+        if (columns.altitude_m[i] > 1.0) columns.ground_speed_m_per_s[i] = speed_m_per_s;
+        if (columns.time_s[i] > 600.0) columns.throttle_percent[i] = 0.0;
+    }
+    return test::series_of(columns);
+}
+
+TEST(MotorRecord, TakesPowerWhereTheThrottleIsThatOfManualMode) {
+    const auto phases = segment(manual_flight(12.0));
+    ASSERT_EQ(phases.sorties.size(), 2U);
+    EXPECT_NEAR(phases.sorties[1].start_s() - phases.sorties[0].start_s(), 600.0, 2.0);
+    EXPECT_NEAR(phases.sorties[1].end_s() - phases.sorties[0].end_s(), 600.0, 2.0);
+    EXPECT_THAT(phases.warnings, testing::Contains(testing::AllOf(
+                                     HasSubstr("is at idle while the power is that of a running motor for 3"),
+                                     HasSubstr("the power counts there"))));
+    // What stands, with power for its electronics, keeps its throttle.
+    const auto standing = segment(manual_flight(3.9));
+    EXPECT_THAT(standing.warnings, Not(testing::Contains(HasSubstr("the power counts there"))));
+}
+
+TEST(MotorRecord, TakesPowerFromHalfAMinuteOn) {
+    const auto with_power_for = [](double powered_s) {
+        auto columns = columns_of(sortie(100));
+        for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
+            const double since_s = columns.time_s[i] - 480.0;  // after the landing
+            if (since_s >= 0.0 && since_s <= powered_s) columns.power_w[i] = 60.0;
+        }
+        return segment(test::series_of(columns)).warnings;
+    };
+    const auto counts = testing::Contains(HasSubstr("the power counts there"));
+    EXPECT_THAT(with_power_for(28.0), Not(counts));
+    EXPECT_THAT(with_power_for(33.0), counts);
+}
+
 }  // namespace
 }  // namespace flightwatt::flight

@@ -222,5 +222,69 @@ TEST(UnitDoubt, ComparesWithOtherAltitudes) {
         testing::Contains(HasSubstr("series CSV moves 0.01 times as much as GPS.alt says: is one of them in cm?")));
 }
 
+/// A log of an altitude that rises and falls with a throttle, while GPS moves as given; of a fixed wing.
+struct Stand {
+    double speed_m_per_s = 0.5;
+    double extent_m = 20.0;
+    bool has_position = true;
+    double airspeed_m_per_s = 0.0;
+    const char* firmware = "fixedwing";
+};
+
+FlightSeries standing_series(const Stand& stand) {
+    auto columns = columns_of(sortie(100));
+    auto series = test::series_of(columns);
+    series.firmware = stand.firmware;
+    for (auto& track : series.tracks)
+        if (track.name == "altitude_m") track.source = "ESTIMATOR.z";
+    const auto add = [&](const char* name, const auto& value_at_s) {
+        Track track{.name = name, .source = "GPS", .time_s = columns.time_s};
+        for (const double t : columns.time_s) track.value.push_back(value_at_s(t));
+        series.tracks.push_back(std::move(track));
+    };
+    add("ground_speed_m_per_s", [&](double t) { return stand.speed_m_per_s + 0.01 * std::sin(7.0 * t); });
+    if (stand.has_position) {
+        const double turn_per_s = 2.0 * stand.speed_m_per_s / stand.extent_m;
+        add("east_m", [&](double t) { return 0.5 * stand.extent_m * std::cos(turn_per_s * t); });
+        add("north_m", [&](double t) { return 0.5 * stand.extent_m * std::sin(turn_per_s * t); });
+    }
+    if (stand.airspeed_m_per_s > 0.0)
+        add("airspeed_m_per_s", [&](double t) { return stand.airspeed_m_per_s + 0.1 * std::sin(t); });
+    return series;
+}
+
+TEST(NoFlight, OfWhatStandsByGroundSpeedAndPosition) {
+    const auto stood = HasSubstr("it stood still or was carried");
+    EXPECT_THAT(why_none(standing_series({})), stood);
+    EXPECT_THAT(why_none(standing_series({.speed_m_per_s = 4.9, .extent_m = 80.0})), stood);
+    EXPECT_EQ(why_none(standing_series({.speed_m_per_s = 5.1, .extent_m = 80.0})), "1 sorties");
+    EXPECT_EQ(why_none(standing_series({.has_position = false})), "1 sorties") << "absent data prove nothing";
+    EXPECT_EQ(why_none(standing_series({.firmware = "rotorcraft"})), "1 sorties") << "it hovers";
+    // A receiver without a fix repeats its values.
+    auto frozen = standing_series({});
+    for (auto& track : frozen.tracks)
+        if (track.name == "ground_speed_m_per_s") track.value.assign(track.value.size(), 0.0);
+    EXPECT_EQ(why_none(frozen), "1 sorties");
+    // Against the wind a wing may hardly move, but not within the width of a field.
+    EXPECT_EQ(why_none(standing_series({.extent_m = 60.0, .airspeed_m_per_s = 9.0})), "1 sorties");
+    EXPECT_THAT(why_none(standing_series({.extent_m = 20.0, .airspeed_m_per_s = 9.0})), stood);
+}
+
+TEST(NoFlight, IsWhatClimbsAtFlyingSpeedWhateverTheThrottleSays) {
+    const auto phases_at = [](double airspeed_m_per_s) {
+        auto series = standing_series({.speed_m_per_s = 12.0, .extent_m = 200.0, .airspeed_m_per_s = airspeed_m_per_s});
+        std::erase_if(series.tracks, [](const Track& track) { return track.name == "power_w"; });
+        for (auto& track : series.tracks) {
+            if (track.name != "throttle_percent") continue;
+            for (auto& percent : track.value) percent = percent > 50.0 ? 4.0 : 0.0;
+        }
+        return segment(series);
+    };
+    const auto flown = phases_at(9.0);
+    EXPECT_EQ(flown.sorties.size(), 1U);
+    EXPECT_THAT(flown.warnings, testing::Contains(HasSubstr("says that the motor is off from ")));
+    EXPECT_TRUE(phases_at(6.0).sorties.empty()) << "less than any wing flies at";
+}
+
 }  // namespace
 }  // namespace flightwatt::flight

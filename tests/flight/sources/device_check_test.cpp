@@ -137,5 +137,23 @@ TEST(DeviceDoubts, LetLiftMotorsStandWhileThePusherRuns) {
     EXPECT_THAT(test::said_of(loaded), Not(HasSubstr("reports")));
 }
 
+TEST(DeviceDoubts, NameIdsThatAreMissingBetweenOthers) {
+    const auto doubts_of = [](const std::vector<std::string>& ids) {
+        std::string text;
+        for (int k = 0; k < 60; ++k)
+            for (const auto& id : ids)
+                text += fmt::format("{} 7 POWER_DEVICE {} {:.3f} 12.0\n", k, id, 2.0 + 0.1 * std::sin(0.1 * k));
+        return device_doubts(flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "7"),
+                             "POWER_DEVICE");
+    };
+    EXPECT_THAT(doubts_of({"1 0", "1 2", "1 3"}),
+                testing::ElementsAre("POWER_DEVICE 1 is missing between 0 and 2: what it draws is not in the sum"));
+    EXPECT_THAT(doubts_of({"1 0", "1 3", "1 4", "1 5"}),
+                testing::ElementsAre(HasSubstr("1, 2 are missing between 0 and 3")));
+    EXPECT_THAT(doubts_of({"1 0", "1 1", "1 2"}), testing::IsEmpty());
+    EXPECT_THAT(doubts_of({"1 5", "1 9"}), testing::IsEmpty()) << "numbered by other rules";
+    EXPECT_THAT(doubts_of({"1 0", "2 0", "3 0"}), testing::IsEmpty()) << "one circuit a node";
+}
+
 }  // namespace
 }  // namespace flightwatt::flight
