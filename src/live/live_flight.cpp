@@ -7,6 +7,7 @@
 #include "live/state/aircraft_choice.h"
 #include "live/state/alarms.h"
 #include "live/state/battery_check.h"
+#include "live/state/carried_flight.h"
 #include "live/state/flight_clock.h"
 #include "live/state/flight_from_air.h"
 #include "live/state/path_place.h"
@@ -21,6 +22,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::live {
 namespace {
@@ -98,6 +100,8 @@ class LiveFlight::Watch {
         sorties_before_ += sorties_kept_;
         sorties_kept_ = 0;
         carried_percent_.reset();
+        before_restart_ = std::exchange(in_the_air_, std::nullopt);
+        rejected_.clear();
         judged_s_.reset();
         warnings_.clear();
         if (schedule_) schedule_->begin_anew();
@@ -110,6 +114,7 @@ class LiveFlight::Watch {
                  LiveState& state);
     void look_ahead(LiveState& state) const;
     void decide(LiveState& state);
+    void continue_after_restart(const flight::ChosenTracks& tracks, LiveState& state);
     void judge_record(const flight::ChosenTracks& tracks, const LiveState& state);
     void trim(const std::optional<battery::DischargeRecord>& record, const LiveState& state);
 
@@ -128,6 +133,9 @@ class LiveFlight::Watch {
     std::size_t sorties_kept_ = 0;
     std::size_t deciding_for_ = 0;  ///< the sortie that the schedule has seen
     std::optional<double> carried_percent_;
+    std::optional<CarriedFlight> in_the_air_;      ///< at the last update
+    std::optional<CarriedFlight> before_restart_;  ///< of the flight that goes on
+    std::string rejected_;                         ///< why the power record is; empty if it is not
     std::optional<double> judged_s_;
     std::optional<double> looked_s_;
     bool ended_ = false;
@@ -156,6 +164,8 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     std::optional<battery::DischargeRecord> record;
     look_at_flight(tracks, state);
     look_at_battery_of(tracks, state, record);
+    continue_after_restart(tracks, state);
+    judge_record(tracks, state);
     predict(tracks, record, state);
     try {
         look_ahead(state);
@@ -163,7 +173,6 @@ LiveState LiveFlight::Watch::look(double silent_s) {
         state.warnings.emplace_back(error.what());
     }
     decide(state);
-    judge_record(tracks, state);
     state.warnings.insert(state.warnings.begin(), warnings_.begin(), warnings_.end());
     state.unusable.insert(store_.skipped().begin(), store_.skipped().end());
     if (clocks_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clocks_.unconfirmed();
@@ -179,6 +188,8 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     trim(record, state);
     state.rows = store_.rows();
     if (state.prediction) last_predicted_ = state;
+    if (!rejected_.empty()) last_predicted_.reset();
+    in_the_air_ = state.phase ? std::optional(carried_flight(state, tracks)) : std::nullopt;
     return state;
 }
 
@@ -223,6 +234,10 @@ void LiveFlight::Watch::predict(const flight::ChosenTracks& tracks,
         return;
     }
     const double now_s = mechanical::last_time_s(tracks.series());
+    if (!rejected_.empty()) {
+        state.waits_for = "a power record that can be trusted: " + rejected_;
+        return;
+    }
     if (state.landed) {
         state.waits_for = fmt::format("at {:.1f} s of the log the aircraft has landed", now_s);
         return;
@@ -306,6 +321,16 @@ void LiveFlight::Watch::decide(LiveState& state) {
     }
 }
 
+void LiveFlight::Watch::continue_after_restart(const flight::ChosenTracks& tracks, LiveState& state) {
+    if (!before_restart_ || phases_.sorties.empty()) return;
+    if (!state.began_in_air || phases_.sorties.size() > 1) {
+        before_restart_.reset();  // another flight
+        return;
+    }
+    const double until_s = state.landed ? phases_.sorties.back().end_s() : mechanical::last_time_s(tracks.series());
+    continue_flight(*before_restart_, tracks, until_s, basis_ ? basis_->battery : std::nullopt, state);
+}
+
 void LiveFlight::Watch::judge_record(const flight::ChosenTracks& tracks, const LiveState& state) {
     constexpr double gap_s = 10.0;  // what was written across it is in doubt at once
     if (looked_s_ && std::abs(state.time_s - *looked_s_) > gap_s) judged_s_.reset();
@@ -319,9 +344,9 @@ void LiveFlight::Watch::judge_record(const flight::ChosenTracks& tracks, const L
     }
     try {
         auto judgement = judge(tracks, phases_);
-        const auto exclusion = exclusion_by(judgement);
+        const auto& faults = judgement.power.power_faults;
+        rejected_ = faults.empty() ? "" : fmt::format("{}", fmt::join(faults, ", "));
         warnings_ = std::move(judgement.warnings);
-        if (!exclusion.empty()) warnings_.push_back("no prediction can be trusted: " + exclusion);
     } catch (const std::exception& error) {
         warnings_ = {error.what()};
     }

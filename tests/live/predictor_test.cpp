@@ -95,6 +95,21 @@ TEST(Predictor, SaysOfLinesWhatTheWatchSays) {
     EXPECT_EQ(made.predictor->outlook().unusable, 0U);
 }
 
+TEST(Predictor, StartsInFlightAsTheWatchDoes) {
+    const auto lines = lines_until(900.0);
+    for (std::size_t first = 500; first < lines.size(); first += 3000) {
+        const auto made = make_predictor(wing_setup());
+        ASSERT_TRUE(made.predictor) << made.error;
+        for (auto i = first; i < std::min(first + 1500, lines.size()); ++i) {
+            made.predictor->push_line(lines[i]);
+            if (i % 100 != 0) continue;
+            const auto& now = made.predictor->look();
+            ASSERT_TRUE(now.landing || !now.waits_for.empty()) << first;
+            ASSERT_TRUE(now.failure.empty()) << now.failure;
+        }
+    }
+}
+
 TEST(Predictor, SaysOfAMissionWhatTheWatchSays) {
     auto setup = wing_setup();
     setup.model_file.clear();

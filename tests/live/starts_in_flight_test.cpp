@@ -2,6 +2,7 @@
 // names what is missing until there is a prediction. Real logs take part where ../shared is.
 
 #include "helpers/cut_logs.h"
+#include "helpers/sample_logs.h"
 #include "helpers/watched_logs.h"
 #include "live/live_flight.h"
 
@@ -9,12 +10,15 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::live {
@@ -115,6 +119,78 @@ TEST(StartsInFlight, WaitAfterThreeLines) {
         flight.receive(message_of_line(line).value(), 0.0);
         EXPECT_FALSE(flight.look().waits_for.empty());
     }
+}
+
+/// The first sample log until `until_s`, then from `again_s` on with its clock four minutes back.
+LiveState restarted(double until_s, double again_s, double last_s, const std::function<void(std::string&)>& change) {
+    const auto log = test::sample(1);
+    auto flight = flight_of(log);
+    const auto feed = [&](double from_s, double to_s, double back_s) {
+        double updated_s = from_s;
+        for (auto message : test::messages_of(log, to_s, from_s)) {
+            const double time_s = message.time_s.value();
+            message.time_s = time_s - back_s;
+            change(message.text);
+            flight.receive(message, 0.0);
+            if (time_s - updated_s < 1.0) continue;
+            updated_s = time_s;
+            flight.look();
+        }
+    };
+    feed(0.0, until_s, 0.0);
+    feed(again_s, last_s, 240.0);
+    return flight.look();
+}
+
+TEST(StartsInFlight, ContinueEnergyAndChargeByTheCountersAfterARestart) {
+    const auto whole = [] {
+        const auto log = test::sample(1);
+        auto flight = flight_of(log);
+        test::receive_all(flight, test::messages_of(log, 400.0));
+        return flight.look();
+    }();
+    const auto again = restarted(300.0, 310.0, 400.0, [](std::string&) {});
+    ASSERT_EQ(again.restarts, 1U);
+    ASSERT_TRUE(again.began_in_air);
+    ASSERT_TRUE(again.energy_wh && whole.energy_wh);
+    EXPECT_NEAR(*again.energy_wh, *whole.energy_wh, 0.01 * *whole.energy_wh) << "ten seconds were not received";
+    ASSERT_TRUE(again.battery && again.battery->soc_percent);
+    EXPECT_NEAR(*again.battery->soc_percent, *whole.battery->soc_percent, 0.2);
+    EXPECT_THAT(again.warnings, testing::Contains(testing::HasSubstr("energy goes on by the autopilot's counter")));
+}
+
+TEST(StartsInFlight, SayWhatIsUnknownAfterARestartWithoutCounters) {
+    const auto again = restarted(300.0, 310.0, 400.0, [](std::string& text) {
+        if (!text.starts_with("7 ENERGY ")) return;
+        for (int fields = 0; fields < 2; ++fields) text.erase(text.rfind(' '));
+        text += " 0 0";
+    });
+    ASSERT_EQ(again.restarts, 1U);
+    EXPECT_FALSE(again.energy_wh);
+    EXPECT_THAT(again.warnings,
+                testing::Contains(testing::ContainsRegex(
+                    "the clock began anew in the air, after .* s: the energy since the lift-off is unknown")));
+}
+
+TEST(StartsInFlight, PredictNothingWhileThePowerRecordIsRejected) {
+    const auto log = test::sample(1);
+    const auto state_at = [&](double by) {
+        auto flight = flight_of(log);
+        double counted_wh = 0.0;
+        for (auto message : test::messages_of(log, 300.0)) {
+            if (message.text.starts_with("7 ENERGY ")) {
+                const auto last = message.text.rfind(' ');
+                counted_wh = std::stod(message.text.substr(last + 1));
+                message.text = fmt::format("{} {:.5f}", message.text.substr(0, last), by * counted_wh);
+            }
+            flight.receive(message, 0.0);
+        }
+        return flight.look();
+    };
+    EXPECT_TRUE(state_at(1.08).prediction);
+    const auto rejected = state_at(1.2);
+    EXPECT_FALSE(rejected.prediction);
+    EXPECT_THAT(rejected.waits_for, testing::HasSubstr("away from the on-board energy counter"));
 }
 
 }  // namespace
