@@ -128,14 +128,25 @@ void follow_commands(const FlightSeries& series, Choice& throttle) {
     const auto& track = throttle.track();
     const auto percent = resample(*commands, track.time_s);
     const auto idles = [&](std::size_t i) { return track.value[i] <= limits.idle_throttle_percent; };
-    const auto runs = [&](std::size_t i) { return percent[i] >= limits.flight_throttle_percent; };
+    const auto runs = [&](std::size_t i) { return commands->value[i] >= limits.flight_throttle_percent; };
+    const auto first_from = [](const std::vector<double>& times_s, double time_s) {
+        return static_cast<std::size_t>(std::ranges::lower_bound(times_s, time_s) - times_s.begin());
+    };
+    const auto first_after = [](const std::vector<double>& times_s, double time_s) {
+        return static_cast<std::size_t>(std::ranges::upper_bound(times_s, time_s) - times_s.begin());
+    };
+    const double gap_s = gap_threshold_s(commands->time_s);
     double together_s = 0.0;
     std::optional<double> first_s;
     for (const auto& run : runs_of({0, track.time_s.size()}, idles)) {
-        const double running_s = time_where(track.time_s, run, runs);
+        const SampleRange sent{first_from(commands->time_s, track.time_s[run.first]),
+                               first_after(commands->time_s, track.time_s[run.last - 1])};
+        const double running_s = time_where(commands->time_s, sent, gap_s, runs);
         if (running_s < contradicted_s) continue;
-        std::copy_n(percent.begin() + static_cast<std::ptrdiff_t>(run.first), run.size(),
-                    to_change(throttle).value.begin() + static_cast<std::ptrdiff_t>(run.first));
+        const auto last = first_after(track.time_s, commands->time_s[sent.last - 1]);  // what stopped says nothing
+        std::copy(percent.begin() + static_cast<std::ptrdiff_t>(run.first),
+                  percent.begin() + static_cast<std::ptrdiff_t>(last),
+                  to_change(throttle).value.begin() + static_cast<std::ptrdiff_t>(run.first));
         together_s += running_s;
         if (!first_s) first_s = track.time_s[run.first];
     }

@@ -3,10 +3,10 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/checks/power_record.h"
+#include "flight/checks/power_warnings.h"
 #include "flight/checks/sample_rules.h"
 #include "flight/phase_statistics.h"
-#include "flight/power_record/power_record.h"
-#include "flight/power_record/power_warnings.h"
 #include "flight/sources/power_source.h"
 
 #include <algorithm>

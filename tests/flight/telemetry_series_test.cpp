@@ -244,11 +244,11 @@ TEST_F(ReadFlight, RefusesTheRealLogsThatMeasuredNoPower) {
 }
 
 /// Throttle 50 %, but for `manual_s` 0 as in manual mode, while the commands go on.
-FlightSeries with_commands(double manual_s, const std::string& commands) {
+FlightSeries with_commands(double manual_s, const std::string& commands, int until_s = 200) {
     std::string text;
     for (int i = 0; i <= 200; ++i) {
         text += fmt::format("{} 20 ENERGY {} 11. 2. 22. 0.1 1.\n", i, i < 100 || i > 100 + manual_s ? 50 : 0);
-        if (i % 5 == 0) text += fmt::format("{} 20 COMMANDS {}\n", i, commands);
+        if (i % 5 == 0 && i <= until_s) text += fmt::format("{} 20 COMMANDS {}\n", i, commands);
     }
     return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
 }
@@ -263,6 +263,7 @@ TEST(TelemetrySeries, TakesTheCommandsWhereTheThrottleIdlesInManualMode) {
     EXPECT_THAT(warnings_of(manual), Contains(HasSubstr("ENERGY.throttle is at idle while COMMANDS.throttle is not for "
                                                         "40 s, first from 100 s on: the latter counts there")));
     EXPECT_EQ(lowest(with_commands(29.0, "4800,-20,30")), 0.0) << "half a minute";
+    EXPECT_EQ(lowest(with_commands(40.0, "4800,-20,30", 125)), 0.0) << "what stopped says nothing";
     EXPECT_EQ(lowest(with_commands(40.0, "1900,-20,30")), 0.0) << "less than any flight takes";
     EXPECT_NEAR(lowest(with_commands(40.0, "1930,-20,30")), 20.1, 0.01);
 }

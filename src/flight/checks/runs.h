@@ -30,12 +30,12 @@ std::vector<SampleRange> runs_of(SampleRange within, const Joins& joins) {
     return runs_of(within, joins, [](std::size_t) { return true; });
 }
 
-/// How long it holds within a range, from sample to sample [s].
+/// How long it holds within a range [s], from sample to sample; gaps of more than `gap_s` do not count.
 template <typename Holds>
-double time_where(const std::vector<double>& time_s, SampleRange within, const Holds& holds) {
+double time_where(const std::vector<double>& time_s, SampleRange within, double gap_s, const Holds& holds) {
     double together_s = 0.0;
     for (auto i = within.first + 1; i < within.last; ++i)
-        if (holds(i)) together_s += time_s[i] - time_s[i - 1];
+        if (holds(i - 1) && holds(i) && time_s[i] - time_s[i - 1] <= gap_s) together_s += time_s[i] - time_s[i - 1];
     return together_s;
 }
 

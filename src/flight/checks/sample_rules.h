@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flight/power_record/power_record.h"
+#include "flight/checks/power_record.h"
 
 #include <string>
 #include <vector>

@@ -120,17 +120,15 @@ std::vector<bool> gliding_points(const FlightGrid& grid, double idle_percent, do
     return gliding;
 }
 
-/// The grid's times. Throws InputError where they are none.
-std::vector<double> grid_times(const FlightSeries& series, const FlightGrid& grid, double end_s) {
+/// How many points the grid has. Throws InputError where its times are none.
+std::size_t size_until(const FlightSeries& series, const FlightGrid& grid, double end_s) {
     const double span_s = end_s - grid.start_s;
     constexpr double longest_s = 30.0 * 24.0 * units::seconds_per_hour;
     if (!(span_s <= longest_s)) {
         throw InputError({series.file}, fmt::format("lasts {:.4g} s, more than a month", span_s),
                          "are its times in seconds?");
     }
-    std::vector<double> time_s(static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1);
-    for (std::size_t i = 0; i < time_s.size(); ++i) time_s[i] = grid.time_s(i);
-    return time_s;
+    return static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
 }
 
 void refuse_without_altitude(const FlightSeries& series, const Track& altitude) {
@@ -144,6 +142,12 @@ void refuse_without_altitude(const FlightSeries& series, const Track& altitude) 
 
 }  // namespace
 
+std::vector<double> FlightGrid::times_s(GridSpan span) const {
+    std::vector<double> times(span.end - span.begin);
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] = time_s(span.begin + i);
+    return times;
+}
+
 FlightGrid make_grid(const ChosenTracks& tracks) {
     const auto& series = tracks.series();
     const auto& raw = tracks["altitude_m"];
@@ -152,7 +156,7 @@ FlightGrid make_grid(const ChosenTracks& tracks) {
     const auto& power = tracks["power_w"];
     const auto& clock = power.empty() ? raw : power;
     grid.start_s = clock.time_s.front();
-    const auto time_s = grid_times(series, grid, clock.time_s.back());
+    const auto time_s = grid.times_s({0, size_until(series, grid, clock.time_s.back())});
     auto altitude = clean_altitude(raw);  // on its own clock, before the grid's
     grid.unusable = std::move(altitude.unusable);
     grid.warnings = std::move(altitude.warnings);

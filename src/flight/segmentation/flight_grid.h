@@ -35,6 +35,7 @@ struct FlightGrid {
 
     std::size_t size() const { return altitude_m.size(); }
     double time_s(std::size_t index) const { return start_s + step_s * static_cast<double>(index); }
+    std::vector<double> times_s(GridSpan span) const;
     /// How many steps make up `duration_s`.
     std::size_t steps(double duration_s) const { return static_cast<std::size_t>(duration_s / step_s); }
 };

@@ -5,6 +5,7 @@
 #include "flight/checks/runs.h"
 #include "flight/chosen_track.h"
 #include "flight/flight_phases.h"
+#include "flight/phase_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,11 +95,12 @@ std::string follow_power(const ChosenTracks& tracks, Track& throttle, const Trac
         return moves(i) && levels.percent(power.value[i]) > idle_power_percent;
     };
     const auto idles = [&](std::size_t i) { return throttle.value[i] <= idle_percent; };
+    const double gap_s = gap_threshold_s(time_s);
     double together_s = 0.0;
     double mean_w = 0.0;
     std::optional<double> first_s;
     for (const auto& run : runs_of({0, time_s.size()}, idles)) {
-        const double running_s = time_where(time_s, run, runs_by_power);
+        const double running_s = time_where(time_s, run, gap_s, runs_by_power);
         if (running_s < contradicted_s) continue;
         std::vector<double> running_w;
         for (auto i = run.first; i < run.last; ++i)

@@ -102,6 +102,16 @@ std::string contradiction(const ChosenTracks& tracks, const FlightGrid& grid, co
     return contradicts;
 }
 
+/// Those of an activity's values that were taken above half of its height, in order of size.
+std::vector<double> sorted_when_high(const std::vector<double>& values, const Heights& heights) {
+    std::vector<double> high;
+    high.reserve(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (heights.height_m[i] > 0.5 * heights.highest_m) high.push_back(values[i]);
+    std::ranges::sort(high);
+    return high;
+}
+
 /// Whether an activity that shows no ground, and no climb, is as slow as what drives.
 std::string why_only_driven(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
                             const SegmentationOptions& options) {
@@ -130,21 +140,14 @@ std::string why_only_driven(const ChosenTracks& tracks, const FlightGrid& grid, 
 std::string why_only_settling(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
                               const Heights& heights, const SegmentationOptions& options) {
     if (grid.motor_sign != MotorSign::unknown) return "";
-    const auto first = grid.ground_speed_m_per_s.begin() + static_cast<std::ptrdiff_t>(activity.span.begin);
-    std::vector<double> speeds;
-    std::size_t high = 0;
-    for (std::size_t i = 0; i < heights.height_m.size(); ++i) {
-        if (heights.height_m[i] <= 0.5 * heights.highest_m) continue;
-        ++high;
-        if (!grid.ground_speed_m_per_s.empty()) speeds.push_back(first[static_cast<std::ptrdiff_t>(i)]);
-    }
     const auto seen = fmt::format("altitude alone shows a height of {:.0f} m", heights.highest_m);
-    const double high_s = static_cast<double>(high) * grid.step_s;
+    const double high_s = static_cast<double>(sorted_when_high(heights.height_m, heights).size()) * grid.step_s;
     if (high_s < least_high_s) return fmt::format("{}, for {:.0f} s: an estimator that settles", seen, high_s);
-    if (speeds.empty())
+    if (grid.ground_speed_m_per_s.empty())
         return heights.highest_m < least_heights * options.flight_height_m ? seen + ": an estimator that settles" : "";
-    std::ranges::sort(speeds);
-    const double speed = quantile(speeds, 0.9);
+    const auto first = grid.ground_speed_m_per_s.begin() + static_cast<std::ptrdiff_t>(activity.span.begin);
+    const std::vector<double> speeds(first, first + std::ssize(heights.height_m));
+    const double speed = quantile(sorted_when_high(speeds, heights), 0.9);
     if (tracks["altitude_m"].source.starts_with("ROTORCRAFT_FP") || speed >= slowest_flight_m_per_s) return "";
     return fmt::format("{}, at {:.1f} m/s over ground: an estimator that settles", seen, speed);
 }
@@ -172,17 +175,6 @@ std::string why_on_a_road(const ChosenTracks& tracks, const FlightGrid& grid, co
                        units::percent_of(road_slope, 1.0));
 }
 
-/// A track's values on the grid's points of an activity that are above half of its height, in order of size.
-std::vector<double> values_when_high(const std::vector<double>& values, const Activity& activity,
-                                     const Heights& heights) {
-    std::vector<double> high;
-    high.reserve(heights.height_m.size());
-    for (std::size_t i = 0; i < heights.height_m.size(); ++i)
-        if (heights.height_m[i] > 0.5 * heights.highest_m) high.push_back(values[activity.span.begin + i]);
-    std::ranges::sort(high);
-    return high;
-}
-
 bool changes_often(const Track& track, double start_s, double end_s) {
     constexpr std::size_t enough = 10;
     std::size_t changes = 0;
@@ -193,6 +185,16 @@ bool changes_often(const Track& track, double start_s, double end_s) {
     return changes >= enough;
 }
 
+/// How fast positions move, from so long before to each of the times [m/s].
+std::vector<double> speeds_by_position(const FlightGrid& grid, const std::vector<double>& east_m,
+                                       const std::vector<double>& north_m) {
+    const auto steps = grid.steps(position_window_s);
+    std::vector<double> speeds(east_m.size(), 0.0);
+    for (std::size_t i = steps; i < speeds.size(); ++i)
+        speeds[i] = std::hypot(east_m[i] - east_m[i - steps], north_m[i] - north_m[i - steps]) / position_window_s;
+    return speeds;
+}
+
 /// Whether ground speed and position, both measured, show that it stood still or was carried while its altitude shows a
 /// height. A rotorcraft hovers, and a fixed wing may stand against the wind, but not within the width of a field.
 std::string why_standing(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity,
@@ -200,32 +202,19 @@ std::string why_standing(const ChosenTracks& tracks, const FlightGrid& grid, con
     const auto& source = tracks["altitude_m"].source;
     if (source == plain_source || source.starts_with("ROTORCRAFT_FP") || tracks.series().firmware == "rotorcraft")
         return "";
-    const double start_s = grid.time_s(activity.span.begin);
-    const double end_s = grid.time_s(activity.span.end - 1);
-    const auto& east = tracks["east_m"];
-    const auto& north = tracks["north_m"];
-    const bool is_measured = changes_often(tracks["ground_speed_m_per_s"], start_s, end_s) &&
-                             changes_often(east, start_s, end_s) && changes_often(north, start_s, end_s);
-    if (!is_measured) return "";
-    std::vector<double> time_s(grid.size());
-    for (std::size_t i = 0; i < time_s.size(); ++i) time_s[i] = grid.time_s(i);
-    const auto east_m = resample(east, time_s);
-    const auto north_m = resample(north, time_s);
-    const auto steps = grid.steps(position_window_s);
-    std::vector<double> moved_m_per_s(grid.size(), 0.0);
-    for (std::size_t i = steps; i < grid.size(); ++i)
-        moved_m_per_s[i] =
-            std::hypot(east_m[i] - east_m[i - steps], north_m[i] - north_m[i - steps]) / position_window_s;
-    const auto fast = [&](const std::vector<double>& values) {
-        return quantile(values_when_high(values, activity, heights), 0.9);
+    const auto time_s = grid.times_s(activity.span);
+    const auto is_alive = [&](const char* name) { return changes_often(tracks[name], time_s.front(), time_s.back()); };
+    if (!is_alive("ground_speed_m_per_s") || !is_alive("east_m") || !is_alive("north_m")) return "";
+    const auto east_m = resample(tracks["east_m"], time_s);
+    const auto north_m = resample(tracks["north_m"], time_s);
+    const auto fast = [&](const std::vector<double>& speeds) {
+        return quantile(sorted_when_high(speeds, heights), 0.9);
     };
-    const double speed = fast(grid.ground_speed_m_per_s);
-    const auto extent = [&](const std::vector<double>& values) {
-        const auto high = values_when_high(values, activity, heights);
-        return quantile(high, 0.95) - quantile(high, 0.05);
-    };
-    const double extent_m = std::max(extent(east_m), extent(north_m));
-    if (speed >= slowest_flight_m_per_s || fast(moved_m_per_s) >= slowest_flight_m_per_s) return "";
+    const double speed = fast(resample(tracks["ground_speed_m_per_s"], time_s));
+    if (speed >= slowest_flight_m_per_s) return "";
+    if (fast(speeds_by_position(grid, east_m, north_m)) >= slowest_flight_m_per_s) return "";
+    const double extent_m =
+        std::max(spread_of(sorted_when_high(east_m, heights)), spread_of(sorted_when_high(north_m, heights)));
     if (!tracks["airspeed_m_per_s"].empty() && extent_m >= standing_extent_m) return "";
     return fmt::format(
         "altitude shows a height of {:.0f} m, but it moves at {:.1f} m/s over ground, within {:.0f} m: "
@@ -237,13 +226,10 @@ std::string why_standing(const ChosenTracks& tracks, const FlightGrid& grid, con
 bool flies_by_airspeed(const ChosenTracks& tracks, const FlightGrid& grid, const Activity& activity) {
     const auto& airspeed = tracks["airspeed_m_per_s"];
     if (airspeed.empty()) return false;
-    const auto [begin, end] = activity.span;
-    std::vector<double> time_s;
-    time_s.reserve(end - begin);
-    for (auto i = begin; i < end; ++i) time_s.push_back(grid.time_s(i));
-    const auto speed = resample(airspeed, time_s);
+    const auto speed = resample(airspeed, grid.times_s(activity.span));
     const auto energy_height_m = [&](std::size_t i) {
-        return grid.altitude_m[begin + i] + speed[i] * speed[i] / (2.0 * units::standard_gravity_m_per_s2);
+        return grid.altitude_m[activity.span.begin + i] +
+               speed[i] * speed[i] / (2.0 * units::standard_gravity_m_per_s2);
     };
     const auto steps = grid.steps(climb_window_s);
     std::size_t flying = 0;  // points in a row at flying speed

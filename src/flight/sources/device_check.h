@@ -12,7 +12,7 @@ namespace flightwatt::flight {
 /// power) while the others go on, and an ESC below 5 % of the others' median while these run. Told where more than
 /// 4 % of the energy would be missing if it went with the others: an ESC draws their median, a circuit
 /// (POWER_DEVICE) the part of their power that it drew otherwise. A circuit that draws the same small power
-/// throughout is the electronics'; one that is 0 throughout is told of. So are devices of negative power, one that
+/// throughout is the electronics'; one that is 0 throughout is reported. So are devices of negative power, one that
 /// reports the sum of two or more others, and ids that are missing between others.
 std::vector<std::string> device_doubts(const FlightSeries& series, std::string_view message);
 

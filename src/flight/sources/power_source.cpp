@@ -2,6 +2,7 @@
 
 #include "flight/physical_bounds.h"
 #include "flight/sources/device_sum.h"
+#include "flight/sources/made_tracks.h"
 #include "flight/sources/wild_samples.h"
 
 #include <algorithm>
@@ -144,7 +145,8 @@ std::vector<double> contradicted_times(const FlightSeries& series, std::string_v
 Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
     if (std::ranges::find(candidate.value, 0.0) == candidate.value.end()) return {};
     const auto found = std::ranges::find_if(series.tracks, [](const Track& track) {
-        return track.name == "throttle_percent" && track.device.empty() && !is_constant(track);
+        return track.name == "throttle_percent" && track.device.empty() && track.source != commanded_throttle &&
+               !is_constant(track);
     });
     return found == series.tracks.end() ? Track{} : within_bounds(*found);
 }

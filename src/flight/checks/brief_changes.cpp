@@ -1,6 +1,6 @@
 #include "base/statistics.h"
+#include "flight/checks/flown_power.h"
 #include "flight/phase_statistics.h"
-#include "flight/power_record/flown_power.h"
 
 #include <algorithm>
 #include <map>

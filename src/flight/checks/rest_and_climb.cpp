@@ -1,5 +1,5 @@
 #include "base/statistics.h"
-#include "flight/power_record/flown_power.h"
+#include "flight/checks/flown_power.h"
 
 #include <algorithm>
 #include <span>

@@ -1,10 +1,10 @@
-#include "flight/power_record/power_warnings.h"
+#include "flight/checks/power_warnings.h"
 
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/checks/flown_power.h"
 #include "flight/phase_statistics.h"
-#include "flight/power_record/flown_power.h"
 
 #include <algorithm>
 #include <cmath>

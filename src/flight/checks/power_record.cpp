@@ -1,4 +1,4 @@
-#include "flight/power_record/power_record.h"
+#include "flight/checks/power_record.h"
 
 #include "flight/phase_statistics.h"
 #include "flight/sources/device_sum.h"

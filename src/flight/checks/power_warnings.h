@@ -1,9 +1,9 @@
 #pragma once
 
+#include "flight/checks/power_record.h"
 #include "flight/checks/sample_rules.h"
 #include "flight/flight_phases.h"
 #include "flight/power_check.h"
-#include "flight/power_record/power_record.h"
 
 #include <optional>
 #include <string>

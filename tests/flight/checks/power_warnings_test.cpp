@@ -1,4 +1,4 @@
-#include "flight/power_record/power_warnings.h"
+#include "flight/checks/power_warnings.h"
 
 #include "base/number.h"
 #include "flight/chosen_track.h"

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/units.h"
-#include "flight/power_record/power_record.h"
-#include "flight/power_record/power_warnings.h"
+#include "flight/checks/power_record.h"
+#include "flight/checks/power_warnings.h"
 
 #include <cmath>
 #include <string>
