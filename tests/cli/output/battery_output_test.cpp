@@ -82,6 +82,32 @@ TEST_F(BatteryOutput, IsNullInJsonWhereNothingIsKnown) {
     EXPECT_EQ(json["left_out"][1]["flight"], "synthetic_2");
 }
 
+TEST_F(BatteryOutput, ComparesAGivenCapacity) {
+    auto& pack = identified_.battery;
+    const auto as_given = describe_given_capacity(pack);
+    EXPECT_THAT(as_given, testing::AllOf(HasSubstr("using the given capacity of 2.4 Ah; the flights indicate "),
+                                         HasSubstr(" Ah in 95 %)")));
+    EXPECT_THAT(provenance(identified_), testing::Not(HasSubstr("Warning")));
+    EXPECT_EQ(to_json(identified_, checks_)["flight_estimate_ah"]["value"], pack.flight_estimate->capacity_ah);
+    EXPECT_THAT(pack_table(pack).rows,
+                testing::Not(testing::Contains(testing::Contains("capacity by its flights [Ah]"))));
+    pack.capacity_ah = 50.0;
+    EXPECT_THAT(provenance(identified_), HasSubstr("\n# Warning: the capacity of 50 Ah contradicts the flights"));
+    EXPECT_THAT(pack_table(pack).rows, testing::Contains(testing::Contains("capacity by its flights [Ah]")));
+    pack.flight_estimate.reset();
+    EXPECT_EQ(describe_given_capacity(pack),
+              "using the given capacity of 50 Ah; the flights drew too little to estimate it");
+    EXPECT_TRUE(to_json(identified_, checks_)["flight_estimate_ah"].is_null());
+}
+
+TEST_F(BatteryOutput, WarnsOfAVoltageThatCellsDoNotHave) {
+    EXPECT_EQ(cells_warning(identified_), "");
+    identified_.cells = 4;
+    EXPECT_THAT(cells_warning(identified_),
+                HasSubstr("4 cells rest at 3.09 V each before take-off, below an empty LiPo cell"));
+    EXPECT_THAT(provenance(identified_), HasSubstr("\n# Warning: 4 cells rest"));
+}
+
 TEST_F(BatteryOutput, NamesTheFlightsAtTheHeadOfItsFile) {
     const auto head = provenance(identified_);
     EXPECT_THAT(head, HasSubstr("from synthetic_1 synthetic_2."));
