@@ -89,6 +89,8 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
                                         summary.mission));
         }
         if (summary.samples && !call.json) cli::note(call, describe(*summary.samples));
+        if (summary.by_flights && !call.json)
+            cli::note(call, fmt::format("{}: {}", summary.mission, describe(*summary.by_flights)));
         const bool lacks_plan = summary.schedule == mission::ScheduleOrigin::infeasible;
         if (!summary.undeliverable && !lacks_plan) continue;
         cli::warn(call, summary.undeliverable

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -149,6 +150,20 @@ Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const
 
 Simulation simulate(const Mission& mission, const SimulationSteps& steps, const Disturbances& disturbances) {
     return simulate(mission, mission.schedule, steps, disturbances);
+}
+
+std::optional<EstimatedLanding> landing_by_flights(const MissionSetup& mission, const Schedule& schedule,
+                                                   const Disturbances& disturbances) {
+    auto estimated = estimated_by_flights(mission.battery);
+    if (!estimated) return std::nullopt;
+    auto setup = mission;
+    setup.battery = std::move(*estimated);
+    SimulationSteps steps;
+    steps.output_s = timeline_of(mission.duration_s).duration_s;
+    const auto summary = simulate(setup, schedule, steps, disturbances).summary;
+    EstimatedLanding landing{setup.battery.capacity_ah, summary.final_soc_percent, std::nullopt, summary.keeps_reserve};
+    if (!summary.feasible) landing.fails_at_s = powered_until_s(summary);
+    return landing;
 }
 
 std::string to_csv(const SocCurve& curve) {

@@ -103,7 +103,15 @@ nlohmann::ordered_json to_json(const mission::MissionSummary& summary) {
         json["learned_mechanical_factor"] = decisions->mechanical_factor;
     }
     if (summary.samples) add_to_json(*summary.samples, json);
+    if (summary.by_flights) json[by_flights_key] = to_json(*summary.by_flights);
     return json;
+}
+
+nlohmann::ordered_json to_json(const mission::EstimatedLanding& landing) {
+    return {{"capacity_ah", landing.capacity_ah},
+            {"final_soc_percent", optional_json(landing.final_soc_percent)},
+            {"fails_at_s", optional_json(landing.fails_at_s)},
+            {"keeps_reserve", landing.keeps_reserve}};
 }
 
 std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked) {
@@ -134,6 +142,7 @@ nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
     json["margin_percent"] = plan.margin_percent;
     if (plan.sources) add_sources(*plan.sources, json);
+    if (plan.summary.by_flights) json[by_flights_key] = to_json(*plan.summary.by_flights);
     return json;
 }
 

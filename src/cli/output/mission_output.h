@@ -42,6 +42,11 @@ nlohmann::ordered_json to_json(const mission::MissionSummary& summary);
 /// rank,mission,schedule,... (docs/formats.md): a row a mission in their order, all columns whatever the missions are.
 std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked);
 
+/// The same landing with the capacity that the flights of the pack indicate.
+nlohmann::ordered_json to_json(const mission::EstimatedLanding& landing);
+inline constexpr auto by_flights_key =
+    "with_capacity_of_flights";  ///< of that, where a mission's capacity contradicts it
+
 /// A plan; null stands for what an infeasible one does not have.
 nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission);
 

@@ -78,10 +78,11 @@ mechanical = {}
         toml_string(mission.mechanical), durations, airspeed_of(mission.model));
 }
 
-/// Of LiPo cells, by the voltage of a full pack, or by the paper's constant one.
+/// As the battery says; else of LiPo cells, by the voltage of a full pack, or by the paper's constant one.
 int cells_of(const battery::Battery& pack) {
     constexpr double full_v = 4.2;
     constexpr double usual_v = 3.7;
+    if (pack.cells) return *pack.cells;
     const double cells =
         pack.thevenin ? pack.thevenin->open_circuit.voltage_v.back() / full_v : pack.voltage_v / usual_v;
     return std::max(1, static_cast<int>(std::lround(cells)));

@@ -59,6 +59,17 @@ TEST(MissionJson, HoldsTheSummaryWithNullForNever) {
     EXPECT_TRUE(to_json(summary)["final_soc_percent"].is_null());
 }
 
+TEST(MissionJson, HoldsTheLandingThatTheFlightsIndicate) {
+    auto summary = simulate(test::paper_mission("phased")).summary;
+    EXPECT_FALSE(to_json(summary).contains(by_flights_key));
+    summary.by_flights = mission::EstimatedLanding{2.05, 59.7, std::nullopt, true};
+    const auto json = to_json(summary)[by_flights_key];
+    EXPECT_EQ(json["capacity_ah"], 2.05);
+    EXPECT_EQ(json["final_soc_percent"], 59.7);
+    EXPECT_TRUE(json["fails_at_s"].is_null());
+    EXPECT_EQ(json["keeps_reserve"], true);
+}
+
 TEST(MissionJson, HoldsTheChancesOfSampledFlights) {
     auto summary = simulate(test::paper_mission("phased")).summary;
     summary.samples = mission::SampledFlights{};
