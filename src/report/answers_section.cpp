@@ -43,7 +43,8 @@ std::string card_html(const SimulatedMission& simulated, const MissionAnswer& an
                             css_class_of(verdict), escaped(simulated.title), words_of(verdict, has_reserve));
     const auto lines = card_lines(simulated, answer);
     html += fmt::format("<p class=\"lead\">{}</p>\n", escaped(lines.front()));
-    for (std::size_t i = 1; i < lines.size(); ++i) html += paragraph(lines[i]);
+    for (std::size_t i = 1; i < lines.size(); ++i)
+        html += paragraph(lines[i], lines[i].starts_with("Warning: ") ? "warning" : "");
     return html + "</article>\n";
 }
 

@@ -30,7 +30,7 @@ MissionAnswer answer_for(const SimulatedMission& simulated, const mission::Missi
 /// Whether a mission keeps its reserve, as far as anybody knows.
 enum class Verdict {
     keeps,     ///< with a chance of 95 % or more, or as modelled where no chance is known
-    may_keep,  ///< as modelled, but with a lesser chance
+    may_keep,  ///< as modelled, but with a lesser chance, or not with the capacity that the pack's flights indicate
     fails
 };
 

@@ -4,6 +4,8 @@
 #include "helpers/paper_missions.h"
 #include "mission/feasibility_limits.h"
 
+#include <memory>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,6 +57,38 @@ TEST(MissionAnswer, KnowsNoChanceWhereNothingSaysHowFlightsDiffer) {
     EXPECT_EQ(verdict_of(simulated), Verdict::keeps);
     EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("nobody knows the chance")));
     EXPECT_TRUE(to_json(simulated, answer)["probability_below_reserve"].is_null());
+}
+
+/// "computing-only", whose pack of 3.2 Ah is of flights that indicate another capacity.
+mission::Mission on_pack_of_flights(double indicated_ah) {
+    auto mission = test::paper_mission("computing-only");
+    mission.battery.flight_estimate = std::make_shared<battery::FlightEstimate>(
+        battery::FlightEstimate{indicated_ah, {0.9 * indicated_ah, 1.1 * indicated_ah}});
+    return mission;
+}
+
+TEST(MissionAnswer, WarnsOfACapacityThatContradictsTheFlights) {
+    const auto lines_of = [](double indicated_ah) {
+        const auto simulated = simulate_for_report({on_pack_of_flights(indicated_ah)}).front();
+        return card_lines(simulated, answer_for(simulated, reading_of("computing-only")));
+    };
+    EXPECT_THAT(lines_of(3.2), testing::Each(testing::Not(HasSubstr("flights indicate"))));
+    const auto lines = lines_of(6.4);
+    EXPECT_THAT(lines[0], testing::MatchesRegex("Lands with [0-9.]+ % \\([0-9]+\\.[0-9] % with the 6.4 Ah that the "
+                                                "flights indicate\\)"));
+    EXPECT_THAT(lines[1], StartsWith("Warning: the capacity of 3.2 Ah contradicts the flights, which indicate 6.4 Ah"));
+}
+
+TEST(MissionAnswer, IsNotSureOfALandingThatTheFlightsContradict) {
+    const auto simulated = simulate_for_report({on_pack_of_flights(6.4)}).front();
+    EXPECT_EQ(verdict_of(simulated), Verdict::keeps) << "with their capacity too";
+    const auto fails = simulate_for_report({on_pack_of_flights(0.8)}).front();
+    EXPECT_EQ(verdict_of(fails), Verdict::may_keep);
+    const auto answer = answer_for(fails, reading_of("computing-only"));
+    EXPECT_THAT(card_lines(fails, answer).front(), HasSubstr("(the battery fails after "));
+    const auto json = to_json(fails, answer);
+    EXPECT_EQ(json["with_capacity_of_flights"]["keeps_reserve"], false);
+    EXPECT_FALSE(to_json(flown("computing-only"), answer).contains("with_capacity_of_flights"));
 }
 
 TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
