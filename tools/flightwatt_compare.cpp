@@ -122,6 +122,8 @@ int compare_missions(const cli::StageCall& call) {
     cli::write_result(call, ranking_text(call, ranking, form));
     cli::print(soc_picture(call, simulations, ranking));
     if (call.json) cli::print(ranking_json(ranking, sampling.has_value()));
+    for (const auto& mission : missions)
+        if (!call.json) cli::note_power_model(call, setup_of(mission));
     return explain(call, ranking, sampling.has_value());
 }
 

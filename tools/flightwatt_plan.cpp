@@ -97,6 +97,7 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
         cli::print(cli::json_text(cli::to_json(plan, *problem)));
     } else {
         cli::note(call, text);
+        cli::note_power_model(call, *problem);
         if (plan.sources) note_sources(call, *problem, *plan.sources, plan.chance_standard_error);
     }
     return cli::ok;
@@ -140,6 +141,7 @@ int answer(const cli::StageCall& call, const mission::MissionSetup& mission, con
                                             : fmt::format("reserve {:.4f} %", mission.reserve_soc_percent);
         cli::note(call, fmt::format("{}: then {:.4f} % are left, {}{}", mission.name, most.final_soc_percent, kept,
                                     beyond(most.limited_by)));
+        cli::note_power_model(call, mission);
         if (most.sources) note_sources(call, mission, *most.sources);
     }
     return cli::ok;

@@ -41,6 +41,19 @@ std::string describe(const DrawnSources& sources) {
     return text;
 }
 
+std::string describe(const mechanical::HeldOutScore& power_model) {
+    const auto& model = power_model.model;
+    const auto* used = model == "physical"         ? "cruise power by the physical model"
+                       : model == "airspeed_cubed" ? "cruise power by airspeed cubed"
+                       : model == "constant_mean"  ? "power by each phase's mean"
+                                                   : "power by each phase's curve";
+    const auto* known = model == "physical"         ? ", their airspeed and climb known"
+                        : model == "airspeed_cubed" ? ", their airspeed known"
+                                                    : "";
+    return fmt::format("{}: {:.1f} % off on {} flights left out of the fit{}", used,
+                       power_model.mean_absolute_error_percent, power_model.flights, known);
+}
+
 std::string describe(const MissionSummary& summary) {
     if (const auto& failure = summary.undeliverable) {
         return fmt::format("{}: the battery cannot deliver {:.6g} W after {}: its limit U^2 / (4 R) is {:.6g} W",

@@ -121,6 +121,7 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
     if (!end.undeliverable) summary.final_soc_percent = end.soc_percent;
     add_energies(segments, summary);
     summary.feasible = !summary.undeliverable && !summary.depleted_at_s && !summary.cut_off_at_s;
+    summary.power_model = mission.power_model;
     summary.reserve_soc_percent = mission.reserve_soc_percent;
     summary.keeps_reserve = summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent;
     return summary;

@@ -6,6 +6,7 @@
 #include "mission/sampled_flights.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -92,6 +93,11 @@ std::string utility_line(const SimulatedMission& simulated) {
     return line;
 }
 
+std::string as_sentence(std::string text) {
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text;
+}
+
 /// Whether less of what the mission flies would keep the reserve.
 bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reach) {
     return reach.unit != mission::ReachUnit::cruise_s ||
@@ -170,6 +176,7 @@ Verdict verdict_of(const SimulatedMission& simulated) {
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAnswer& answer) {
     std::vector<std::string> lines{landing_line(simulated), reserve_line(simulated), reach_line(simulated, answer)};
     if (simulated.simulation.summary.utility) lines.push_back(utility_line(simulated));
+    if (const auto& model = simulated.mission.power_model) lines.push_back(as_sentence(mission::describe(*model)));
     if (verdict_of(simulated) == Verdict::keeps) return lines;
     if (auto remedy = remedy_line(simulated, answer); !remedy.empty()) lines.push_back(std::move(remedy));
     return lines;

@@ -36,8 +36,8 @@ enum class Verdict {
 
 Verdict verdict_of(const SimulatedMission& simulated);
 
-/// What a card says, a line each: how the mission lands, its reserve, its reach, its utility, and where it does not keep
-/// its reserve what would mend that.
+/// What a card says, a line each: how the mission lands, its reserve, its reach, its utility, which model says its
+/// power, and where it does not keep its reserve what would mend that.
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAnswer& answer);
 
 /// The same as JSON, in numbers.

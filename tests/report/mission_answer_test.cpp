@@ -104,6 +104,15 @@ TEST(MissionAnswer, CountsCirclesOfAPath) {
     EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("circles as modelled")));
 }
 
+TEST(MissionAnswer, SaysWhichModelIsUsedAndHowItPredicts) {
+    auto simulated = flown("computing-only");
+    const auto answer = answer_for(simulated, reading_of("computing-only"));
+    EXPECT_THAT(card_lines(simulated, answer), testing::Not(Contains(HasSubstr("left out of the fit"))));
+    simulated.mission.power_model = mechanical::HeldOutScore{"constant_mean", 4, 18.6};
+    EXPECT_THAT(card_lines(simulated, answer),
+                Contains("Power by each phase's mean: 18.6 % off on 4 flights left out of the fit"));
+}
+
 TEST(MissionAnswer, SaysWhyThereIsNone) {
     auto simulated = flown("phased");
     const auto answer = answer_for(simulated, [](const mission::MissionReading&) -> mission::AnyMission {

@@ -30,6 +30,9 @@ std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, con
 /// Warns of what no drone has: negative power of the model or of a profile, a battery of another unit.
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission);
 
+/// Which model says the power, where its file knows how it predicts.
+void note_power_model(const StageCall& call, const mission::MissionSetup& mission);
+
 /// If a mission that was written with another schedule has lost its comments.
 void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written);
 

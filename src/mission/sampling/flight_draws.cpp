@@ -266,6 +266,7 @@ MissionSetup without_evidence(MissionSetup mission) {
     if (mission.mechanical) {
         mission.mechanical->flights.clear();
         mission.mechanical->physical.reset();
+        mission.mechanical->validation.reset();
         for (const auto phase : all_phases) {
             const auto& model = mission.mechanical->phases[phase];
             mechanical::PhaseModel curve;
