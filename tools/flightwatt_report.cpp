@@ -115,8 +115,9 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
     }
     if (auto section = report::physical_section(content.measured, of)) page.sections.push_back(std::move(*section));
     cli::TerminalProgress validating("fits");
-    page.answers.validated.push_back(
-        {of.folder, leave_one_out(content.measured, content.fit->options, {}, validating.shown()), synthetic});
+    auto validated = leave_one_out(content.measured, content.fit->options, {}, validating.shown());
+    for (const auto& rejected : remove_rejected(validated)) notes.push_back(of_folder(of, rejected + "."));
+    page.answers.validated.push_back({of.folder, std::move(validated), synthetic});
     page.sections.push_back(report::validation_section(page.answers.validated.back().flights, synthetic, of));
 }
 

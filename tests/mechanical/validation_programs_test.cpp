@@ -169,7 +169,7 @@ TEST(Fit, RefusesAPhysicalModelWithoutAirspeed) {
     for (const std::string program : {"fit", "batch -o other"}) {
         const auto usage = run(folder, program + " --model newton" + sample("01"));
         EXPECT_EQ(usage.code, 2);
-        EXPECT_THAT(usage.err, HasSubstr("--model newton: expected fourier or physical"));
+        EXPECT_THAT(usage.err, HasSubstr("--model newton: expected fourier, physical or best"));
     }
     EXPECT_FALSE(std::filesystem::exists(folder / "other"));
 }

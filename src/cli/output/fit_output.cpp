@@ -61,6 +61,27 @@ nlohmann::ordered_json to_json(const mechanical::PhaseSpread& spread) {
             {"counted_flights", spread.counted_flights}};
 }
 
+nlohmann::ordered_json validation_json(const mechanical::ModelValidation& validation) {
+    auto scores = nlohmann::ordered_json::array();
+    for (const auto& [model, flights, error_percent] : validation.scores)
+        scores.push_back({{"model", model}, {"flights", flights}, {"mean_absolute_error_percent", error_percent}});
+    return {{"default_model", default_model(validation)}, {"scores", scores}};
+}
+
+/// "off on 4 flights left out of the fit: constant_mean 18.6 %, ...; missions use constant_mean".
+std::string describe(const mechanical::ModelValidation& validation, bool has_physical) {
+    std::string errors;
+    std::size_t flights = 0;
+    for (const auto& score : validation.scores) {
+        errors +=
+            fmt::format("{}{} {:.1f} %", errors.empty() ? "" : ", ", score.model, score.mean_absolute_error_percent);
+        if (flights > 0 && score.flights != flights) errors += fmt::format(" (on {} of them)", score.flights);
+        flights = std::max(flights, score.flights);
+    }
+    return fmt::format("off on {} flights left out of the fit: {}; missions use {}{}", flights, errors,
+                       has_physical ? "physical at a stated airspeed, else " : "", default_model(validation));
+}
+
 }  // namespace
 
 std::optional<mechanical::MechanicalModel> read_published(const StageCall& call) {
@@ -120,6 +141,7 @@ nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
         }
         json["flights"].push_back({{"flight", flight.flight}, {"weights", weights}});
     }
+    if (model.validation) json["validation"] = validation_json(*model.validation);
     json["warnings"] = model_warnings(model);
     json["notes"] = fit_notes(model);
     return json;
@@ -137,6 +159,7 @@ void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& mod
     }
     for (const auto& warning : model_warnings(model)) warn(call, warning);
     for (const auto& text : fit_notes(model)) note(call, text);
+    if (model.validation) note(call, describe(*model.validation, model.physical.has_value()));
 }
 
 void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,
