@@ -89,7 +89,8 @@ std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& scre
                model.flights.size(), model.flights.size() == 1 ? "" : "s", model.bins, model.bin_s, model.samples,
                model.airspeed_m_per_s.low, model.airspeed_m_per_s.high, model.climb_m_per_s.low,
                model.climb_m_per_s.high) +
-           fmt::format("RMS error of stretches held back, {} in turn:\n",
+           fmt::format("RMS error of {} held back, {} in turn:\n",
+                       fit.phases_decided ? "the mean power of phases" : "stretches",
                        fit.held_back_flights ? "flights" : "fifths of the flight") +
            screen_text(trials_table(fit), screen);
 }
