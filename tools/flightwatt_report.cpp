@@ -194,7 +194,8 @@ void add_trends(Page& page, const cli::StageCall& call) {
     std::vector<report::FlownFlight> flights(usable.size());
     for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = flown_flight(*usable[i]); });
     if (!trends_section(trends_of(flights))) return;  // and so none of packs, whose work is long
-    const auto notes = add_pack_wear(flights, cli::count_option(call, "max-battery-flights"));
+    const auto notes =
+        add_pack_wear(flights, cli::count_option(call, "max-battery-flights"), cli::capacity_option(call));
     auto section = trends_section(trends_of(flights));
     section->html += report::list_html(notes);
     page.sections.push_back(std::move(*section));
