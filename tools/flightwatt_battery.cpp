@@ -75,6 +75,11 @@ void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIde
         if (flight.link)
             cli::note(call, cli::describe_link(flight) + "; --no-chain takes no flight for another's pack");
     }
+    if (!identified.battery.intervals.resistance_scatter)
+        cli::note(
+            call,
+            "how the series resistance differs between flights is not known, as fewer than two flights have one of "
+            "their own: missions draw it by its interval alone");
     if (identified.trend) cli::note(call, cli::describe(*identified.trend));
     if (identified.capacity.origin == battery::CapacityOrigin::given) {
         cli::note(call, "the capacity is the one given: the flights do not tell it");

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
@@ -87,6 +88,19 @@ void read_intervals(const TomlTable& table, Battery& battery) {
         intervals.voltage_v = read_interval(table, "voltage_v", battery.voltage_v);
     }
     table.refuse_unknown_keys();
+}
+
+void read_between_flights(const TomlTable& table, BatteryIntervals& intervals) {
+    constexpr std::uint64_t fewest = 2;  // one does not differ
+    intervals.resistance_scatter = ResistanceScatter{number_in(at_least(0.0), table, "resistance_sd_ohm"),
+                                                     static_cast<std::size_t>(count_in(table, "flights", fewest))};
+    table.refuse_unknown_keys();
+}
+
+std::string between_flights_lines(const std::optional<ResistanceScatter>& scatter) {
+    if (!scatter) return "";
+    return fmt::format("\n# how flights differ\n[between_flights]\nflights = {}\nresistance_sd_ohm = {}\n",
+                       scatter->flights, toml_real(scatter->sd_ohm));
 }
 
 std::string interval_lines(const BatteryIntervals& intervals) {
@@ -181,6 +195,7 @@ Battery battery_from(const TomlTable& table) {
     battery.capacity_ah = number_in(more_than_up_to(0.0, max_capacity_ah), table, "capacity_ah", capacity_hint);
     if (model == "thevenin") battery.thevenin = read_circuit(table, battery.intervals);
     if (const auto intervals = table.optional_table("intervals")) read_intervals(*intervals, battery);
+    if (const auto between = table.optional_table("between_flights")) read_between_flights(*between, battery.intervals);
     table.refuse_unknown_keys();
     return battery;
 }
@@ -230,7 +245,7 @@ std::string to_toml(const Battery& battery) {
         const auto& errors = battery.intervals.open_circuit_standard_error_v;
         if (!errors.empty()) text += fmt::format("standard_error_v = {}\n", toml_reals(errors));
     }
-    return text + interval_lines(battery.intervals);
+    return text + interval_lines(battery.intervals) + between_flights_lines(battery.intervals.resistance_scatter);
 }
 
 }  // namespace flightwatt::battery

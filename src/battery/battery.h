@@ -2,6 +2,7 @@
 
 #include "base/toml_reader.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,11 +33,21 @@ struct Interval {
     bool operator==(const Interval&) const = default;
 };
 
+/// How the series resistance differs between flights of one pack: by temperature, rest and age. Of a flight to come, a
+/// Student's t with as many degrees of freedom as flights, as what is known beforehand counts as one more
+/// (resistance_scatter_ohm).
+struct ResistanceScatter {
+    double sd_ohm = 0.0;
+    std::size_t flights = 0;  ///< two or more
+    bool operator==(const ResistanceScatter&) const = default;
+};
+
 /// How well the parameters are known, each where the file says it.
 struct BatteryIntervals {
     std::optional<Interval> capacity_ah;
-    std::optional<Interval> voltage_v;  ///< of the paper's source
-    std::optional<Interval> resistance_ohm;
+    std::optional<Interval> voltage_v;       ///< of the paper's source
+    std::optional<Interval> resistance_ohm;  ///< of the mean of the flights
+    std::optional<ResistanceScatter> resistance_scatter;
     std::optional<Interval> rc_resistance_ohm;
     std::optional<Interval> rc_time_constant_s;
     std::vector<double> open_circuit_standard_error_v;  ///< one a knot of the curve, or empty

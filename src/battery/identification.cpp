@@ -204,6 +204,7 @@ Told told_by(std::span<const DischargeRecord> records, const IdentificationOptio
     result.known_down_to_percent = extended.known_down_to_percent;
     result.known_up_to_percent = extended.known_up_to_percent;
     result.battery = battery_of(result, extended, options.name);
+    result.battery.intervals.resistance_scatter = resistance_scatter(chained.resistances, result.fit.resistance_ohm);
     return told;
 }
 

@@ -40,6 +40,21 @@ TEST(BatteryToml, IsWrittenAsItIsRead) {
     EXPECT_DOUBLE_EQ(terminal_voltage_v(pack, {50.0, 0.1}, 2.0), 11.4 - 0.1 - 0.16);
 }
 
+TEST(BatteryToml, SaysHowFlightsDiffer) {
+    const std::string between = "\n# how flights differ\n[between_flights]\nflights = 2\nresistance_sd_ohm = 0.012\n";
+    const auto pack = battery_from(parse_toml(pack_toml + between, "b.toml"));
+    EXPECT_EQ(pack.intervals.resistance_scatter, (ResistanceScatter{0.012, 2}));
+    EXPECT_EQ(to_toml(pack), "format = 1\n" + pack_toml + between);
+    EXPECT_FALSE(battery_from(parse_toml(pack_toml, "b.toml")).intervals.resistance_scatter) << "files of before";
+    const auto of = [&](const std::string& from, const std::string& to) {
+        auto text = pack_toml + between;
+        text.replace(text.find(from), from.size(), to);
+        return rejected([&] { battery_from(parse_toml(text, "b.toml")); });
+    };
+    EXPECT_EQ(of("flights = 2", "flights = 1"), "b.toml:20:1: flights = 1, expected a whole number, 2 or more");
+    EXPECT_EQ(of("sd_ohm = 0.012", "sd_ohm = -0.012"), "b.toml:21:1: resistance_sd_ohm = -0.012, expected 0 or more");
+}
+
 TEST(BatteryToml, RefusesWhatIsNoBattery) {
     const auto of = [](const std::string& from, const std::string& to) {
         auto text = pack_toml;
@@ -86,7 +101,7 @@ TEST(BatteryToml, RefusesWhatIsNoPaperBattery) {
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_mah = 1\n"),
               "b.toml:3:1: has no key 'capacity_ah'; 'capacity_mah' is here; was that meant?");
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 3\n"),
-              "b.toml:4:1: unknown key 'cells'; known keys: capacity_ah, intervals, model, "
+              "b.toml:4:1: unknown key 'cells'; known keys: between_flights, capacity_ah, intervals, model, "
               "name, resistance_ohm, voltage_v");
 }
 

@@ -42,6 +42,8 @@ TextTable pack_table(const battery::Battery& pack) {
     add("capacity [Ah]", pack.capacity_ah, pack.intervals.capacity_ah);
     if (!pack.thevenin) add("voltage [V]", pack.voltage_v, pack.intervals.voltage_v);
     add("resistance [ohm]", pack.resistance_ohm, pack.intervals.resistance_ohm);
+    if (const auto& scatter = pack.intervals.resistance_scatter)
+        add("resistance between flights, sd [ohm]", scatter->sd_ohm, std::nullopt);
     if (const auto& circuit = pack.thevenin; circuit && circuit->rc_resistance_ohm > 0.0) {
         add("RC resistance [ohm]", circuit->rc_resistance_ohm, pack.intervals.rc_resistance_ohm);
         add("RC time constant [s]", circuit->rc_time_constant_s, pack.intervals.rc_time_constant_s);
@@ -57,6 +59,8 @@ TextTable parameters_table(const battery::BatteryIdentification& identified) {
                               fmt::format("{:.4g}", interval.high)});
     };
     add("resistance_ohm", identified.fit.resistance_ohm, identified.errors.resistance_ohm);
+    if (const auto& scatter = identified.battery.intervals.resistance_scatter)
+        table.rows.push_back({"resistance_sd_ohm", fmt::format("{:.4g}", scatter->sd_ohm), "-", "-"});
     if (identified.fit.rc_resistance_ohm > 0.0) {
         add("rc_resistance_ohm", identified.fit.rc_resistance_ohm, identified.errors.rc_resistance_ohm);
         add("rc_time_constant_s", identified.fit.rc_time_constant_s, identified.errors.rc_time_constant_s);
@@ -166,6 +170,9 @@ nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
     json["capacity_interval_ah"] = interval(identified.capacity.interval_ah);
     json["cells"] = identified.cells;
     json["resistance_ohm"] = estimate(fit.resistance_ohm, errors.resistance_ohm);
+    json["resistance_between_flights"] = Json();
+    if (const auto& scatter = identified.battery.intervals.resistance_scatter)
+        json["resistance_between_flights"] = {{"sd_ohm", scatter->sd_ohm}, {"flights", scatter->flights}};
     json["rc_resistance_ohm"] = estimate(fit.rc_resistance_ohm, errors.rc_resistance_ohm);
     json["rc_time_constant_s"] = fit.rc_resistance_ohm > 0.0
                                      ? estimate(fit.rc_time_constant_s, errors.rc_time_constant_s)
