@@ -120,7 +120,9 @@ int fit(const cli::StageCall& call) {
     } else if (call.output) {
         const auto screen = screen_of(call);
         const cli::ScreenTable shown{fmt::format("{}: Table I of {} flights", fitted.model.name, flights.size()), {}};
-        cli::print(screen_text(table, screen, shown) + (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
+        const cli::ScreenTable means{"mean power of the phases", {}};
+        cli::print(screen_text(cli::mean_power_table(fitted.model), screen, means) + "\n" +
+                   screen_text(table, screen, shown) + (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
     }
     return cli::ok;
 }

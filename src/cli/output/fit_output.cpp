@@ -4,6 +4,7 @@
 #include "cli/output/json_text.h"
 #include "mechanical/model_check.h"
 #include "mechanical/model_fit.h"
+#include "mechanical/prediction.h"
 
 #include <algorithm>
 
@@ -73,6 +74,21 @@ TextTable table_of(const mechanical::MechanicalModel& model,
     return published ? table_one_beside(*published, model, intervals) : table_one(model, intervals);
 }
 
+TextTable mean_power_table(const mechanical::MechanicalModel& model) {
+    TextTable table{{"phase", "mean W", "low 95 %", "high 95 %", "flights", "samples"}, {}};
+    for (const auto phase : flight::all_phases) {
+        const auto power = mean_power(model, phase);
+        if (!power) continue;
+        const auto end = [&](double mechanical::Interval::*of) {
+            return power->interval ? fixed((*power->interval).*of, 2) : "-";
+        };
+        table.rows.push_back({std::string(to_string(phase)), fixed(power->mean_w, 2), end(&mechanical::Interval::low),
+                              end(&mechanical::Interval::high), fmt::format("{}", power->flights),
+                              fmt::format("{}", power->samples)});
+    }
+    return table;
+}
+
 std::string table_text(const TextTable& table, const std::filesystem::path& file) {
     const auto ending = file.extension().string();
     if (ending == ".txt") return to_text(table);
@@ -105,6 +121,10 @@ nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
                                   {"mean_power_w", law->mean_power_w},
                                   {"slope_w", law->slope_w},
                                   {"residual_sd_w", law->residual_sd_w.value()}};
+        }
+        if (const auto power = mean_power(model, phase)) {
+            entry["mean_power_w"] = power->mean_w;
+            entry["mean_power_interval_95_w"] = power->interval ? interval_json(*power->interval) : Json();
         }
         if (fitted.range) {
             entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},

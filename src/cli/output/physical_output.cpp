@@ -126,6 +126,7 @@ nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit) {
             {"airspeed_m_per_s", {{"low", model.airspeed_m_per_s.low}, {"high", model.airspeed_m_per_s.high}}},
             {"climb_m_per_s", {{"low", model.climb_m_per_s.low}, {"high", model.climb_m_per_s.high}}},
             {"mean_airspeed_m_per_s", model.mean_airspeed_m_per_s},
+            {"held_back", fit.phases_decided ? "mean power of phases" : "stretches"},
             {"trials", trials}};
 }
 
