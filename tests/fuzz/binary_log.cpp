@@ -58,6 +58,12 @@ std::vector<Definitions> all_definitions() {
             std::fprintf(stderr, "SKIPPED: %s is not here\n", path.c_str());
         }
     }
+    const auto wanted = flightwatt::flight::flight_messages();
+    for (auto& definitions : all) {
+        std::erase_if(definitions.configuration.messages, [&](const auto& message) {
+            return std::ranges::find(wanted, message.first, &MessageRequest::message) == wanted.end();
+        });  // they are copied for each input
+    }
     return all;
 }
 
