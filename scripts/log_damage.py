@@ -239,15 +239,21 @@ def field_offset(random, log):
     change_field(log, message, field, lambda value: value + offset)
 
 
+def energy_words(line):
+    """The words of an ENERGY with its six fields, or the seven of newer definitions; of another line none."""
+    words = words_of(line)
+    return words if message_of(line) == b"ENERGY" and len(words) in (9, 10) else []
+
+
 def change_power(random, log, change):
-    """Current and power of ENERGY, with its six fields, by change(number, seconds since the first); mostly its counters,
+    """Current and power of ENERGY by change(number, seconds since the first); mostly its counters,
     which the aircraft computes from the same, are lost: without them nothing else tells."""
     without_counters = random.random() < 0.7
     first_s = None
     number = 0
     for i, line in enumerate(log.lines):
-        words = words_of(line)
-        if message_of(line) != b"ENERGY" or len(words) != 9:
+        words = energy_words(line)
+        if not words:
             continue
         try:
             time_s, voltage, current, power = (float(words[k]) for k in (0, 4, 5, 6))
@@ -259,7 +265,7 @@ def change_power(random, log, change):
         words[5] = b"%.6f" % changed
         words[6] = b"%.6f" % (power + voltage * (changed - current))
         if without_counters:
-            words[7] = words[8] = b"0"
+            words[-2] = words[-1] = b"0"
         log.lines[i] = b" ".join(words) + b"\n"
 
 
@@ -279,8 +285,8 @@ def power_spikes(random, log):
 
 def current_drifts(random, log):
     """Only the rest after the flight tells: a log that ends with the throttle open is left as it is."""
-    last = next((words_of(line) for line in reversed(log.lines) if message_of(line) == b"ENERGY"), [])
-    if len(last) != 9 or not last[3].isdigit() or int(last[3]) > 20:
+    last = next((energy_words(line) for line in reversed(log.lines) if message_of(line) == b"ENERGY"), [])
+    if not last or not last[3].isdigit() or int(last[3]) > 20:
         return
     rate_a_per_s = random.choice((0.0005, 0.0015, 0.004, -0.0005))
     change_power(random, log, lambda _, since_s, current: current + rate_a_per_s * since_s)
@@ -320,8 +326,8 @@ def one_device_fails(random, log):
     lines = []
     last = b"0"
     for i, line in enumerate(log.lines):
-        words = words_of(line)
-        if message_of(line) != b"ENERGY" or len(words) != 9:
+        words = energy_words(line)
+        if not words:
             lines.append(line)
             continue
         try:

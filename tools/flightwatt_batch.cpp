@@ -116,7 +116,12 @@ FittedBatch fit_batch(const cli::StageCall& call, const batch::BatchFlights& fli
         samples.push_back(std::move(flight.samples));  // of thousands, two copies are too many
     try {
         FittedBatch fitted{batch::fit_flights(samples, options), std::nullopt};
-        if (cli::is_physical(call)) fitted.physical = cli::fit_motion(call, measured, fitted.fit.model);
+        auto& model = fitted.fit.model;
+        const auto kind = cli::model_kind(call);
+        if (kind == cli::ModelKind::physical) fitted.physical = cli::fit_motion(call, measured, model);
+        if (kind != cli::ModelKind::best) return fitted;
+        for (std::size_t i = 0; i < measured.size(); ++i) measured[i].samples = std::move(samples[i]);
+        cli::add_best_power(measured, options, model);
         return fitted;
     } catch (...) {
         remove_model(call, batch.out);
@@ -130,8 +135,7 @@ std::string fingerprint_of(const cli::StageCall& call, const batch::BatchFlights
                            const std::optional<mechanical::MechanicalModel>& published) {
     auto fit_options = read_fit_options(call);
     fit_options.name = call.get<std::string>("name");
-    auto more =
-        (cli::is_physical(call) ? "physical\n" : "fourier\n") + (published ? to_toml(*published) : std::string());
+    auto more = call.get<std::string>("model") + "\n" + (published ? to_toml(*published) : std::string());
     for (const auto* names : {&options.load.excluded, &options.load.keep})
         more += fmt::format("{}: {}\n", names->size(), fmt::join(*names, "\n"));
     return batch::fingerprint_of_fit(flights, fit_options, more);
@@ -214,7 +218,8 @@ int exit_code(const cli::StageCall& call, const batch::Totals& totals) {
 int finish(const cli::StageCall& call, batch::BatchFlights flights, const batch::BatchOptions& options,
            const std::optional<mechanical::MechanicalModel>& published) {
     const auto made_from = fingerprint_of(call, flights, options, published);
-    const bool is_known = !call.has("no-fit") && !cli::is_physical(call) && batch::is_fit_of(options.out, made_from);
+    const bool shows_physical = cli::model_kind(call) == cli::ModelKind::physical;  // how it came about is not kept
+    const bool is_known = !call.has("no-fit") && !shows_physical && batch::is_fit_of(options.out, made_from);
     auto known = is_known ? std::optional(known_fit(options.out)) : std::nullopt;
     auto repeated = known ? std::move(known->fit.repeated) : find_repeated(flights, options.out);
     exclude_repeated(flights, repeated);
@@ -336,7 +341,7 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
 
 int run_over_logs(const cli::StageCall& call) {
     const auto fit_options = read_fit_options(call);  // refuses bad options before the work
-    cli::is_physical(call);
+    cli::model_kind(call);
     auto options = read_batch_options(call, fit_options);
     const auto published = cli::read_published(call);
     std::optional<batch::FolderLock> lock;
@@ -384,7 +389,7 @@ ended, the same command goes on where it stopped and comes to the same results.)
     stage.shows_table = true;
     stage.output_help = "the folder of the results";
     cli::add_fit_options(stage.options);
-    cli::add_model_option(stage.options);
+    cli::add_model_option(stage.options, cli::ModelKind::best);
     auto add = stage.options.add_options();
     add("name", cli::value("NAME")->default_value("batch"), "the model's name");
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");

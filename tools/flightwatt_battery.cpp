@@ -59,26 +59,36 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call) {
 
 void warn_if_never_full(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
     if (identified.missing_ah <= 0.0) return;
-    double highest_v = 0.0;
-    for (const auto& flight : identified.flights) highest_v = std::max(highest_v, flight.resting_voltage_v);
     cli::warn(call,
               fmt::format(
                   "no flight begins full: the fullest rests at {:.3f} V; by the usual chart of {} LiPo cells "
                   "{:.0f} % are left{}",
-                  highest_v, identified.cells, identified.known_up_to_percent,
+                  highest_resting_v(identified), identified.cells, identified.known_up_to_percent,
                   identified.flights.size() == 1 ? ". One flight does not tell both capacity and initial charge" : ""));
 }
 
+/// How the capacity that was given agrees with the one that the flights indicate.
+void compare_capacity(const cli::StageCall& call, const battery::Battery& pack) {
+    if (const auto warning = capacity_warning(pack); !warning.empty())
+        cli::warn(call, warning);
+    else
+        cli::note(call, cli::describe_given_capacity(pack));
+}
+
 void note_what_it_rests_on(const cli::StageCall& call, const battery::BatteryIdentification& identified) {
+    if (const auto warning = cli::cells_warning(identified); !warning.empty()) cli::warn(call, warning);
     warn_if_never_full(call, identified);
     for (const auto& flight : identified.flights) {
         if (flight.link)
             cli::note(call, cli::describe_link(flight) + "; --no-chain takes no flight for another's pack");
     }
+    if (!identified.battery.intervals.resistance_scatter)
+        cli::note(
+            call,
+            "how the series resistance differs between flights is not known, as fewer than two flights have one of "
+            "their own: missions draw it by its interval alone");
     if (identified.trend) cli::note(call, cli::describe(*identified.trend));
-    if (identified.capacity.origin == battery::CapacityOrigin::given) {
-        cli::note(call, "the capacity is the one given: the flights do not tell it");
-    }
+    if (identified.capacity.origin == battery::CapacityOrigin::given) compare_capacity(call, identified.battery);
     if (identified.capacity.origin == battery::CapacityOrigin::chart) {
         cli::warn(call, fmt::format("the flights do not tell the capacity, as none runs empty: {}; give what "
                                     "the pack says with --capacity",
@@ -147,9 +157,10 @@ the pack's state of health. Flights whose current was computed from throttle are
     stage.shows_table = true;
     auto add = stage.options.add_options();
     add("capacity", cli::value<double>("AH"),
-        "the pack's capacity; without it, what a flight drew from full to empty, or "
-        "else a guess after the usual chart of LiPo cells");
-    add("cells", cli::value("N"), "cells in series; default: by the highest resting voltage");
+        "the pack's capacity, compared with what the flights indicate; without it, what a flight drew from full to "
+        "empty, or else a guess after the usual chart of LiPo cells");
+    add("cells", cli::value("N"),
+        "cells in series, checked against the voltage at rest; default: by the highest resting voltage");
     cli::add_folds_option(stage.options, battery::most_battery_folds);
     add("no-chain", "take no flight for one on the pack of the flight before it");
     add("name", cli::value("NAME"), "the battery's name; default: FILE's");

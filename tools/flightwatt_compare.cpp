@@ -89,6 +89,8 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
                                         summary.mission));
         }
         if (summary.samples && !call.json) cli::note(call, describe(*summary.samples));
+        if (summary.by_flights && !call.json)
+            cli::note(call, fmt::format("{}: {}", summary.mission, describe(*summary.by_flights)));
         const bool lacks_plan = summary.schedule == mission::ScheduleOrigin::infeasible;
         if (!summary.undeliverable && !lacks_plan) continue;
         cli::warn(call, summary.undeliverable
@@ -122,6 +124,8 @@ int compare_missions(const cli::StageCall& call) {
     cli::write_result(call, ranking_text(call, ranking, form));
     cli::print(soc_picture(call, simulations, ranking));
     if (call.json) cli::print(ranking_json(ranking, sampling.has_value()));
+    for (const auto& mission : missions)
+        if (!call.json) cli::note_power_model(call, setup_of(mission));
     return explain(call, ranking, sampling.has_value());
 }
 

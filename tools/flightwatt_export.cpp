@@ -202,7 +202,11 @@ exchange::EstimatorInput estimator_input(const cli::StageCall& call, const std::
     exchange::EstimatorInput result;
     for (const auto& [file, kind] : inputs) {
         if (kind == Kind::model) result.model = mechanical::read_mechanical_model(file);
-        if (kind == Kind::battery) result.battery = battery::read_battery(file);
+        if (kind == Kind::battery) {
+            result.battery = battery::read_battery(file);
+            for (const auto& warning : battery_warnings(*result.battery))
+                cli::warn(call, fmt::format("{}: {}", file, warning));
+        }
         if (kind != Kind::mission) continue;
         const auto mission = mission::read_mission(file, {true, std::nullopt});
         const auto& setup = setup_of(mission);
@@ -258,21 +262,23 @@ std::string validation_latex(const report::BatchContent& content) {
     return to_latex(tables);
 }
 
-std::string identified_battery_latex(const cli::StageCall& call, const report::BatchContent& content) {
+std::string identified_battery_latex(const cli::StageCall& call, const report::BatchContent& content,
+                                     const std::vector<mission::AnyMission>& missions) {
     constexpr std::size_t most_flights = 12;  // likewise
     if (!report::aircraft_mix(content).empty()) return "";
     battery::IdentificationOptions options;
-    options.capacity_ah = cli::positive_option(call, "capacity", "Ah");
-    const auto identified = identify_for_report(content.flights, options, most_flights);
+    options.capacity_ah = cli::capacity_option(call);
+    const auto identified = identify_for_report(content.flights, options, most_flights, missions);
     if (!identified.identified) cli::note(call, "no table of the battery: " + identified.no_answer);
     return to_latex(battery_tables(identified));
 }
 
-std::string batch_latex(const cli::StageCall& call, const report::BatchContent& content) {
+std::string batch_latex(const cli::StageCall& call, const report::BatchContent& content,
+                        const std::vector<mission::AnyMission>& missions) {
     for (const auto& damaged : content.damaged) cli::warn(call, damaged);
     auto text = to_latex(report::flights_tables(content.flights));
     if (content.fit) text += "\n" + model_latex(content.fit->model) + "\n" + validation_latex(content);
-    return text + "\n" + identified_battery_latex(call, content);
+    return text + "\n" + identified_battery_latex(call, content, missions);
 }
 
 std::string replay_latex(const cli::StageCall& call, const report::BatchContent& content,
@@ -315,7 +321,7 @@ Exported export_latex(const cli::StageCall& call, const std::vector<Input>& inpu
     if (call.has("capacity") && !content)
         throw UsageError("--capacity is that of the battery of flights: give a folder of flightwatt batch");
     std::vector<std::string> parts;
-    if (content) parts.push_back(batch_latex(call, *content));
+    if (content) parts.push_back(batch_latex(call, *content, missions));
     if (!missions.empty()) parts.push_back(missions_latex(missions));
     if (call.has("replay")) parts.push_back(replay_latex(call, *content, missions));
     return {fmt::format("{}", fmt::join(parts, "\n"))};
@@ -384,7 +390,7 @@ missions and the folder OUT of flightwatt batch: tables (latex). The form is tha
     add("format", cli::value("NAME"), "the form, where FILE's ending does not tell it");
     add("colour", cli::value("HOW"), "of tracks: phase or power; phase if not given");
     add("message", cli::value("NAME"), "of csv: all fields of one message, ENERGY ..., instead of the series' tracks");
-    add("cells", cli::value("N"), "in series, of the battery; default: as few as 4.25 V a cell allow");
+    add("cells", cli::value("N"), "in series, of the battery; default: its own, or else as few as 4.25 V a cell allow");
     add("parallel", cli::value("N"), "cells in parallel, of the battery; 1 if not given");
     add("idle-power", cli::value<double>("W"), "of inav: while the motor stands; default: the mission's computer");
     add("capacity", cli::value<double>("AH"), "of latex: of the flights' battery; default: as flightwatt battery says");

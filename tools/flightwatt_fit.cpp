@@ -71,7 +71,8 @@ flight::PerPhase<mechanical::OrderChoice> choose_orders(const cli::StageCall& ca
 }
 
 int fit(const cli::StageCall& call) {
-    const bool with_motion = cli::is_physical(call);
+    const auto kind = cli::model_kind(call);
+    const bool with_motion = kind == cli::ModelKind::physical;
     const bool auto_order = !read_order(call, cli::AutoOrder::accepted);
     auto options = read_options(call);
     const auto table_file = call.maybe<std::string>("table");
@@ -102,6 +103,7 @@ int fit(const cli::StageCall& call) {
                       call.has("intervals") ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
     std::optional<mechanical::PhysicalFit> physical;
     if (with_motion) physical = cli::fit_motion(call, measured, fitted.model);
+    if (kind == cli::ModelKind::best) cli::add_best_power(measured, options, fitted.model);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
     if (constants_file)
         write_file_atomically(*constants_file, cli::table_text(cli::constants_table(physical->model), *constants_file));
@@ -120,7 +122,9 @@ int fit(const cli::StageCall& call) {
     } else if (call.output) {
         const auto screen = screen_of(call);
         const cli::ScreenTable shown{fmt::format("{}: Table I of {} flights", fitted.model.name, flights.size()), {}};
-        cli::print(screen_text(table, screen, shown) + (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
+        const cli::ScreenTable means{"mean power of the phases", {}};
+        cli::print(screen_text(cli::mean_power_table(fitted.model), screen, means) + "\n" +
+                   screen_text(table, screen, shown) + (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
     }
     return cli::ok;
 }
@@ -136,7 +140,7 @@ as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
     stage.shows_table = true;
     add_fit_options(stage.options, cli::AutoOrder::accepted);
-    cli::add_model_option(stage.options);
+    cli::add_model_option(stage.options, cli::ModelKind::fourier);
     auto add = stage.options.add_options();
     add("name", cli::value("NAME"), "the model's name");
     add("published", cli::input_file("MODEL.toml"), "show Table I beside this model's");

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -19,13 +20,10 @@ using namespace flightwatt;
 constexpr std::array<const char*, 3> folders{"logs", "fits", "missions"};
 
 /// The five commands, for make(1) or to be typed. A line that make runs begins with a tab.
-std::string list_of_commands(double capacity_ah) {
+std::string list_of_commands(const std::optional<double>& capacity_ah) {
     return fmt::format(
         R"(# From logs to a report in five commands. `make` runs those that something newer asks for; they may be typed as well.
 # Put each flight's .data and .log into logs/ first.
-
-# What the pack holds [Ah], as printed on it.
-CAPACITY_AH = {}
 
 report.html: missions/first.csv
 	flightwatt report fits missions/first.toml -o report.html
@@ -38,20 +36,20 @@ missions/first.csv: missions/first.toml fits/model.toml fits/pack.toml
 missions/first.toml: | fits/model.toml fits/pack.toml
 	flightwatt new-mission --mechanical fits/model.toml --battery fits/pack.toml -o missions/first.toml
 
-# The battery that they flew on.
-fits/pack.toml: fits/model.toml
-	flightwatt battery fits --capacity $(CAPACITY_AH) -o fits/pack.toml
+# The battery that they flew on. --capacity is what its label says [Ah]: it is compared with what the flights indicate.
+# Without it, that is used. All that follows takes the capacity from fits/pack.toml.
+fits/pack.toml: fits/model.toml $(firstword $(MAKEFILE_LIST))
+	flightwatt battery fits{} -o fits/pack.toml
 
 # Phases, energies, and the model of take-off, cruise and landing. Exit code 3: a log was skipped, the others were used.
 fits/model.toml: logs $(wildcard logs/*)
 	flightwatt batch logs -o fits || test $$? = 3
 )",
-        capacity_ah);
+        capacity_ah ? fmt::format(" --capacity {}", *capacity_ah) : "");
 }
 
 int make_folder(const cli::StageCall& call) {
-    constexpr double usual_ah = 5.0;
-    const auto capacity_ah = cli::capacity_option(call).value_or(usual_ah);
+    const auto capacity_ah = cli::capacity_option(call);
     const std::filesystem::path root = call.inputs.front();
     const std::filesystem::path list = call.output ? std::filesystem::path(*call.output) : root / "Makefile";
     std::error_code none;
@@ -84,7 +82,8 @@ logs to a report. Folders that are there stay; a Makefile that is there is not r
 made.)"};
     stage.max_inputs = 1;
     stage.output_help = "write the list of commands to FILE instead of DIR/Makefile";
-    stage.options.add_options()("capacity", cli::value<double>("AH"),
-                                "what the pack holds, for the list; 5 if not given");
+    stage.options.add_options()(
+        "capacity", cli::value<double>("AH"),
+        "what the pack's label says, for the command that identifies it; default: what the flights indicate");
     return cli::run_stage(argc, argv, stage, make_folder);
 }

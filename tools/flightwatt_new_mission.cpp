@@ -80,6 +80,7 @@ int write_new_mission(const cli::StageCall& call) {
     } else if (call.output) {
         cli::note(call, fmt::format("{} is written; next: flightwatt {} {}", file.string(),
                                     fresh.is_planned ? "plan" : "simulate", cli::typed_in_shell(file.string())));
+        cli::note_power_model(call, setup_of(read));
     }
     return cli::ok;
 }

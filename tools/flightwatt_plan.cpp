@@ -51,6 +51,7 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
     auto text = fmt::format("{}: utility {:.6g}, {}; {:.4f} % left, reserve {:.4f} %", mission.name, utility, bound,
                             *plan.summary.final_soc_percent, mission.reserve_soc_percent);
     if (plan.sources) text += fmt::format(" and {:.4f} points of margin", plan.margin_percent);
+    if (plan.summary.by_flights) text += fmt::format(" ({})", describe(*plan.summary.by_flights));
     return text;
 }
 
@@ -85,7 +86,8 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
                          "add [plan], and what [[schedule]] says is fixed and the rest planned");
     }
     cli::warn_of_setup(call, *problem);
-    const auto plan = plan_mission(*problem, chance);
+    auto plan = plan_mission(*problem, chance);
+    plan.summary.by_flights = landing_by_flights(*problem, plan.flown.schedule);
     if (!plan.plan.feasible) refuse_infeasible(call, file, *problem, plan);
     const auto text = describe(plan, *problem);
     // The files that the result names are found from where it will stand.
@@ -97,6 +99,7 @@ int make_plan(const cli::StageCall& call, const MissionFile& file) {
         cli::print(cli::json_text(cli::to_json(plan, *problem)));
     } else {
         cli::note(call, text);
+        cli::note_power_model(call, *problem);
         if (plan.sources) note_sources(call, *problem, *plan.sources, plan.chance_standard_error);
     }
     return cli::ok;
@@ -117,6 +120,7 @@ std::string_view beyond(mission::FeasibilityBound bound) {
 
 int answer(const cli::StageCall& call, const mission::MissionSetup& mission, const std::string& question,
            const std::string& unit, const mission::FeasibilityLimit& most) {
+    cli::warn_of_setup(call, mission);
     nlohmann::ordered_json json;
     json["mission"] = mission.name;
     json[question] = most.value;
@@ -140,6 +144,7 @@ int answer(const cli::StageCall& call, const mission::MissionSetup& mission, con
                                             : fmt::format("reserve {:.4f} %", mission.reserve_soc_percent);
         cli::note(call, fmt::format("{}: then {:.4f} % are left, {}{}", mission.name, most.final_soc_percent, kept,
                                     beyond(most.limited_by)));
+        cli::note_power_model(call, mission);
         if (most.sources) note_sources(call, mission, *most.sources);
     }
     return cli::ok;

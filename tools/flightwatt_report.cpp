@@ -115,8 +115,9 @@ void add_model(Page& page, const cli::StageCall& call, const report::BatchConten
     }
     if (auto section = report::physical_section(content.measured, of)) page.sections.push_back(std::move(*section));
     cli::TerminalProgress validating("fits");
-    page.answers.validated.push_back(
-        {of.folder, leave_one_out(content.measured, content.fit->options, {}, validating.shown()), synthetic});
+    auto validated = leave_one_out(content.measured, content.fit->options, {}, validating.shown());
+    for (const auto& rejected : remove_rejected(validated)) notes.push_back(of_folder(of, rejected + "."));
+    page.answers.validated.push_back({of.folder, std::move(validated), synthetic});
     page.sections.push_back(report::validation_section(page.answers.validated.back().flights, synthetic, of));
 }
 
@@ -150,7 +151,7 @@ report::Section section_of_flights(std::span<const report::ReportFlight> flights
 
 /// What the folders have to say: flights, and of each folder model, validation and battery.
 void add_batches(Page& page, const cli::StageCall& call, std::vector<report::BatchContent>& batches,
-                 const report::PublishedFigures& figures) {
+                 std::span<const mission::AnyMission> missions, const report::PublishedFigures& figures) {
     battery::IdentificationOptions identification;
     identification.capacity_ah = cli::capacity_option(call);
     std::vector<std::future<std::optional<report::ReportBattery>>> batteries;
@@ -161,7 +162,8 @@ void add_batches(Page& page, const cli::StageCall& call, std::vector<report::Bat
         // Of many flights, it takes as long as their figures do.
         batteries.push_back(std::async(std::launch::async, [&, is_mix = !mixes.back().empty(),
                                                             most = cli::count_option(call, "max-battery-flights")] {
-            return is_mix ? std::nullopt : std::optional(identify_for_report(content.flights, identification, most));
+            return is_mix ? std::nullopt
+                          : std::optional(identify_for_report(content.flights, identification, most, missions));
         }));
     }
     const auto at = page.sections.size();
@@ -194,7 +196,8 @@ void add_trends(Page& page, const cli::StageCall& call) {
     std::vector<report::FlownFlight> flights(usable.size());
     for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = flown_flight(*usable[i]); });
     if (!trends_section(trends_of(flights))) return;  // and so none of packs, whose work is long
-    const auto notes = add_pack_wear(flights, cli::count_option(call, "max-battery-flights"));
+    const auto notes =
+        add_pack_wear(flights, cli::count_option(call, "max-battery-flights"), cli::capacity_option(call));
     auto section = trends_section(trends_of(flights));
     section->html += report::list_html(notes);
     page.sections.push_back(std::move(*section));
@@ -318,7 +321,7 @@ int write_page(const cli::StageCall& call) {
         auto contents = report::read_batch_contents(inputs.outs);
         page.answers.notes = contents.notes;
         facts.emplace_back("flights", origin_of_flights(inputs.outs, contents.batches));
-        add_batches(page, call, contents.batches, published);
+        add_batches(page, call, contents.batches, inputs.missions, published);
         add_trends(page, call);
     }
     if (!inputs.missions.empty()) add_missions(page, inputs, published);
@@ -350,7 +353,8 @@ the bands that the batch stored.)"};
     add("max-validation-flights", cli::value("N")->default_value("30"),
         "validate by leave-one-out with no more than N flights: the work grows with their square");
     add("capacity", cli::value<double>("AH"),
-        "the capacity of the flights' battery; without it, what flightwatt battery would say");
+        "the capacity of the flights' battery; without it that of the missions' pack, if it is of these flights, or "
+        "else what flightwatt battery would say");
     add("replay", "fly the missions' schedules on the power that the batch's flights measured (flightwatt replay)");
     add("max-battery-flights", cli::value("N")->default_value("12"),
         "identify the battery from no more than N flights: the work grows with their square");

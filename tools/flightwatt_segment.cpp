@@ -1,6 +1,7 @@
-// flightwatt segment: take-off, cruise and landing of every sortie in a log.
+// flightwatt segment: take-off, cruise and landing of every sortie in a log, or in several.
 
 #include "base/atomic_file.h"
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/file_use.h"
 #include "cli/output/flight_options.h"
@@ -85,12 +86,31 @@ void write(const cli::StageCall& call, const CutFiles& cut) {
     for (const auto& told : cut.told) cli::note(call, told);
 }
 
-int segment_flight(const cli::StageCall& call) {
-    const auto& file = call.inputs.front();
-    auto options = cli::read_flight_options(call);
-    options.power_required = false;
-    if (call.has("cut-phases") && !call.has("cut")) throw UsageError("--cut-phases says how --cut DIR cuts: give that");
-    const auto loaded = cli::load_flight(call, file, options);
+/// What the stage says of its flights.
+struct SegmentedFlights {
+    bool are_several = false;  ///< then rows, and texts of --explain, begin with their flight
+    std::string title;
+    std::string csv;
+    std::string explained;
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+};
+
+/// The rows of a CSV behind a first cell with their flight; its header where `csv` has none yet.
+void append_rows(const std::string& rows, const std::string& flight, std::string& csv) {
+    const bool has_header = !csv.empty();
+    bool is_header = true;
+    for_each_csv_row(rows, flight, [&](const CsvRowView& row) {
+        if (!is_header || !has_header) {
+            csv += is_header ? "flight" : csv_cell(flight);
+            for (const auto& cell : row.cells) csv += "," + csv_cell(cell.text);
+            csv += "\n";
+        }
+        is_header = false;
+    });
+}
+
+void add_flight(const cli::StageCall& call, const std::string& file, const flight::LoadedFlight& loaded,
+                const flight::LoadOptions& options, SegmentedFlights& segmented) {
     const auto& series = loaded.series;
     const auto& phases = loaded.phases;
     const auto& power = loaded.power;
@@ -104,20 +124,75 @@ int segment_flight(const cli::StageCall& call) {
     if (call.has("cut")) {
         write(call, cut_log(call, flight::FlightFile(file, options.most_log_bytes, options.messages), loaded, options));
     }
+    segmented.title = cli::describe_flight(series, phases);
+    if (segmented.are_several)
+        append_rows(flight::phases_csv(series, phases), series.flight, segmented.csv);
+    else
+        segmented.csv = flight::phases_csv(series, phases);
+    if (call.json) segmented.json.push_back(cli::to_json(series, phases, power, loaded.warnings));
+    if (!call.has("explain")) return;
+    if (segmented.are_several)
+        segmented.explained += (segmented.explained.empty() ? "" : "\n") + segmented.title + "\n";
+    segmented.explained += cli::explanation(series, phases, power, screen_of(call));
+}
+
+/// The flights of several logs and folders. One that cannot be used is skipped.
+SegmentedFlights segment_several(const cli::StageCall& call, flight::LoadOptions options) {
+    const auto files = cli::files_of(call, options);
+    std::vector<std::string> names(files.size());
+    std::ranges::transform(files, names.begin(), cli::flight_of_file);
+    options.excluded = cli::with_matching(options.excluded, "exclude", names);
+    cli::refuse_unknown_flights(options, names);
+    SegmentedFlights segmented;
+    segmented.are_several = true;
+    std::size_t used = 0;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (options.excluded.contains(names[i])) continue;
+        try {
+            const auto loaded = flight::load_flight(std::filesystem::path(files[i]), options);
+            cli::warn_of(call, files[i], loaded);
+            add_flight(call, files[i], loaded, options, segmented);
+            ++used;
+        } catch (const flight::OtherAircraftError& error) {
+            cli::note(call, fmt::format("{} is left out: {}; {}", names[i], error.what(), error.hint()));
+        } catch (const InputError& error) {
+            cli::skip_input(call, files[i], error);
+        }
+    }
+    if (used == 0) throw InputError({}, "no flight is left", "see the reasons above");
+    segmented.title = fmt::format("{} flights", used);
+    return segmented;
+}
+
+int segment_flights(const cli::StageCall& call) {
+    auto options = cli::read_flight_options(call);
+    options.power_required = false;
+    if (call.has("cut-phases") && !call.has("cut")) throw UsageError("--cut-phases says how --cut DIR cuts: give that");
+    const auto& file = call.inputs.front();
+    std::error_code none;
+    std::optional<flight::LoadedFlight> only;
+    SegmentedFlights segmented;
+    if (call.inputs.size() > 1 || std::filesystem::is_directory(file, none)) {
+        segmented = segment_several(call, options);
+    } else {
+        only = cli::load_flight(call, file, options);
+        add_flight(call, file, *only, options, segmented);
+    }
     const bool explain = call.has("explain");
     if (!explain || call.output) {
-        write_csv_result(call, flight::phases_csv(series, phases),
-                         {cli::describe_flight(series, phases),
-                          {"sortie", "phase", "start_s", "end_s", "duration_s", "mean_power_w", "energy_wh", "samples",
-                           "gaps", "complete", "start_altitude_m", "end_altitude_m"}});
+        write_csv_result(call, segmented.csv,
+                         {segmented.title,
+                          {"flight", "sortie", "phase", "start_s", "end_s", "duration_s", "mean_power_w", "energy_wh",
+                           "samples", "gaps", "complete", "start_altitude_m", "end_altitude_m"}});
     }
     if (call.json) {
-        cli::print(cli::json_text(cli::to_json(series, phases, power, loaded.warnings)));
+        cli::print(cli::json_text(segmented.are_several ? segmented.json : segmented.json.front()));
     } else if (explain) {
-        cli::print(cli::explanation(series, phases, power, screen_of(call)));
+        cli::print(segmented.explained);
     }
+    if (!only) return cli::ok;
     if (const auto plot = terminal_plot(call, "altitude [m] over time")) {
-        cli::print(altitude_profile(*plot, series, phases));
+        cli::print(altitude_profile(*plot, only->series, only->phases));
     }
     return cli::ok;
 }
@@ -126,16 +201,17 @@ int segment_flight(const cli::StageCall& call) {
 
 int main(int argc, char** argv) {
     cli::StageDefinition stage{
-        "segment", "FLIGHT.data|SERIES.csv",
+        "segment", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from
 lift-off until the height held is reached, cruise, landing from where that height is left until
 touchdown. TAKEOFF messages, mode and block stand beside each edge as witnesses; they decide nothing.
-A log without measured power is segmented too; its columns of power are then empty.)"};
-    stage.max_inputs = 1;
+A log without measured power is segmented too; its columns of power are then empty. Of several logs, or of
+a FOLDER of logs or of flightwatt batch, each row begins with its flight, and --json is a list. A log that
+cannot be used is named and skipped, and the exit code is then 3.)"};
     stage.shows_table = true;
     stage.options.add_options()("explain", "show the reasons for each edge, and how good the power record is")(
         "cut", cli::output_file("DIR"), "write each sortie, with the ground beside it, as a log of its own into DIR")(
         "cut-phases", "with --cut: each phase instead");
     cli::add_flight_options(stage.options);
-    return cli::run_stage(argc, argv, stage, segment_flight);
+    return cli::run_stage(argc, argv, stage, segment_flights);
 }

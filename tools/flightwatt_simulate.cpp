@@ -59,6 +59,7 @@ int simulate_mission(const cli::StageCall& call) {
         cli::print(cli::json_text(cli::to_json(summary)));
     } else {
         cli::note(call, describe(summary));
+        cli::note_power_model(call, setup_of(mission));
         if (summary.samples) cli::note(call, describe(*summary.samples));
     }
     return cli::ok;

@@ -3,6 +3,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "batch/trend.h"
+#include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/json_text.h"
 #include "cli/screen_table.h"
@@ -101,8 +102,14 @@ Json trends_json(const std::vector<report::FlownFlight>& flights, const std::vec
         const auto& trend = row.answer.trend;
         item["dated_flights"] = trend ? Json(trend->flights) : Json(nullptr);
         item["median"] = trend ? Json(trend->median) : Json(nullptr);
-        item["per_day"] = trend ? Json(trend->per_day) : Json(nullptr);
-        item["per_day_interval"] = trend ? Json::array({trend->low_per_day, trend->high_per_day}) : Json(nullptr);
+        const bool knows_unit = trend && !row.level_is_guess;
+        item["per_day"] = knows_unit ? Json(trend->per_day) : Json(nullptr);
+        item["per_day_interval"] = knows_unit ? Json::array({trend->low_per_day, trend->high_per_day}) : Json(nullptr);
+        const auto relative = trend ? relative_trend(*trend) : std::nullopt;
+        item["percent_per_day"] = relative ? Json(relative->percent_per_day) : Json(nullptr);
+        item["percent_per_day_interval"] =
+            relative ? Json::array({relative->low_percent_per_day, relative->high_percent_per_day}) : Json(nullptr);
+        item["level_is_guess"] = row.level_is_guess;
         item["significant"] = trend ? Json(is_significant(*trend)) : Json(nullptr);
         item["why_not"] = row.answer.why_not;
         json["trends"].push_back(std::move(item));
@@ -126,11 +133,11 @@ void say_what_changes(const cli::StageCall& call, const std::vector<report::Flow
         if (!trend) continue;
         ++judged;
         if (!is_significant(*trend)) continue;
-        changing.push_back(
-            fmt::format("{} of {} {} by {:.3g} in 30 days ({:.3g} to {:.3g})", row.quantity, row.aircraft,
-                        trend_verdict(row), report::trend_days * std::abs(trend->per_day),
-                        report::trend_days * std::min(std::abs(trend->low_per_day), std::abs(trend->high_per_day)),
-                        report::trend_days * std::max(std::abs(trend->low_per_day), std::abs(trend->high_per_day))));
+        const auto [slope, low, high, unit] = shown_slope(row);
+        const auto [least, most] = std::minmax({std::abs(low), std::abs(high)});
+        changing.push_back(fmt::format("{} of {} {} by {:.3g}{} in 30 days ({:.3g} to {:.3g}{})", row.quantity,
+                                       row.aircraft, trend_verdict(row), std::abs(slope),
+                                       unit.empty() ? "" : " % of its level", least, most, unit));
     }
     for (const auto& text : changing) cli::note(call, text);
     if (judged == 0)
@@ -157,6 +164,7 @@ void write_figure_files(const cli::StageCall& call, const std::vector<report::Ai
 }
 
 int show_trends(const cli::StageCall& call) {
+    const auto capacity_ah = cli::capacity_option(call);
     std::optional<report::WebFiles> web;  // read before the work: where they are missing, that is told at once
     if (call.has("figures")) web = report::read_web_files(report::web_folder());
     auto flights = read_flights(call);
@@ -165,7 +173,7 @@ int show_trends(const cli::StageCall& call) {
         return std::pair(flight.aircraft, flight.facts.start_clock_s.value_or(0.0));
     });
     constexpr std::size_t most_records = 60;
-    for (const auto& note : add_pack_wear(flights, most_records)) cli::note(call, note);
+    for (const auto& note : add_pack_wear(flights, most_records, capacity_ah)) cli::note(call, note);
     const auto trends = trends_of(flights);
     const auto screen = screen_of(call);
     write_csv_result(call, flights_csv(flights),
@@ -192,6 +200,9 @@ tell it, and the charge drawn, as CSV; and whether they rise or fall over the fl
 intervals, each aircraft by itself. A flight that is in two folders of batch counts once.)" +
             std::string(cli::several_flights_text)};
     stage.shows_table = true;
+    stage.options.add_options()("capacity", cli::value<double>("AH"),
+                                "the pack's capacity, the mean over these flights; without it, the trend of capacities "
+                                "is in percent where no flight tells their level");
     stage.options.add_options()("mix-aircraft", "take flights of several aircraft: each gets its own trends");
     stage.options.add_options()("figures", cli::output_file("DIR"),
                                 "draw each aircraft's trends into DIR, as flightwatt report --figures does");

@@ -93,7 +93,8 @@ int validate_flights(const cli::StageCall& call) {
     const auto folds = cli::count_option(call, "folds", 2);
     const auto flights = read_flights(call, mechanical::samples_needed(options.phases.order));
     cli::note_folds(call, flights.size(), folds);
-    const auto validated = validate(flights, options, covariates, folds);
+    auto validated = validate(flights, options, covariates, folds);
+    for (const auto& rejected : remove_rejected(validated)) cli::note(call, rejected);
     const auto screen = call.output ? cli::Screen() : screen_of(call);
     cli::write_result(call, cli::validation_text(validated, covariates, until_s.has_value(), screen));
     if (call.json) {
@@ -127,7 +128,8 @@ the cruise and the landing are predicted, by the models above as before the flig
   in_flight_path      the physical model at this flight's own level, on the airspeed and climb of the
                       rest as they were flown, as if they had been known
 Errors in percent are parts of the phase's measured energy, the flown part included; none for landing,
-whose power is near zero. Bias is predicted less measured.)" +
+whose power is near zero. Bias is predicted less measured. airspeed_cubed and physical are rejected, and not
+shown, where the mean power predicts better.)" +
             std::string(cli::several_flights_text)};
     stage.shows_table = true;
     cli::add_fit_options(stage.options);

@@ -69,4 +69,11 @@ std::string toml_reals(const std::vector<double>& values) {
     return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
+std::string toml_strings(const std::vector<std::string>& texts) {
+    std::vector<std::string> quoted;
+    quoted.reserve(texts.size());
+    for (const auto& text : texts) quoted.push_back(toml_string(text));
+    return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
 }  // namespace flightwatt

@@ -13,5 +13,6 @@ std::string toml_string(std::string_view text);
 /// The shortest text that reads back as the same double, and as a float rather than an integer.
 std::string toml_real(double value);
 std::string toml_reals(const std::vector<double>& values);
+std::string toml_strings(const std::vector<std::string>& texts);
 
 }  // namespace flightwatt

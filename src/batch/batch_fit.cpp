@@ -66,7 +66,7 @@ mechanical::ModelFitOptions options_from(const Json& json) {
 }
 
 /// To be raised with every change of the fit that changes a model: others are then made anew.
-constexpr auto fit_number = "fit 1";
+constexpr auto fit_number = "fit 2";
 
 constexpr auto copies_key = "copies";
 constexpr auto copies_without_power_key = "copies_without_power";

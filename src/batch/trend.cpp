@@ -1,6 +1,7 @@
 #include "batch/trend.h"
 
 #include "base/statistics.h"
+#include "base/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,6 +50,12 @@ std::size_t outside(std::span<const DatedValue> values, std::size_t pairs) {
 }
 
 }  // namespace
+
+std::optional<RelativeTrend> relative_trend(const Trend& trend) {
+    if (!(trend.median > 0.0)) return std::nullopt;
+    const auto percent = [&](double per_day) { return units::percent_of(per_day, trend.median); };
+    return RelativeTrend{percent(trend.per_day), percent(trend.low_per_day), percent(trend.high_per_day)};
+}
 
 TrendAnswer trend_over(std::span<const DatedValue> values) {
     if (values.size() < least_trend_flights)

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -17,6 +19,7 @@ namespace {
 constexpr double least_time_constant_s = 0.1;
 constexpr double greatest_time_constant_s = 1e5;
 constexpr double greatest_number = 1e6;  // squared and divided, values below stay numbers
+constexpr int most_cells = 100;
 
 OpenCircuitVoltage read_curve(const TomlTable& table) {
     OpenCircuitVoltage curve{table.numbers("soc_percent"), table.numbers("voltage_v")};
@@ -64,29 +67,56 @@ TheveninCircuit read_circuit(const TomlTable& table, BatteryIntervals& intervals
     return circuit;
 }
 
-/// The interval of a key, which has to hold the key's value.
-std::optional<Interval> read_interval(const TomlTable& table, std::string_view key, double value) {
-    if (!table.has(key)) return std::nullopt;
+/// The interval of a key, which has to hold the value.
+Interval read_interval(const TomlTable& table, std::string_view key, double value) {
     const auto ends = table.numbers(key);
     if (ends.size() != 2 || !(ends[0] <= value && value <= ends[1])) {
         throw InputError(table.where(key), fmt::format("this is no interval around {} = {}", key, value),
                          "expected [LOW, HIGH]");
     }
-    return Interval{ends[0], ends[1]};
+    return {ends[0], ends[1]};
+}
+
+std::optional<Interval> optional_interval(const TomlTable& table, std::string_view key, double value) {
+    if (!table.has(key)) return std::nullopt;
+    return read_interval(table, key, value);
+}
+
+FlightEstimate read_estimate(const TomlTable& table) {
+    FlightEstimate estimate;
+    estimate.capacity_ah = number_in(more_than(0.0), table, "capacity_ah");
+    estimate.capacity_interval_ah = read_interval(table, "capacity_interval_ah", estimate.capacity_ah);
+    if (table.has("flights")) estimate.flights = table.strings("flights");
+    if (table.has("soc_percent") || table.has("voltage_v")) estimate.open_circuit = read_curve(table);
+    table.refuse_unknown_keys();
+    return estimate;
 }
 
 void read_intervals(const TomlTable& table, Battery& battery) {
     auto& intervals = battery.intervals;
-    intervals.capacity_ah = read_interval(table, "capacity_ah", battery.capacity_ah);
-    intervals.resistance_ohm = read_interval(table, "resistance_ohm", battery.resistance_ohm);
+    intervals.capacity_ah = optional_interval(table, "capacity_ah", battery.capacity_ah);
+    intervals.resistance_ohm = optional_interval(table, "resistance_ohm", battery.resistance_ohm);
     if (battery.thevenin) {
         const auto& circuit = *battery.thevenin;
-        intervals.rc_resistance_ohm = read_interval(table, "rc_resistance_ohm", circuit.rc_resistance_ohm);
-        intervals.rc_time_constant_s = read_interval(table, "rc_time_constant_s", circuit.rc_time_constant_s);
+        intervals.rc_resistance_ohm = optional_interval(table, "rc_resistance_ohm", circuit.rc_resistance_ohm);
+        intervals.rc_time_constant_s = optional_interval(table, "rc_time_constant_s", circuit.rc_time_constant_s);
     } else {
-        intervals.voltage_v = read_interval(table, "voltage_v", battery.voltage_v);
+        intervals.voltage_v = optional_interval(table, "voltage_v", battery.voltage_v);
     }
     table.refuse_unknown_keys();
+}
+
+void read_between_flights(const TomlTable& table, BatteryIntervals& intervals) {
+    constexpr std::uint64_t fewest = 2;  // one does not differ
+    intervals.resistance_scatter = ResistanceScatter{number_in(at_least(0.0), table, "resistance_sd_ohm"),
+                                                     static_cast<std::size_t>(count_in(table, "flights", fewest))};
+    table.refuse_unknown_keys();
+}
+
+std::string between_flights_lines(const std::optional<ResistanceScatter>& scatter) {
+    if (!scatter) return "";
+    return fmt::format("\n# how flights differ\n[between_flights]\nflights = {}\nresistance_sd_ohm = {}\n",
+                       scatter->flights, toml_real(scatter->sd_ohm));
 }
 
 std::string interval_lines(const BatteryIntervals& intervals) {
@@ -98,6 +128,21 @@ std::string interval_lines(const BatteryIntervals& intervals) {
                                         {"rc_time_constant_s", intervals.rc_time_constant_s}})
         if (interval) lines += fmt::format("{} = {}\n", key, toml_reals({interval->low, interval->high}));
     return lines.empty() ? "" : "\n# 95 %\n[intervals]\n" + lines;
+}
+
+std::string curve_lines(const OpenCircuitVoltage& curve) {
+    return fmt::format("soc_percent = {}\nvoltage_v = {}\n", toml_reals(curve.soc_percent),
+                       toml_reals(curve.voltage_v));
+}
+
+std::string estimate_lines(const FlightEstimate& estimate) {
+    const auto& [low, high] = estimate.capacity_interval_ah;
+    auto lines = fmt::format(
+        "\n# The capacity that the flights indicate, and the curve over it\n[flight_estimate]\n"
+        "capacity_ah = {}\ncapacity_interval_ah = {}\n",
+        toml_real(estimate.capacity_ah), toml_reals({low, high}));
+    if (!estimate.flights.empty()) lines += fmt::format("flights = {}\n", toml_strings(estimate.flights));
+    return estimate.open_circuit.soc_percent.empty() ? lines : lines + curve_lines(estimate.open_circuit);
 }
 
 double limit_at_w(const Battery& battery, double voltage_v) {
@@ -179,8 +224,18 @@ Battery battery_from(const TomlTable& table) {
     if (model == "paper") battery.voltage_v = number_in(more_than_up_to(0.0, greatest_number), table, "voltage_v");
     battery.resistance_ohm = number_in(at_least(0.0), table, "resistance_ohm");
     battery.capacity_ah = number_in(more_than_up_to(0.0, max_capacity_ah), table, "capacity_ah", capacity_hint);
-    if (model == "thevenin") battery.thevenin = read_circuit(table, battery.intervals);
+    if (table.has("cells")) {
+        const auto cells = count_in(table, "cells");
+        require_in(between(1.0, most_cells), static_cast<double>(cells), "cells", table.where("cells"));
+        battery.cells = static_cast<int>(cells);
+    }
+    if (model == "thevenin") {
+        battery.thevenin = read_circuit(table, battery.intervals);
+        if (const auto estimate = table.optional_table("flight_estimate"))
+            battery.flight_estimate = std::make_shared<FlightEstimate>(read_estimate(*estimate));
+    }
     if (const auto intervals = table.optional_table("intervals")) read_intervals(*intervals, battery);
+    if (const auto between = table.optional_table("between_flights")) read_between_flights(*between, battery.intervals);
     table.refuse_unknown_keys();
     return battery;
 }
@@ -190,6 +245,29 @@ Battery read_battery(const std::filesystem::path& path) {
     refuse_other_kinds(root, FileKind::battery);
     require_known_format(root);
     return battery_from(root);
+}
+
+std::optional<Battery> estimated_by_flights(const Battery& battery) {
+    if (!battery.flight_estimate) return std::nullopt;
+    const auto& [capacity_ah, interval_ah, flights, open_circuit] = *battery.flight_estimate;
+    if (interval_ah.low <= battery.capacity_ah && battery.capacity_ah <= interval_ah.high) return std::nullopt;
+    auto estimated = battery;
+    estimated.capacity_ah = capacity_ah;
+    estimated.intervals.capacity_ah = interval_ah;
+    if (!open_circuit.soc_percent.empty()) {
+        estimated.thevenin.value().open_circuit = open_circuit;
+        estimated.intervals.open_circuit_standard_error_v.clear();  // those are of the other curve's knots
+    }
+    return estimated;
+}
+
+std::string capacity_warning(const Battery& battery) {
+    if (!estimated_by_flights(battery)) return "";
+    const auto& [low, high] = battery.flight_estimate->capacity_interval_ah;
+    return fmt::format(
+        "the capacity of {:.4g} Ah contradicts the flights, which indicate {:.3g} Ah ({:.3g} to {:.3g} Ah in 95 %): "
+        "check the pack's label, or give no capacity to use the estimate of the flights",
+        battery.capacity_ah, battery.flight_estimate->capacity_ah, low, high);
 }
 
 std::vector<std::string> battery_warnings(const Battery& battery) {
@@ -207,6 +285,7 @@ std::vector<std::string> battery_warnings(const Battery& battery) {
         warnings.push_back(fmt::format("battery: {:.4g} Ah is the capacity of no small drone's pack: is its unit Ah?",
                                        battery.capacity_ah));
     }
+    if (const auto warning = capacity_warning(battery); !warning.empty()) warnings.push_back("battery: " + warning);
     if (const double limit_w = power_limit_w(battery); limit_w < least_limit_w) {
         warnings.push_back(
             fmt::format("battery: it cannot deliver more than {:.3g} W: is resistance_ohm in ohm?", limit_w));
@@ -220,17 +299,18 @@ std::string to_toml(const Battery& battery) {
     if (!battery.thevenin) text += fmt::format("voltage_v = {}\n", toml_real(battery.voltage_v));
     text += fmt::format("capacity_ah = {}\nresistance_ohm = {}\n", toml_real(battery.capacity_ah),
                         toml_real(battery.resistance_ohm));
+    if (battery.cells) text += fmt::format("cells = {}\n", *battery.cells);
     if (battery.thevenin) {
         const auto& circuit = *battery.thevenin;
         text += fmt::format("rc_resistance_ohm = {}\n", toml_real(circuit.rc_resistance_ohm));
         if (circuit.rc_resistance_ohm > 0.0)
             text += fmt::format("rc_time_constant_s = {}\n", toml_real(circuit.rc_time_constant_s));
-        text += fmt::format("\n[open_circuit]\nsoc_percent = {}\nvoltage_v = {}\n",
-                            toml_reals(circuit.open_circuit.soc_percent), toml_reals(circuit.open_circuit.voltage_v));
+        text += "\n[open_circuit]\n" + curve_lines(circuit.open_circuit);
         const auto& errors = battery.intervals.open_circuit_standard_error_v;
         if (!errors.empty()) text += fmt::format("standard_error_v = {}\n", toml_reals(errors));
+        if (battery.flight_estimate) text += estimate_lines(*battery.flight_estimate);
     }
-    return text + interval_lines(battery.intervals);
+    return text + interval_lines(battery.intervals) + between_flights_lines(battery.intervals.resistance_scatter);
 }
 
 }  // namespace flightwatt::battery

@@ -2,7 +2,9 @@
 
 #include "base/toml_reader.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,14 +34,32 @@ struct Interval {
     bool operator==(const Interval&) const = default;
 };
 
+/// How the series resistance differs between flights of one pack: by temperature, rest and age. Of a flight to come, a
+/// Student's t with as many degrees of freedom as flights, as what is known beforehand counts as one more
+/// (resistance_scatter_ohm).
+struct ResistanceScatter {
+    double sd_ohm = 0.0;
+    std::size_t flights = 0;  ///< two or more
+    bool operator==(const ResistanceScatter&) const = default;
+};
+
 /// How well the parameters are known, each where the file says it.
 struct BatteryIntervals {
     std::optional<Interval> capacity_ah;
-    std::optional<Interval> voltage_v;  ///< of the paper's source
-    std::optional<Interval> resistance_ohm;
+    std::optional<Interval> voltage_v;       ///< of the paper's source
+    std::optional<Interval> resistance_ohm;  ///< of the mean of the flights
+    std::optional<ResistanceScatter> resistance_scatter;
     std::optional<Interval> rc_resistance_ohm;
     std::optional<Interval> rc_time_constant_s;
     std::vector<double> open_circuit_standard_error_v;  ///< one a knot of the curve, or empty
+};
+
+/// What the flights of an identified pack indicate of its capacity, whatever capacity was given.
+struct FlightEstimate {
+    double capacity_ah = 0.0;
+    Interval capacity_interval_ah;  ///< 95 %
+    std::vector<std::string> flights = {};
+    OpenCircuitVoltage open_circuit = {};  ///< over that capacity; without knots: the battery's own
 };
 
 /// A battery as an equivalent circuit behind a series resistor: an ideal source (Eqs. 8-10 of the paper), or
@@ -51,6 +71,8 @@ struct Battery {
     double capacity_ah = 0.0;                                ///< Q_c
     std::optional<TheveninCircuit> thevenin = std::nullopt;  ///< none: the paper's
     BatteryIntervals intervals = {};
+    std::optional<int> cells = std::nullopt;                          ///< in series
+    std::shared_ptr<const FlightEstimate> flight_estimate = nullptr;  ///< of a Thévenin circuit; drawn flights share it
 };
 
 /// What a battery remembers.
@@ -91,8 +113,15 @@ double delivered_current_a(const Battery& battery, double power_w, const Battery
 Battery read_battery(const std::filesystem::path& path);
 Battery battery_from(const TomlTable& table);
 
+/// The battery with the capacity and the curve that its flights indicate, where its own capacity is outside of their
+/// 95 % interval; else none.
+std::optional<Battery> estimated_by_flights(const Battery& battery);
+
+/// "the capacity of 5 Ah contradicts the flights, which indicate ..."; empty where estimated_by_flights has none.
+std::string capacity_warning(const Battery& battery);
+
 /// What no pack of a small drone has, a line each: a full voltage of less than 2.5 V or of more than 14 LiPo cells (60
-/// V), a capacity of less than 0.05 or more than 200 Ah (mAh, mostly), a power limit below 1 W.
+/// V), a capacity of less than 0.05 or more than 200 Ah (mAh, mostly), a power limit below 1 W; and capacity_warning.
 std::vector<std::string> battery_warnings(const Battery& battery);
 
 /// The battery as read_battery reads it.

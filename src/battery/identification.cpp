@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <utility>
@@ -24,10 +25,8 @@ namespace {
 constexpr double unreadable_v = 0.01;  // smaller differences between resting voltages are none
 constexpr double tied_ah = 0.001;  // the counter is believed before a voltage whose slow relaxation no circuit follows
 
-int cells_of(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
-    const double highest_v =
-        std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
-    return options.cells.value_or(lipo_cells(highest_v));
+double highest_resting_v(std::span<const DischargeRecord> records) {
+    return std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
 }
 
 /// A circuit whose flights are chained, and why each of them is.
@@ -173,6 +172,7 @@ Battery battery_of(const BatteryIdentification& result, const ExtendedCurve& ext
     battery.name = name;
     battery.resistance_ohm = fit.resistance_ohm;
     battery.capacity_ah = result.capacity.value_ah;
+    battery.cells = result.cells;
     battery.thevenin = TheveninCircuit{extended.curve, fit.rc_resistance_ohm, std::max(0.1, fit.rc_time_constant_s)};
     battery.intervals.capacity_ah = result.capacity.interval_ah;
     battery.intervals.resistance_ohm = result.errors.resistance_ohm;
@@ -188,7 +188,7 @@ Battery battery_of(const BatteryIdentification& result, const ExtendedCurve& ext
 Told told_by(std::span<const DischargeRecord> records, const IdentificationOptions& options,
              std::span<const double> begin_ah = {}) {
     if (records.empty()) throw NoAnswerError("no flight is left to identify a battery from");
-    const int cells = cells_of(records, options);
+    const int cells = options.cells.value_or(lipo_cells(highest_resting_v(records)));
     Told told;
     told.chained = chained_fit(records, cells, options, begin_ah);
     told.posterior = match_chart(shown_curve(told.chained), options.capacity_ah);
@@ -197,6 +197,7 @@ Told told_by(std::span<const DischargeRecord> records, const IdentificationOptio
     result.fit = chained.aligned.fit;
     result.errors = chained.errors;
     result.cells = cells;
+    result.cells_are_given = options.cells.has_value();
     result.capacity = capacity_of(result.fit.knots_ah.back(), posterior, options.capacity_ah);
     result.missing_ah = probable_missing_ah(posterior);
     const auto extended = extended_curve(result.fit, result.errors.open_circuit_standard_error_v,
@@ -204,7 +205,34 @@ Told told_by(std::span<const DischargeRecord> records, const IdentificationOptio
     result.known_down_to_percent = extended.known_down_to_percent;
     result.known_up_to_percent = extended.known_up_to_percent;
     result.battery = battery_of(result, extended, options.name);
+    result.battery.intervals.resistance_scatter = resistance_scatter(chained.resistances, result.fit.resistance_ohm);
     return told;
+}
+
+/// The capacity that the flights indicate without the one that is given; none where they drew too little.
+std::shared_ptr<const FlightEstimate> flight_estimate(const Told& told) {
+    const auto& [identification, chained, posterior] = told;
+    const auto& [fit, capacity] = std::tie(identification.fit, identification.capacity);
+    auto estimate = std::make_shared<FlightEstimate>();
+    estimate->flights.reserve(chained.aligned.records.size());
+    for (const auto& [record, offset_ah] : chained.aligned.records) estimate->flights.push_back(record->flight);
+    if (capacity.interval_ah) {
+        estimate->capacity_ah = capacity.value_ah;
+        estimate->capacity_interval_ah = *capacity.interval_ah;
+        return estimate;
+    }
+    const auto free = match_chart(shown_curve(chained), std::nullopt);
+    try {
+        const auto free_capacity = capacity_of(fit.knots_ah.back(), free, std::nullopt);
+        estimate->capacity_ah = free_capacity.value_ah;
+        estimate->capacity_interval_ah = free_capacity.interval_ah.value();
+        estimate->open_circuit = extended_curve(fit, identification.errors.open_circuit_standard_error_v,
+                                                estimate->capacity_ah, probable_missing_ah(free))
+                                     .curve;
+        return estimate;
+    } catch (const NoAnswerError&) {
+        return nullptr;
+    }
 }
 
 /// The charge of the fitted curve, which falls, at this voltage; 0 to the last knot.
@@ -319,9 +347,17 @@ LeftOutCheck checked(const Told& told, const DischargeRecord& record, bool chain
 
 }  // namespace
 
+double highest_resting_v(const BatteryIdentification& identified) {
+    return std::ranges::max(identified.flights, {}, &IdentifiedFlight::resting_voltage_v).resting_voltage_v;
+}
+
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
-    auto [result, chained, posterior] = told_by(records, options);
+    if (options.cells && !records.empty()) require_possible_cells(highest_resting_v(records), *options.cells);
+    const auto told = told_by(records, options);
+    const auto& [identification, chained, posterior] = told;
+    auto result = identification;
     result.flights = identified_flights(chained, posterior, result.missing_ah);
+    result.battery.flight_estimate = flight_estimate(told);
     std::vector<std::optional<FlightResistance>> in_order;
     for (const auto f : order_in_time(chained.aligned.records)) in_order.push_back(chained.resistances[f]);
     result.trend = resistance_trend(in_order);
@@ -339,6 +375,8 @@ std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> record
     if (records.size() < 2) return {};
     const auto folds = folds_of(records.size(), std::max<std::size_t>(2, most_folds));
     const auto all = told_by(records, options).chained.aligned;
+    auto of_others = options;
+    of_others.cells = all.fit.weights.cells;
     std::vector<LeftOutCheck> checks(records.size());
     std::mutex mutex;  // guards what follows
     std::size_t done = 0;
@@ -350,7 +388,7 @@ std::vector<LeftOutCheck> leave_each_out(std::span<const DischargeRecord> record
             others.push_back(records[f]);
             begin_ah.push_back(all.records[f].initial_charge_ah);
         }
-        const auto told = told_by(others, options, begin_ah);
+        const auto told = told_by(others, of_others, begin_ah);
         for (const auto k : folds[fold]) checks[k] = checked(told, records[k], options.chain);
         if (!progress) return;
         const std::lock_guard lock(mutex);

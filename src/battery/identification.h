@@ -60,6 +60,7 @@ struct BatteryIdentification {
     CircuitErrors errors;
     Capacity capacity;
     int cells = 0;
+    bool cells_are_given = false;
     double missing_ah = 0.0;             ///< from the full pack, where the curve begins
     double known_down_to_percent = 0.0;  ///< state of charge; below, the curve is the LiPo chart's
     double known_up_to_percent = 100.0;  ///< above, likewise
@@ -67,10 +68,14 @@ struct BatteryIdentification {
     std::optional<ResistanceTrend> trend;  ///< over the flights in the order of their clocks, else as given
 };
 
+/// [V] of the fullest flight.
+double highest_resting_v(const BatteryIdentification& identified);
+
 /// Identifies the Thévenin circuit of a battery from flights. What was missing from the pack is a parameter of each flight
 /// in the same least squares; flights on one pack are chained (aligned_fit.h, pack_link.h). Capacity, and what was missing
 /// from the fullest flight, are laid onto the LiPo chart (chart_match.h): a fullest flight that rests as a full pack may
-/// counts as full. Throws NoAnswerError where the flights determine no such circuit, and as capacity_of does.
+/// counts as full. The battery holds the flights' own estimate of the capacity even if another is given. Throws
+/// NoAnswerError where the flights determine no such circuit, and as capacity_of and require_possible_cells do.
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options);
 
 /// At every sample of a record; the state of charge may fall below 0 where the capacity is too small.

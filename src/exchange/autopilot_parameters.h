@@ -17,7 +17,7 @@ struct EstimatorInput {
     double compute_w = 0.0;                      ///< mean power of the computer, on top of the model's
     std::optional<double> idle_w = {};           ///< while the motor stands; default: the computer's
     std::optional<double> reserve_percent = {};  ///< of charge that should be left
-    std::optional<int> cells_in_series = {};     ///< default: as few as 4.25 V a cell allow
+    std::optional<int> cells_in_series = {};     ///< default: the battery's, else as few as 4.25 V a cell allow
     int cells_in_parallel = 1;
 };
 

@@ -48,6 +48,9 @@ class LiveFlight::Watch {
           choice_(options_.aircraft_id) {
         if (basis_ && basis_->path && !basis_->remaining_s && basis_->path->flown().duration_s > 0.0)
             places_.emplace(*basis_->path);
+        if (!basis_ || !basis_->battery) return;
+        for (const auto& warning : battery_warnings(*basis_->battery))
+            battery_warnings_.push_back(fmt::format("{}: {}", basis_->battery_file, warning));
     }
 
     void receive(const IncomingMessage& message, double arrival_s) {
@@ -140,6 +143,7 @@ class LiveFlight::Watch {
     std::optional<double> looked_s_;
     bool ended_ = false;
     std::vector<std::string> warnings_;
+    std::vector<std::string> battery_warnings_;  ///< of its file
     flight::FlightPhases phases_;
     std::string not_segmented_;  ///< why; empty if it is
     std::optional<LiveState> last_predicted_;
@@ -174,6 +178,7 @@ LiveState LiveFlight::Watch::look(double silent_s) {
     }
     decide(state);
     state.warnings.insert(state.warnings.begin(), warnings_.begin(), warnings_.end());
+    state.warnings.insert(state.warnings.begin(), battery_warnings_.begin(), battery_warnings_.end());
     state.unusable.insert(store_.skipped().begin(), store_.skipped().end());
     if (clocks_.unconfirmed() > 0) state.unusable["a time that no other line confirms"] = clocks_.unconfirmed();
     if (const auto steps = clocks_.steps_back(); steps > 0)

@@ -76,7 +76,7 @@ struct LiveState {
     std::optional<LiveDecision> decision;
 
     std::vector<Alarm> alarms;
-    std::vector<std::string> warnings;  ///< what is known of the record, and of the prediction
+    std::vector<std::string> warnings;  ///< of the battery's file, the record and the prediction
     std::size_t messages = 0;
     std::size_t restarts = 0;  ///< of the clock
     double silent_s = 0.0;

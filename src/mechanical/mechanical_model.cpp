@@ -7,6 +7,36 @@
 #include <cmath>
 
 namespace flightwatt::mechanical {
+namespace {
+
+bool counts(const std::optional<PhaseContribution>& part) { return part && part->weight > 0.0 && part->mean_power_w; }
+
+void use_mean_power(MechanicalModel& model, flight::Phase phase) {
+    std::vector<double> powers_w;
+    for (const auto& flight : model.flights)
+        if (const auto& part = flight.phases[phase]; counts(part)) powers_w.push_back(*part->mean_power_w);
+    if (powers_w.empty()) return;
+    for (auto& flight : model.flights)
+        if (auto& part = flight.phases[phase])
+            part->weight = counts(part) ? 1.0 / static_cast<double>(powers_w.size()) : 0.0;
+    auto& mean_power = model.phases[phase];
+    mean_power.fourier = {mean_power.fourier.omega_rad_per_s, mean(powers_w), {}, {}};
+    mean_power.mean_curve = mean_power.not_negative = false;
+    mean_power.errors.reset();  // the curve's
+    mean_power.spread.reset();
+}
+
+}  // namespace
+
+std::string_view default_model(const ModelValidation& validation) {
+    return validation.prefers_curve ? "fourier" : "constant_mean";
+}
+
+MechanicalModel with_default_power(MechanicalModel model) {
+    if (!model.validation || model.validation->prefers_curve) return model;
+    for (const auto phase : flight::all_phases) use_mean_power(model, phase);
+    return model;
+}
 
 std::string_view to_string(FrequencyBound bound) {
     return bound == FrequencyBound::low ? "low" : bound == FrequencyBound::high ? "high" : "none";

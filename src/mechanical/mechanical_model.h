@@ -133,6 +133,22 @@ struct FlightContribution {
     flight::PerPhase<std::optional<PhaseContribution>> phases;
 };
 
+/// How one model predicted flights that were left out of the fit.
+struct HeldOutScore {
+    std::string model;  ///< as leave_one_out calls it
+    std::size_t flights = 0;
+    double mean_absolute_error_percent = 0.0;  ///< of the flights' energy
+};
+
+/// How the models of a file predict flights (validation_of).
+struct ModelValidation {
+    bool prefers_curve = false;        ///< to the mean power of each phase, where nothing states an airspeed
+    std::vector<HeldOutScore> scores;  ///< without rejected models
+};
+
+/// The model that missions use where they state no airspeed, as leave_one_out calls it.
+std::string_view default_model(const ModelValidation& validation);
+
 /// Power over a whole flight (Eqs. 2-4), with the flights it was made from.
 struct MechanicalModel {
     std::string name;
@@ -140,8 +156,13 @@ struct MechanicalModel {
     std::string weighting;    ///< "uniform", "inverse-variance", "agreement", "by hand" or "published"
     flight::PerPhase<PhaseModel> phases;
     std::vector<FlightContribution> flights;
-    std::optional<PhysicalModel> physical = {};  ///< power of the motion, beside that of time; absent unless fitted
+    std::optional<PhysicalModel> physical = {};      ///< power of the motion, beside that of time; absent unless fitted
+    std::optional<ModelValidation> validation = {};  ///< absent in files of fit, and of earlier versions
 };
+
+/// The model with the power that missions use: each phase's mean power, every flight counting the same, if its
+/// validation does not prefer the curve.
+MechanicalModel with_default_power(MechanicalModel model);
 
 /// How a phase flown in another time than the model's is read.
 enum class PhaseClock {

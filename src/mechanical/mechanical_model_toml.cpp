@@ -270,6 +270,36 @@ FlightContribution read_flight(const TomlTable& table) {
     return flight;
 }
 
+HeldOutScore read_score(const TomlTable& table) {
+    HeldOutScore score{table.string("model"), count_in(table, "flights", 1),
+                       not_negative(table, "mean_absolute_error_percent")};
+    table.refuse_unknown_keys();
+    return score;
+}
+
+ModelValidation read_validation(const TomlTable& table) {
+    ModelValidation validation;
+    const auto name = table.string("default_model");
+    validation.prefers_curve = name == default_model({.prefers_curve = true, .scores = {}});
+    if (name != default_model(validation))
+        throw InputError(table.where("default_model"),
+                         fmt::format("default_model = '{}', expected fourier or constant_mean", name));
+    for (const auto& score : table.tables("scores")) validation.scores.push_back(read_score(score));
+    table.refuse_unknown_keys();
+    return validation;
+}
+
+std::string validation_toml(const ModelValidation& validation) {
+    auto text = fmt::format(
+        "\n# How far off each model was on flights left out of the fit in turn. Missions use default_model where they\n"
+        "# state no airspeed\n[validation]\ndefault_model = {}\n",
+        toml_string(default_model(validation)));
+    for (const auto& score : validation.scores)
+        text += fmt::format("[[validation.scores]]\nmodel = {}\nflights = {}\nmean_absolute_error_percent = {}\n",
+                            toml_string(score.model), score.flights, toml_real(score.mean_absolute_error_percent));
+    return text;
+}
+
 std::string level_law_toml(std::string_view key, const LevelLaw& law) {
     return fmt::format(
         "{} = {{ covariate = {}, flights = {}, mean = {}, sd = {}, least = {}, most = {}, "
@@ -335,6 +365,7 @@ MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
     model.weighting = root.optional_string("weighting").value_or("");
     for (const auto phase : flight::all_phases) model.phases[phase] = read_phase(root.table(to_string(phase)));
     for (const auto& flight : root.tables("flights")) model.flights.push_back(read_flight(flight));
+    if (const auto validation = root.optional_table("validation")) model.validation = read_validation(*validation);
     if (const auto physical = root.optional_table("physical")) model.physical = read_physical(*physical);
     root.refuse_unknown_keys();
     return model;
@@ -349,6 +380,7 @@ std::string to_toml(const MechanicalModel& model) {
                         toml_string(model.description), toml_string(model.weighting));
     for (const auto phase : flight::all_phases) text += phase_toml(phase, model.phases[phase]);
     for (const auto& flight : model.flights) text += flight_toml(flight);
+    if (model.validation) text += validation_toml(*model.validation);
     if (model.physical) text += physical_toml(*model.physical);
     return text;
 }

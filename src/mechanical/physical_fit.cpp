@@ -169,6 +169,7 @@ PhysicalFit fit_physical_model(std::span<const FlightMotion> flights) {
     fit.trials = std::move(choice.trials);
     fit.folds = choice.folds;
     fit.held_back_flights = moving.size() > 1;
+    fit.phases_decided = choice.phases_decided;
     fit.model = fit_terms(moving, regression, choice.terms);
     return fit;
 }

@@ -14,7 +14,7 @@ namespace flightwatt::mechanical {
 struct TermTrial {
     std::string term;  ///< as to_string(PowerTerm), or "throttle"
     bool kept = false;
-    std::optional<double> rms_before_w;  ///< error of bins held back, without the term; absent if it was not tried
+    std::optional<double> rms_before_w;  ///< error of what was held back, without the term; absent if it was not tried
     std::optional<double> rms_after_w;   ///< and with it
     std::string reason;                  ///< why it was dropped, or could not be tried; empty if it was kept
 };
@@ -30,18 +30,22 @@ struct PhysicalFit {
     std::vector<TermTrial> trials;  ///< in the order of all_power_terms, the throttle last
     std::vector<MotionlessFlight> without;
     bool held_back_flights = true;  ///< false: a single flight, and blocks of its time were held back
+    bool phases_decided = true;     ///< false: trials have the error of bins, not of whole phases
     std::size_t folds = 0;
 };
 
-/// So much less must the mean square error of bins held back be for a term to be kept.
+/// So much less must the mean square error of what was held back be for a term to be kept.
 inline constexpr double least_gain_of_term = 0.05;
 
-/// Fits power to the motion of flights of one aircraft (docs/methods.md, Power from airspeed and climb). The first term
-/// is the drag, or a constant where that predicts better by least_gain_of_term; then, one by one, the term that lowers
-/// the error most, if that is by least_gain_of_term or more, in more than half of the flights, and all coefficients are
-/// what physics lets them be (none negative; a descent gives back at most what the climb took). Folds are the flights,
-/// each held back in turn (ten groups of more than ten), or fifths of a single flight's time. Throws NoAnswerError
-/// where no flight has bins, or they do not tell a single term.
+/// Fits power to the motion of flights of one aircraft (docs/methods.md, Power from airspeed and climb). Each flight is
+/// held back in turn (ten groups of more than ten), or each fifth of a single flight's time. Terms:
+///   first       the drag, or a constant where that predicts bins better by least_gain_of_term
+///   then        one by one, the term that lowers the error of the mean power of whole phases most, if that is by
+///               least_gain_of_term, in more than half of the flights (of two, in one), and bins are predicted no worse
+///   not         one whose coefficients physics does not let be (none is negative; a descent gives back at most what the
+///               climb took); more terms than the phases that each fit rests on
+/// Bins decide throughout for a single flight, and where a flight has bins of one phase only. Throws NoAnswerError where
+/// no flight has bins, or they do not tell a single term.
 PhysicalFit fit_physical_model(std::span<const FlightMotion> flights);
 
 /// The same with these terms alone.

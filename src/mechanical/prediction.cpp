@@ -139,6 +139,17 @@ void add_shares(RestPrediction& rest, const Expectation& expected, const Varianc
               {average * gain_w2 * wh2_per_w2, std::min(expected.degrees_of_freedom, drift_degrees_of_freedom)});
 }
 
+/// Half the 95 % interval of a phase's mean power, where it is known.
+std::optional<double> mean_power_half_width_w(const PhaseForecast& phase, std::size_t flights) {
+    const auto& model = phase.model;
+    if (flights > 1 && model.level_spread)
+        return student_t_half_width(static_cast<double>(model.level_spread->flights - 1)) *
+               model.level_spread->level_sd_w * std::sqrt(phase.weight_square_sum);
+    if (flights != 1 || !model.errors || !model.rms_w || !(model.errors->effective_samples > 0.0)) return std::nullopt;
+    return student_t_half_width(model.errors->degrees_of_freedom) * *model.rms_w /
+           std::sqrt(model.errors->effective_samples);
+}
+
 }  // namespace
 
 void add_share(EnergyEstimate& estimate, const VarianceShare& share) {
@@ -175,6 +186,23 @@ PhaseForecast forecast_of(const MechanicalModel& model, flight::Phase phase) {
         forecast.weight_square_sum = 1.0 / static_cast<double>(std::max<std::size_t>(forecast.model.flights, 1));
     }
     return forecast;
+}
+
+std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase phase) {
+    MeanPower power;
+    for (const auto& flight : model.flights) {
+        const auto& part = flight.phases[phase];
+        if (!part || !(part->weight > 0.0)) continue;
+        if (!part->mean_power_w) return std::nullopt;
+        power.mean_w += part->weight * *part->mean_power_w;
+        ++power.flights;
+    }
+    if (power.flights == 0) return std::nullopt;
+    const auto forecast = forecast_of(model, phase);
+    power.samples = forecast.model.samples;
+    if (const auto half_w = mean_power_half_width_w(forecast, power.flights))
+        power.interval = {std::max(power.mean_w - *half_w, std::min(power.mean_w, 0.0)), power.mean_w + *half_w};
+    return power;
 }
 
 EnergyEstimate predict_before_flight(const PhaseForecast& phase, double duration_s) {

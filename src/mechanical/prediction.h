@@ -5,6 +5,7 @@
 #include "mechanical/prediction/flight_progress.h"
 #include "mechanical/prediction/level_spread.h"
 
+#include <cstddef>
 #include <optional>
 
 namespace flightwatt::mechanical {
@@ -48,6 +49,20 @@ struct PhaseForecast {
 
 /// The phase of a model with the weights of its flights (all alike where it does not say).
 PhaseForecast forecast_of(const MechanicalModel& model, flight::Phase phase);
+
+/// The mean power of a phase, over the flights that count.
+struct MeanPower {
+    double mean_w = 0.0;  ///< of the flights' mean powers, by their weights
+    std::optional<Interval>
+        interval;  ///< 95 %, of the mean of all flights like these; of a single flight of its own mean
+    std::size_t flights = 0;
+    std::size_t samples = 0;  ///< of all flights that have the phase
+};
+
+/// By Student's t: of two flights or more of how they differ (LevelSpread); of a single one of the residual of its curve
+/// over its effective samples, which only an analysis of errors tells. A low end below 0 is 0. std::nullopt for a model
+/// whose flights have no mean power.
+std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase phase);
 
 /// Energy of a phase that will take `duration_s`, before the flight: the stretched curve's integral. Its
 /// interval holds the spread of the flights' mean powers (which contains what a flight drifts in a phase)

@@ -185,10 +185,10 @@ ValidatedFlight validate_flight(const MeasuredFlight& excluded, Others& others, 
         }
     }
     // A model that cannot tell the cruise (no airspeed, no spread) only repeats others in the other phases.
-    if (flight.measured_wh[flight::Phase::cruise]) {
-        std::erase_if(flight.predictions,
-                      [](const auto& prediction) { return !prediction.phases[flight::Phase::cruise]; });
-    }
+    std::erase_if(flight.predictions, [&](const auto& prediction) {
+        return !prediction.phases[flight::Phase::cruise] &&
+               (flight.measured_wh[flight::Phase::cruise] || prediction.model == "airspeed_cubed");
+    });
     return flight;
 }
 

@@ -93,6 +93,24 @@ struct PredictedEnergy {
 std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, const std::string& model,
                                                 std::optional<flight::Phase> phase);
 
+/// Removes from all flights the predictions of models that know the flown motion and yet are further off than the mean
+/// power, over the flights that they predict as a whole. Returns why, a sentence each.
+std::vector<std::string> remove_rejected(std::vector<ValidatedFlight>& flights);
+
+/// For a mission to use the curve, its mean error must be less than the mean power's by this part of it, and its error
+/// less in more than half of the flights.
+inline constexpr double least_gain_of_curve = 0.05;
+
+/// The scores of the models that missions can use, each over the flights that it predicts as a whole, without those
+/// that remove_rejected removes. std::nullopt where curve or mean power has none.
+std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights);
+
+/// Adds to a fitted model its validation, and the physical model if that is not rejected. Of more than
+/// most_validation_folds flights so many are validated, evenly from all. Adds nothing where weights were given by hand,
+/// which are the curves', nor for fewer than 2 flights or folds that cannot be fitted.
+void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
+                    const std::function<void(std::size_t, std::size_t)>& progress = {});
+
 /// The models that predicted anything, in the order in which they are shown.
 std::vector<std::string> model_names(std::span<const ValidatedFlight> flights);
 

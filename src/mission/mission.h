@@ -64,6 +64,8 @@ struct MissionSetup {
     double cutoff_voltage_v = 0.0;     ///< the battery is cut off below it; 0: never
     double reserve_soc_percent = 0.0;  ///< what should be left at the end
     Uncertainty uncertainty;
+    std::optional<mechanical::HeldOutScore> power_model =
+        {};                               ///< what says the power, of a model file with a validation
     std::vector<std::string> notes = {};  ///< what people should know of how it was read
 };
 

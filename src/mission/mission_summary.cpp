@@ -41,6 +41,25 @@ std::string describe(const DrawnSources& sources) {
     return text;
 }
 
+std::string describe(const EstimatedLanding& landing, int decimals) {
+    const auto end = landing.fails_at_s ? "the battery fails after " + duration_text(*landing.fails_at_s)
+                                        : fmt::format("{:.{}f} %", landing.final_soc_percent.value_or(0.0), decimals);
+    return fmt::format("{} with the {:.3g} Ah that the flights indicate", end, landing.capacity_ah);
+}
+
+std::string describe(const mechanical::HeldOutScore& power_model) {
+    const auto& model = power_model.model;
+    const auto* used = model == "physical"         ? "cruise power by the physical model"
+                       : model == "airspeed_cubed" ? "cruise power by airspeed cubed"
+                       : model == "constant_mean"  ? "power by each phase's mean"
+                                                   : "power by each phase's curve";
+    const auto* known = model == "physical"         ? ", their airspeed and climb known"
+                        : model == "airspeed_cubed" ? ", their airspeed known"
+                                                    : "";
+    return fmt::format("{}: {:.1f} % off on {} flights left out of the fit{}", used,
+                       power_model.mean_absolute_error_percent, power_model.flights, known);
+}
+
 std::string describe(const MissionSummary& summary) {
     if (const auto& failure = summary.undeliverable) {
         return fmt::format("{}: the battery cannot deliver {:.6g} W after {}: its limit U^2 / (4 R) is {:.6g} W",
@@ -56,6 +75,7 @@ std::string describe(const MissionSummary& summary) {
     } else if (!summary.keeps_reserve) {
         end += fmt::format(", less than the reserve of {:.6g} %", summary.reserve_soc_percent);
     }
+    if (summary.by_flights) end += fmt::format(" ({})", describe(*summary.by_flights));
     if (summary.decisions && summary.decisions->without_plan > 0) {
         end += fmt::format(
             " (at {} of {} decisions no plan kept the reserve with its margin, and what "

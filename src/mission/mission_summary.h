@@ -2,6 +2,7 @@
 
 #include "base/text_table.h"
 #include "battery/discharge.h"
+#include "mechanical/mechanical_model.h"
 
 #include <array>
 #include <cstddef>
@@ -70,6 +71,17 @@ struct SampledFlights {
     std::vector<SocBand> bands;
 };
 
+/// How a mission lands with the capacity that the flights of its pack indicate, where its own contradicts them.
+struct EstimatedLanding {
+    double capacity_ah = 0.0;
+    std::optional<double> final_soc_percent;  ///< none if the battery cannot deliver the power
+    std::optional<double> fails_at_s;         ///< empty, cut off, or asked for more power than it can deliver
+    bool keeps_reserve = false;
+};
+
+/// "59.70 % with the 2.05 Ah that the flights indicate"
+std::string describe(const EstimatedLanding& landing, int decimals = 2);
+
 /// What a mission comes to. Energies are what the whole mission demands, also beyond the battery's end.
 struct MissionSummary {
     std::string mission;
@@ -91,7 +103,13 @@ struct MissionSummary {
     bool keeps_reserve = false;        ///< feasible, and the reserve is left
     std::optional<AdaptiveDecisions> decisions = std::nullopt;  ///< of an adaptive policy
     std::optional<SampledFlights> samples = std::nullopt;       ///< if flights were drawn
+    std::optional<EstimatedLanding> by_flights = std::nullopt;
+    std::optional<mechanical::HeldOutScore> power_model = {};  ///< as in MissionSetup
 };
+
+/// Which model a mission uses and how it predicts: "power by each phase's mean: 18.6 % off on 4 flights left out of
+/// the fit".
+std::string describe(const mechanical::HeldOutScore& power_model);
 
 /// When the battery ended or failed, or the mission's end if it lasts.
 double powered_until_s(const MissionSummary& summary);

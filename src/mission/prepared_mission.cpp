@@ -37,6 +37,7 @@ FlownMission fly(const PreparedMission& prepared, const SimulationSteps& steps, 
     summary.schedule = prepared.origin;
     summary.feasible = summary.feasible && prepared.origin != ScheduleOrigin::infeasible;
     summary.decisions = decisions;
+    summary.by_flights = landing_by_flights(prepared.setup, flown.schedule, disturbances);
     return flown;
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -121,6 +122,7 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
     if (!end.undeliverable) summary.final_soc_percent = end.soc_percent;
     add_energies(segments, summary);
     summary.feasible = !summary.undeliverable && !summary.depleted_at_s && !summary.cut_off_at_s;
+    summary.power_model = mission.power_model;
     summary.reserve_soc_percent = mission.reserve_soc_percent;
     summary.keeps_reserve = summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent;
     return summary;
@@ -149,6 +151,20 @@ Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const
 
 Simulation simulate(const Mission& mission, const SimulationSteps& steps, const Disturbances& disturbances) {
     return simulate(mission, mission.schedule, steps, disturbances);
+}
+
+std::optional<EstimatedLanding> landing_by_flights(const MissionSetup& mission, const Schedule& schedule,
+                                                   const Disturbances& disturbances) {
+    auto estimated = estimated_by_flights(mission.battery);
+    if (!estimated) return std::nullopt;
+    auto setup = mission;
+    setup.battery = std::move(*estimated);
+    SimulationSteps steps;
+    steps.output_s = timeline_of(mission.duration_s).duration_s;
+    const auto summary = simulate(setup, schedule, steps, disturbances).summary;
+    EstimatedLanding landing{setup.battery.capacity_ah, summary.final_soc_percent, std::nullopt, summary.keeps_reserve};
+    if (!summary.feasible) landing.fails_at_s = powered_until_s(summary);
+    return landing;
 }
 
 std::string to_csv(const SocCurve& curve) {

@@ -4,6 +4,7 @@
 #include "mission/mission.h"
 #include "mission/mission_summary.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,11 @@ Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const
 
 /// The same with the mission's own schedule.
 Simulation simulate(const Mission& mission, const SimulationSteps& steps = {}, const Disturbances& disturbances = {});
+
+/// How the schedule lands with the capacity that the flights of the mission's pack indicate; none where the mission's
+/// capacity agrees with them, or the pack is of no flights.
+std::optional<EstimatedLanding> landing_by_flights(const MissionSetup& mission, const Schedule& schedule,
+                                                   const Disturbances& disturbances = {});
 
 /// time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v
 std::string to_csv(const SocCurve& curve);

@@ -43,7 +43,8 @@ std::string card_html(const SimulatedMission& simulated, const MissionAnswer& an
                             css_class_of(verdict), escaped(simulated.title), words_of(verdict, has_reserve));
     const auto lines = card_lines(simulated, answer);
     html += fmt::format("<p class=\"lead\">{}</p>\n", escaped(lines.front()));
-    for (std::size_t i = 1; i < lines.size(); ++i) html += paragraph(lines[i]);
+    for (std::size_t i = 1; i < lines.size(); ++i)
+        html += paragraph(lines[i], lines[i].starts_with("Warning: ") ? "warning" : "");
     return html + "</article>\n";
 }
 
@@ -140,8 +141,12 @@ std::string prediction_line(std::span<const mechanical::ValidatedFlight> flights
     if (errors.empty()) return "";
     std::ranges::stable_sort(errors, {}, &std::pair<double, std::string>::first);
     auto line = fmt::format("The energy of a flight that is not in the fit is off by");
-    for (std::size_t i = 0; i < errors.size(); ++i)
-        line += fmt::format("{} {:.1f} % ({})", i == 0 ? "" : ",", errors[i].first, errors[i].second);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        const auto& [error_percent, model] = errors[i];
+        const bool knows_motion = model == "physical" || model == "airspeed_cubed";
+        line += fmt::format("{} {:.1f} % ({}{})", i == 0 ? "" : ",", error_percent, model,
+                            knows_motion ? ", airspeed known" : "");
+    }
     return line + fmt::format(", on average over {} left out in turn", plural(number, "flight"));
 }
 

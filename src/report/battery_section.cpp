@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -105,6 +106,13 @@ constexpr auto flights_caption = "Flights in the fit of the battery";
 void add_identified(Section& section, const ReportBattery& battery, const SectionOf& of) {
     const auto& identified = *battery.identified;
     section.html += paragraph(rests_on(battery));
+    if (identified.capacity.origin == battery::CapacityOrigin::given) {
+        const auto warning = capacity_warning(identified.battery);
+        section.html += warning.empty() ? paragraph(cli::describe_given_capacity(identified.battery) + ".")
+                                        : paragraph("Warning: " + warning + ".", "warning");
+    }
+    if (const auto warning = cli::cells_warning(identified); !warning.empty())
+        section.html += paragraph("Warning: " + warning + ".", "warning");
     if (identified.capacity.origin == battery::CapacityOrigin::chart) {
         section.html += paragraph(
             "No flight tells the capacity, as none runs empty: it is a guess after the usual chart of LiPo "
@@ -135,10 +143,8 @@ void add_identified(Section& section, const ReportBattery& battery, const Sectio
     add_figure(section, open_circuit_figure(identified, of.id("battery-open-circuit")));
 }
 
-}  // namespace
-
-ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
-                                  std::size_t most) {
+ReportBattery identify_with(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
+                            std::size_t most) {
     ReportBattery battery;
     for (const auto& flight : flights) add_record(battery, flight);
     battery.usable = battery.records.size();
@@ -155,6 +161,58 @@ ReportBattery identify_for_report(std::span<const ReportFlight> flights, const b
         battery.no_answer = error.what();
     }
     return battery;
+}
+
+/// The packs of the missions that `flightwatt battery` identified from any of the flights: each capacity once.
+std::vector<battery::Battery> packs_of_flights(std::span<const mission::AnyMission> missions,
+                                               std::span<const ReportFlight> flights) {
+    std::set<std::string> names;
+    for (const auto& flight : flights) names.insert(flight.series.flight);
+    std::vector<battery::Battery> packs;
+    for (const auto& mission : missions) {
+        const auto& setup = setup_of(mission);
+        const auto& pack = setup.battery;
+        const auto is_theirs = [&](const std::string& flight) { return names.contains(flight); };
+        if (setup.capacity_is_stated || !pack.flight_estimate) continue;
+        if (std::ranges::none_of(pack.flight_estimate->flights, is_theirs)) continue;
+        if (std::ranges::find(packs, pack.capacity_ah, &battery::Battery::capacity_ah) == packs.end())
+            packs.push_back(pack);
+    }
+    return packs;
+}
+
+}  // namespace
+
+ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
+                                  std::size_t most, std::span<const mission::AnyMission> missions) {
+    const auto packs = packs_of_flights(missions, flights);
+    if (packs.size() != 1) {
+        auto battery = identify_with(flights, options, most);
+        if (!packs.empty())
+            battery.notes.emplace_back("The missions fly on packs of these flights with different capacities.");
+        return battery;
+    }
+    const auto& pack = packs.front();
+    if (options.capacity_ah && *options.capacity_ah != pack.capacity_ah) {
+        throw UsageError(fmt::format(
+            "--capacity {:g}: the missions fly on '{}' of {:g} Ah; give the capacity to `flightwatt battery` alone",
+            *options.capacity_ah, pack.name, pack.capacity_ah));
+    }
+    const bool is_given = pack.capacity_ah != pack.flight_estimate->capacity_ah;
+    auto of_pack = options;
+    if (is_given) of_pack.capacity_ah = pack.capacity_ah;
+    of_pack.cells = pack.cells;
+    try {
+        auto battery = identify_with(flights, of_pack, most);
+        if (is_given)
+            battery.notes.push_back(fmt::format("The capacity is that of '{}', which the missions fly on.", pack.name));
+        return battery;
+    } catch (const UsageError& error) {  // flights that are newer than the pack drew more than its capacity
+        auto battery = identify_with(flights, options, most);
+        battery.notes.push_back(
+            fmt::format("The capacity of '{}', which the missions fly on, is not used: {}", pack.name, error.what()));
+        return battery;
+    }
 }
 
 std::vector<CaptionedTable> battery_tables(const ReportBattery& battery) {

@@ -2,6 +2,7 @@
 
 #include "base/text_table.h"
 #include "battery/identification.h"
+#include "mission/mission.h"
 #include "report/batch_content.h"
 #include "report/html.h"
 
@@ -30,9 +31,10 @@ struct ReportBattery {
 };
 
 /// Identifies the battery from the flights that have measured current and voltage: from `most` of them, spread evenly,
-/// where there are more (the work grows with their square). Throws UsageError as identify_battery.
+/// where there are more (the work grows with their square). If the missions fly on one pack of these flights, with its
+/// capacity and its cells. Throws UsageError as identify_battery, and for another capacity than that pack's.
 ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
-                                  std::size_t most);
+                                  std::size_t most, std::span<const mission::AnyMission> missions = {});
 
 /// Parameters with intervals, the flights that they rest on, and those that were excluded: the section's tables.
 std::vector<CaptionedTable> battery_tables(const ReportBattery& battery);

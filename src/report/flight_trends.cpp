@@ -4,6 +4,7 @@
 #include "report/trends_section.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -40,7 +41,8 @@ std::vector<std::string> aircraft_names(std::span<const FlownFlight> flights) {
 }
 
 /// Of one aircraft's flights; what is not known of them and why, or empty.
-std::string add_wear_of(std::span<FlownFlight* const> flown, std::size_t most) {
+std::string add_wear_of(std::span<FlownFlight* const> flown, std::size_t most,
+                        const std::optional<double>& capacity_ah) {
     if (flown.empty()) return "";
     constexpr auto single = "no capacity of a single flight: it is told by how flights differ";
     if (flown.size() > most)
@@ -50,10 +52,12 @@ std::string add_wear_of(std::span<FlownFlight* const> flown, std::size_t most) {
     for (const auto* flight : flown) records.push_back(flight->records.front());
     battery::BatteryIdentification identified;
     try {
-        identified = identify_battery(records, {.capacity_ah = {}, .cells = {}, .name = "", .with_capacities = true});
+        identified =
+            identify_battery(records, {.capacity_ah = capacity_ah, .cells = {}, .name = "", .with_capacities = true});
     } catch (const NoAnswerError& error) {
         return fmt::format("no resistances and no capacities: {}", error.what());
     }
+    const bool is_guess = identified.capacity.origin == battery::CapacityOrigin::chart;
     std::size_t without = 0;
     for (std::size_t i = 0; i < flown.size(); ++i) {
         flown[i]->resistance = identified.flights.at(i).resistance;
@@ -64,14 +68,14 @@ std::string add_wear_of(std::span<FlownFlight* const> flown, std::size_t most) {
         }
         const double mean_ah = identified.capacity.value_ah;
         flown[i]->capacity_ah = mean_ah * capacity->ratio;
+        flown[i]->capacity_level_is_guess = is_guess;
         flown[i]->capacity_interval_ah = {mean_ah * capacity->ratio_interval.low,
                                           mean_ah * capacity->ratio_interval.high};
     }
     if (without == 0) {
-        const bool is_guess = identified.capacity.origin == battery::CapacityOrigin::chart;
-        return is_guess
-                   ? "the level of the capacities is a guess after the usual chart of LiPo cells; how they differ is told"
-                   : "";
+        return is_guess ? "the level of the capacities is a guess after the usual chart of LiPo cells: their trend is "
+                          "in percent of it; give the pack's capacity with --capacity"
+                        : "";
     }
     if (flown.size() == 1) return single;
     return fmt::format("no capacity of {} of {} flights: what they draw does not tell it within 15 %", without,
@@ -96,13 +100,14 @@ FlownFlight flown_flight(const ReportFlight& flight) {
     return flown;
 }
 
-std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::size_t most) {
+std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::size_t most,
+                                       std::optional<double> capacity_ah) {
     std::vector<std::string> notes;
     for (const auto& aircraft : aircraft_names(flights)) {
         std::vector<FlownFlight*> flown;
         for (auto& flight : flights)
             if (flight.aircraft == aircraft && !flight.records.empty()) flown.push_back(&flight);
-        const auto note = add_wear_of(flown, most);
+        const auto note = add_wear_of(flown, most, capacity_ah);
         if (!note.empty()) notes.push_back(fmt::format("{}: {}", aircraft, note));
     }
     return notes;
@@ -114,10 +119,13 @@ std::vector<AircraftTrend> trends_of(std::span<const FlownFlight> flights) {
     for (const auto& aircraft : aircraft_names(flights)) {
         for (const auto& [name, title, of] : quantities) {
             AircraftTrend trend{aircraft, name, {}, {}};
+            const bool is_capacity = std::string_view(name) == "capacity_ah";
             for (const auto& flight : flights) {
                 const auto value = of(flight);
                 if (flight.aircraft == aircraft && flight.facts.start_clock_s && value)
                     trend.values.push_back({*flight.facts.start_clock_s / seconds_per_day, *value});
+                trend.level_is_guess = trend.level_is_guess ||
+                                       (is_capacity && flight.aircraft == aircraft && flight.capacity_level_is_guess);
             }
             trend.answer = trend_over(trend.values);
             if (trend.values.empty()) trend.answer.why_not = "of no flight with a date is it known";
@@ -134,15 +142,24 @@ std::string trend_verdict(const AircraftTrend& trend) {
     return told->per_day > 0.0 ? "rises" : "falls";
 }
 
+ShownSlope shown_slope(const AircraftTrend& trend) {
+    const auto& told = trend.answer.trend.value();
+    const auto relative = trend.level_is_guess ? relative_trend(told) : std::nullopt;
+    if (relative)
+        return {trend_days * relative->percent_per_day, trend_days * relative->low_percent_per_day,
+                trend_days * relative->high_percent_per_day, " %"};
+    return {trend_days * told.per_day, trend_days * told.low_per_day, trend_days * told.high_per_day, ""};
+}
+
 TextTable trend_table(std::span<const AircraftTrend> trends) {
     TextTable table{{"aircraft", "quantity", "flights", "median", "in 30 days", "low", "high", "verdict"}, {}};
     for (const auto& row : trends) {
         std::vector<std::string> cells{row.aircraft, row.quantity};
         if (const auto& trend = row.answer.trend) {
             cells.push_back(fmt::format("{}", trend->flights));
-            for (const double value : {trend->median, trend_days * trend->per_day, trend_days * trend->low_per_day,
-                                       trend_days * trend->high_per_day})
-                cells.push_back(fmt::format("{:.3g}", value));
+            const auto [slope, low, high, unit] = shown_slope(row);
+            cells.push_back(fmt::format("{:.3g}", trend->median));
+            for (const double value : {slope, low, high}) cells.push_back(fmt::format("{:.3g}{}", value, unit));
         } else {
             cells.insert(cells.end(), 5, "-");
         }

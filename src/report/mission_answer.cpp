@@ -3,9 +3,11 @@
 #include "base/duration_text.h"
 #include "base/error.h"
 #include "base/units.h"
+#include "cli/output/mission_output.h"
 #include "mission/sampled_flights.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,8 +40,7 @@ std::string in_words(const mission::Reach& reach) {
     return duration_text(reach.limit.value) + " of cruise";
 }
 
-std::string landing_line(const SimulatedMission& simulated) {
-    const auto& summary = simulated.simulation.summary;
+std::string modelled_landing(const mission::MissionSummary& summary) {
     if (!summary.final_soc_percent) return "The battery cannot deliver the power";
     const auto before_end = [&](double time_s) {
         return fmt::format("{} in the air, {} before the end", duration_text(time_s),
@@ -50,6 +51,12 @@ std::string landing_line(const SimulatedMission& simulated) {
         return fmt::format("Is cut off after {}", before_end(cut_off_s));
     if (summary.depleted_at_s) return fmt::format("Runs empty after {}", before_end(*summary.depleted_at_s));
     return fmt::format("Lands with {:.1f} %", *summary.final_soc_percent);
+}
+
+std::string landing_line(const SimulatedMission& simulated) {
+    const auto& summary = simulated.simulation.summary;
+    const auto landing = modelled_landing(summary);
+    return summary.by_flights ? fmt::format("{} ({})", landing, describe(*summary.by_flights, 1)) : landing;
 }
 
 std::string reserve_line(const SimulatedMission& simulated) {
@@ -92,6 +99,11 @@ std::string utility_line(const SimulatedMission& simulated) {
     return line;
 }
 
+std::string as_sentence(std::string text) {
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text;
+}
+
 /// Whether less of what the mission flies would keep the reserve.
 bool shorter_helps(const SimulatedMission& simulated, const mission::Reach& reach) {
     return reach.unit != mission::ReachUnit::cruise_s ||
@@ -124,6 +136,13 @@ std::string remedy_line(const SimulatedMission& simulated, const MissionAnswer& 
     return fmt::format("{}: {}", aim, fmt::join(ways, ", or "));
 }
 
+/// By the capacity that the mission has.
+Verdict verdict_as_modelled(const mission::MissionSummary& summary) {
+    if (!summary.keeps_reserve) return Verdict::fails;
+    const bool is_likely = !summary.samples || summary.samples->probability_below_reserve <= 1.0 - likely;
+    return is_likely ? Verdict::keeps : Verdict::may_keep;
+}
+
 nlohmann::ordered_json to_json(const std::optional<mission::Reach>& reach) {
     if (!reach) return nullptr;
     switch (reach->unit) {
@@ -152,7 +171,7 @@ MissionAnswer answer_for(const SimulatedMission& simulated, const mission::Missi
     if (answer.reach && knows_chance) answer.likely_reach = ask([&] { return longest_reach(mission_of, likely); });
     answer.cruise_differs_now = answer.likely_reach && answer.likely_reach->unit == mission::ReachUnit::cruise_s &&
                                 mission::cruise_differs(setup_of(*mission));
-    if (verdict_of(simulated) == Verdict::keeps) return answer;
+    if (verdict_as_modelled(simulated.simulation.summary) == Verdict::keeps) return answer;
     const auto chance = answer.likely_reach ? std::optional(likely) : std::nullopt;
     const auto capacity_ah = ask([&] { return least_capacity_ah(*mission, chance); }).value_or(std::nullopt);
     // Of the least software, which may land with the pack as it is where what was planned may not.
@@ -162,15 +181,18 @@ MissionAnswer answer_for(const SimulatedMission& simulated, const mission::Missi
 
 Verdict verdict_of(const SimulatedMission& simulated) {
     const auto& summary = simulated.simulation.summary;
-    if (!summary.keeps_reserve) return Verdict::fails;
-    const bool is_likely = !summary.samples || summary.samples->probability_below_reserve <= 1.0 - likely;
-    return is_likely ? Verdict::keeps : Verdict::may_keep;
+    const auto verdict = verdict_as_modelled(summary);
+    const bool keeps_by_flights = !summary.by_flights || summary.by_flights->keeps_reserve;
+    return verdict == Verdict::keeps && !keeps_by_flights ? Verdict::may_keep : verdict;
 }
 
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAnswer& answer) {
     std::vector<std::string> lines{landing_line(simulated), reserve_line(simulated), reach_line(simulated, answer)};
+    if (auto warning = capacity_warning(simulated.mission.battery); !warning.empty())
+        lines.insert(lines.begin() + 1, "Warning: " + warning);
     if (simulated.simulation.summary.utility) lines.push_back(utility_line(simulated));
-    if (verdict_of(simulated) == Verdict::keeps) return lines;
+    if (const auto& model = simulated.mission.power_model) lines.push_back(as_sentence(mission::describe(*model)));
+    if (verdict_as_modelled(simulated.simulation.summary) == Verdict::keeps) return lines;
     if (auto remedy = remedy_line(simulated, answer); !remedy.empty()) lines.push_back(std::move(remedy));
     return lines;
 }
@@ -189,6 +211,7 @@ nlohmann::ordered_json to_json(const SimulatedMission& simulated, const MissionA
                                 {"least_capacity_ah", or_null(answer.capacity_ah)},
                                 {"card", card_lines(simulated, answer)}};
     if (summary.samples) json["probability_below_reserve"] = summary.samples->probability_below_reserve;
+    if (summary.by_flights) json[cli::by_flights_key] = cli::to_json(*summary.by_flights);
     return json;
 }
 

@@ -30,14 +30,14 @@ MissionAnswer answer_for(const SimulatedMission& simulated, const mission::Missi
 /// Whether a mission keeps its reserve, as far as anybody knows.
 enum class Verdict {
     keeps,     ///< with a chance of 95 % or more, or as modelled where no chance is known
-    may_keep,  ///< as modelled, but with a lesser chance
+    may_keep,  ///< as modelled, but with a lesser chance, or not with the capacity that the pack's flights indicate
     fails
 };
 
 Verdict verdict_of(const SimulatedMission& simulated);
 
-/// What a card says, a line each: how the mission lands, its reserve, its reach, its utility, and where it does not keep
-/// its reserve what would mend that.
+/// What a card says, a line each: how the mission lands, its reserve, its reach, its utility, which model says its
+/// power, and where it does not keep its reserve what would mend that.
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAnswer& answer);
 
 /// The same as JSON, in numbers.

@@ -30,12 +30,17 @@ std::vector<const SimulatedMission*> first_of_each(Missions missions, const Same
     return firsts;
 }
 
-/// What is drawn of a model: files of it may leave out its errors.
+/// What is drawn of a model: files of it may leave out its errors. Of a validated one without its power over time,
+/// instead of which missions use another.
 std::string drawn_text(mechanical::MechanicalModel model) {
     for (auto& phase : model.phases.values) {
         phase.errors.reset();
         phase.spread.reset();
+        if (!model.validation) continue;
+        phase.fourier = {};
+        phase.mean_curve = phase.not_negative = false;
     }
+    if (model.validation) model.flights.clear();
     return to_toml(model);
 }
 
@@ -46,7 +51,8 @@ std::vector<Section> model_sections(Missions missions, const PublishedFigures& p
         const auto& mechanical = simulated->mission.mechanical;
         const auto is_this = [&](const auto& other) { return drawn_text(*mechanical) == drawn_text(other); };
         if (!mechanical || std::ranges::any_of(shown, is_this)) continue;
-        ReportModel model{*mechanical, "The missions' model, as their files name it."};
+        ReportModel model{*mechanical, mechanical->validation ? "The missions' model, as they use it."
+                                                              : "The missions' model, as their files name it."};
         model.table_one = table_one(*mechanical);
         sections.push_back(model_section(model, published, fmt::format("mission-model-{}", sections.size() + 1)));
     }

@@ -6,6 +6,8 @@
 
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace flightwatt::report {
 namespace {
 
@@ -49,8 +51,11 @@ std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlig
     if (fit->model.level_sd) section.html += paragraph("+- is half the 95 % interval.", "soft");
     section.html += table_html(cli::trials_table(*fit), {trials_caption, false, {}});
     section.html += paragraph(
-        "RMS error in W of stretches that were held back, without and with the term: a term is kept if it falls by 2.5 % or "
-        "more.",
+        fmt::format(
+            "RMS error in W of {} held back, without and with the term: a term is kept if it falls by 2.5 % or more"
+            "{}.",
+            fit->phases_decided ? "the mean power of phases" : "stretches",
+            fit->phases_decided ? " and stretches are predicted no worse" : ""),
         "soft");
     return section;
 }

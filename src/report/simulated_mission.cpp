@@ -37,7 +37,10 @@ SimulatedMission fly_for_report(const mission::AnyMission& mission, const missio
     }
     auto flown = fly(prepared, steps);
     simulated.simulation = std::move(flown.simulation);
-    if (summary) simulated.simulation.summary = std::move(*summary);
+    if (summary) {
+        summary->by_flights = simulated.simulation.summary.by_flights;
+        simulated.simulation.summary = std::move(*summary);
+    }
     if (has_spread(prepared.setup))
         simulated.simulation.summary.samples =
             sample_flights(prepared, {}, {prepared.adaptive ? flights_drawn_of_policy : flights_drawn, 1, band_times});

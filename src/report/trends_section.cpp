@@ -13,7 +13,8 @@ constexpr double ms_per_day = 86400.0 * 1000.0;
 
 std::string title_of(const AircraftTrend& trend) {
     const auto all = trend_quantities();
-    return std::ranges::find(all, trend.quantity, &TrendQuantity::name)->title;
+    const std::string title = std::ranges::find(all, trend.quantity, &TrendQuantity::name)->title;
+    return trend.level_is_guess ? title + ", level a guess" : title;
 }
 
 VegaJson date_axis() {
@@ -70,10 +71,10 @@ Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& ai
     auto panels = VegaJson::array();
     for (const auto& trend : trends) {
         if (trend.aircraft != aircraft || !trend.answer.trend) continue;
-        const auto& told = *trend.answer.trend;
-        description += fmt::format(" {}: {:.3g}, {:+.3g} in 30 days ({:+.3g} to {:+.3g}), {}.", title_of(trend),
-                                   told.median, trend_days * told.per_day, trend_days * told.low_per_day,
-                                   trend_days * told.high_per_day, trend_verdict(trend));
+        const auto [slope, low, high, unit] = shown_slope(trend);
+        description +=
+            fmt::format(" {}: {:.3g}, {:+.3g}{} in 30 days ({:+.3g}{} to {:+.3g}{}), {}.", title_of(trend),
+                        trend.answer.trend->median, slope, unit, low, unit, high, unit, trend_verdict(trend));
         panels.push_back(trend_panel(trend));
     }
     auto figure = new_figure(

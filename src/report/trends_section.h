@@ -26,7 +26,8 @@ struct FlownFlight {
     std::optional<battery::FlightResistance> resistance;
     std::optional<double> capacity_ah;  ///< of the pack, where the flight tells it
     battery::Interval capacity_interval_ah;
-    std::optional<double> charge_ah;  ///< drawn from the pack, on the ground too
+    bool capacity_level_is_guess = false;  ///< of all of a pack's flights together; how they differ is measured
+    std::optional<double> charge_ah;       ///< drawn from the pack, on the ground too
 };
 
 /// `flight` was not rejected.
@@ -35,7 +36,10 @@ FlownFlight flown_flight(const ReportFlight& flight);
 /// Resistance and capacity of each flight, by the pack that all flights of an aircraft tell together: the charge that
 /// each draws for its way down their common curve of voltage (battery/identification/flight_wear.h). What is not known
 /// and why, an aircraft a line. The work grows with the square of an aircraft's flights, so that `most` are taken.
-std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::size_t most);
+/// `capacity_ah` is the mean over the flights, where it is known; else it may be a guess. Throws UsageError where flights
+/// draw more.
+std::vector<std::string> add_pack_wear(std::vector<FlownFlight>& flights, std::size_t most,
+                                       std::optional<double> capacity_ah = {});
 
 struct TrendQuantity {
     const char* name;   ///< with its unit, as in files
@@ -52,6 +56,7 @@ struct AircraftTrend {
     std::string quantity;
     std::vector<batch::DatedValue> values;  ///< days since 1970
     batch::TrendAnswer answer;
+    bool level_is_guess = false;  ///< the slope is known in percent of the level, not in the quantity's unit
 };
 
 /// Of each aircraft, all quantities.
@@ -59,6 +64,17 @@ std::vector<AircraftTrend> trends_of(std::span<const FlownFlight> flights);
 
 /// Slopes are told of this many days.
 inline constexpr double trend_days = 30.0;
+
+/// The slope and its 95 % interval over trend_days: in the quantity's unit, or where the level is a guess in percent of it.
+struct ShownSlope {
+    double slope = 0.0;
+    double low = 0.0;
+    double high = 0.0;
+    std::string unit;  ///< " %" or empty
+};
+
+/// The trend is there.
+ShownSlope shown_slope(const AircraftTrend& trend);
 
 /// "rises", "falls" or "none to be seen"; of one that has no trend "none" and why.
 std::string trend_verdict(const AircraftTrend& trend);

@@ -33,6 +33,11 @@ TEST(TomlString, ReplacesBytesThatAreNotUtf8) {
     EXPECT_EQ(toml_string("\xED\xA0\x80"), "\"" + replaced + replaced + replaced + "\"") << "a surrogate";
 }
 
+TEST(TomlString, StandsInAList) {
+    EXPECT_EQ(toml_strings({}), "[]");
+    EXPECT_EQ(toml_strings({"a", "b\"c"}), R"(["a", "b\"c"])");
+}
+
 TEST(TomlReal, IsTheShortestTextOfTheSameDouble) {
     EXPECT_EQ(toml_real(0.1), "0.1");
     EXPECT_EQ(toml_real(2.0), "2.0") << "an integer would be another type";

@@ -24,6 +24,7 @@ BatchFit some_fit() {
     auto fit = fit_flights(samples, options);
     fit.excluded = {"other"};
     fit.keep = {"doubtful"};
+    fit.model.validation = mechanical::ModelValidation{true, {{"fourier", 3, 2.5}}};
     return fit;
 }
 
@@ -45,7 +46,9 @@ TEST(BatchFit, IsReadBackAsItWasWritten) {
         EXPECT_EQ(read.bands[phase].flights_high_w, fit.bands[phase].flights_high_w);
     }
     // model.toml is the model alone.
-    EXPECT_FALSE(mechanical::read_mechanical_model(out / model_name).phases[flight::Phase::cruise].errors);
+    const auto plain = mechanical::read_mechanical_model(out / model_name);
+    EXPECT_FALSE(plain.phases[flight::Phase::cruise].errors);
+    EXPECT_TRUE(plain.validation && plain.validation->prefers_curve);
 }
 
 TEST(BatchFit, IsNoneWithoutAModelAndRefusesWhatIsDamaged) {

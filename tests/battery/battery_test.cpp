@@ -3,7 +3,9 @@
 #include "base/error.h"
 
 #include <cmath>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -65,6 +67,27 @@ TEST(BatteryWarnings, TellOfUnitsThatNoPackHas) {
     EXPECT_EQ(said(&Battery::voltage_v, 1.11), "battery: 1.11 V when full is less than one cell's: is its unit V?");
     EXPECT_EQ(said(&Battery::resistance_ohm, 50.0),
               "battery: it cannot deliver more than 0.616 W: is resistance_ohm in ohm?");
+}
+
+TEST(BatteryWarnings, CompareTheCapacityWithTheFlights) {
+    Battery pack{"pack", 11.1, 0.05, 5.0};
+    EXPECT_EQ(capacity_warning(pack), "") << "a pack of no flights";
+    pack.flight_estimate = std::make_shared<FlightEstimate>(FlightEstimate{2.051, {1.74, 3.47}});
+    EXPECT_EQ(
+        capacity_warning(pack),
+        "the capacity of 5 Ah contradicts the flights, which indicate 2.05 Ah (1.74 to 3.47 Ah in 95 %): check the "
+        "pack's label, or give no capacity to use the estimate of the flights");
+    EXPECT_EQ(battery_warnings(pack), std::vector{"battery: " + capacity_warning(pack)});
+    for (const double outside_ah : {1.739, 3.471}) {
+        pack.capacity_ah = outside_ah;
+        ASSERT_TRUE(estimated_by_flights(pack)) << outside_ah;
+        EXPECT_EQ(estimated_by_flights(pack)->capacity_ah, 2.051);
+    }
+    for (const double inside_ah : {1.74, 2.0, 3.47}) {
+        pack.capacity_ah = inside_ah;
+        EXPECT_FALSE(estimated_by_flights(pack)) << inside_ah;
+        EXPECT_TRUE(battery_warnings(pack).empty()) << inside_ah;
+    }
 }
 
 }  // namespace

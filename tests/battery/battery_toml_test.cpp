@@ -40,6 +40,63 @@ TEST(BatteryToml, IsWrittenAsItIsRead) {
     EXPECT_DOUBLE_EQ(terminal_voltage_v(pack, {50.0, 0.1}, 2.0), 11.4 - 0.1 - 0.16);
 }
 
+/// The pack with what its flights indicate, before its intervals.
+std::string with_estimate(const std::string& lines) {
+    auto text = pack_toml;
+    return text.insert(text.find("\n# 95 %"),
+                       "\n# The capacity that the flights indicate, and the curve over it\n"
+                       "[flight_estimate]\n" +
+                           lines);
+}
+
+TEST(BatteryToml, HoldsWhatTheFlightsIndicate) {
+    auto text = with_estimate(
+        "capacity_ah = 1.5\ncapacity_interval_ah = [1.2, 1.9]\nflights = [\"f1\", \"f2\"]\n"
+        "soc_percent = [0.0, 40.0, 100.0]\nvoltage_v = [10.1, 11.4, 12.5]\n");
+    text.insert(text.find("rc_resistance_ohm"), "cells = 3\n");
+    const auto pack = battery_from(parse_toml(text, "b.toml"));
+    EXPECT_EQ(to_toml(pack), "format = 1\n" + text);
+    EXPECT_EQ(pack.cells, 3);
+    ASSERT_TRUE(pack.flight_estimate);
+    EXPECT_EQ(pack.flight_estimate->flights, (std::vector<std::string>{"f1", "f2"}));
+    const auto estimated = estimated_by_flights(pack);
+    ASSERT_TRUE(estimated);
+    EXPECT_EQ(estimated->capacity_ah, 1.5);
+    EXPECT_EQ(estimated->intervals.capacity_ah, (Interval{1.2, 1.9}));
+    EXPECT_EQ(open_circuit_voltage_v(*estimated, 40.0), 11.4) << "their curve";
+    EXPECT_EQ(estimated->resistance_ohm, pack.resistance_ohm);
+    const auto without_curve =
+        battery_from(parse_toml(with_estimate("capacity_ah = 1.5\ncapacity_interval_ah = [1.2, 1.9]\n"), "b.toml"));
+    EXPECT_EQ(open_circuit_voltage_v(estimated_by_flights(without_curve).value(), 50.0), 11.4) << "the pack's own";
+}
+
+TEST(BatteryToml, RefusesWhatNoFlightsIndicate) {
+    const auto of = [](const std::string& lines) {
+        return rejected([&] { battery_from(parse_toml(with_estimate(lines), "b.toml")); });
+    };
+    EXPECT_EQ(of("capacity_ah = 1.5\ncapacity_interval_ah = [1.6, 1.9]\n"),
+              "b.toml:16:1: this is no interval around capacity_interval_ah = 1.5; expected [LOW, HIGH]");
+    EXPECT_NE(of("capacity_ah = 1.5\n"), "") << "its interval is missing";
+    EXPECT_NE(of("capacity_ah = 0\ncapacity_interval_ah = [0, 1.9]\n"), "");
+    EXPECT_NE(of("capacity_ah = 1.5\ncapacity_interval_ah = [1.2, 1.9]\nsoc_percent = [0, 100]\n"), "");
+    EXPECT_NE(of("capacity_ah = 1.5\ncapacity_interval_ah = [1.2, 1.9]\nlow = 1\n"), "");
+}
+
+TEST(BatteryToml, SaysHowFlightsDiffer) {
+    const std::string between = "\n# how flights differ\n[between_flights]\nflights = 2\nresistance_sd_ohm = 0.012\n";
+    const auto pack = battery_from(parse_toml(pack_toml + between, "b.toml"));
+    EXPECT_EQ(pack.intervals.resistance_scatter, (ResistanceScatter{0.012, 2}));
+    EXPECT_EQ(to_toml(pack), "format = 1\n" + pack_toml + between);
+    EXPECT_FALSE(battery_from(parse_toml(pack_toml, "b.toml")).intervals.resistance_scatter) << "files of before";
+    const auto of = [&](const std::string& from, const std::string& to) {
+        auto text = pack_toml + between;
+        text.replace(text.find(from), from.size(), to);
+        return rejected([&] { battery_from(parse_toml(text, "b.toml")); });
+    };
+    EXPECT_EQ(of("flights = 2", "flights = 1"), "b.toml:20:1: flights = 1, expected a whole number, 2 or more");
+    EXPECT_EQ(of("sd_ohm = 0.012", "sd_ohm = -0.012"), "b.toml:21:1: resistance_sd_ohm = -0.012, expected 0 or more");
+}
+
 TEST(BatteryToml, RefusesWhatIsNoBattery) {
     const auto of = [](const std::string& from, const std::string& to) {
         auto text = pack_toml;
@@ -85,8 +142,12 @@ TEST(BatteryToml, RefusesWhatIsNoPaperBattery) {
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 200\n"), "");
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_mah = 1\n"),
               "b.toml:3:1: has no key 'capacity_ah'; 'capacity_mah' is here; was that meant?");
-    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 3\n"),
-              "b.toml:4:1: unknown key 'cells'; known keys: capacity_ah, intervals, model, "
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 0\n"),
+              "b.toml:4:1: cells = 0, expected 1 to 100");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 100\n"), "");
+    EXPECT_NE(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 101\n"), "");
+    EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncolour = 3\n"),
+              "b.toml:4:1: unknown key 'colour'; known keys: between_flights, capacity_ah, cells, intervals, model, "
               "name, resistance_ohm, voltage_v");
 }
 

@@ -146,6 +146,48 @@ TEST(Identification, SaysThatOneFlightDoesNotTellCapacityAndInitialCharge) {
     EXPECT_GT(missing.high, 2.0 * missing.low);
 }
 
+/// Three flights of the known pack of 2.4 Ah; the first leaves little.
+std::vector<DischargeRecord> flights_of_known_pack() {
+    std::vector<DischargeRecord> records;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        SyntheticDischarge settings;
+        settings.duration_s = 2600.0 - 400.0 * static_cast<double>(seed);
+        records.push_back(test::discharge_record(synthetic_discharge(known_pack(), settings, seed)));
+    }
+    return records;
+}
+
+TEST(Identification, KeepsWhatTheFlightsIndicateBesideAGivenCapacity) {
+    const auto records = flights_of_known_pack();
+    const auto own = identify_battery(records, {});
+    ASSERT_TRUE(own.battery.flight_estimate);
+    EXPECT_EQ(own.battery.flight_estimate->capacity_ah, own.battery.capacity_ah);
+    EXPECT_TRUE(own.battery.flight_estimate->open_circuit.soc_percent.empty()) << "it is the pack's own";
+    EXPECT_EQ(own.battery.flight_estimate->flights,
+              (std::vector<std::string>{"synthetic_1", "synthetic_2", "synthetic_3"}));
+    EXPECT_EQ(capacity_warning(own.battery), "");
+    EXPECT_EQ(own.battery.cells, 3);
+    for (const double given_ah : {2.4, 10.0}) {
+        const auto given = identify_battery(records, {given_ah, {}, ""});
+        ASSERT_TRUE(given.battery.flight_estimate) << given_ah;
+        const auto& estimate = *given.battery.flight_estimate;
+        EXPECT_EQ(given.battery.capacity_ah, given_ah);
+        EXPECT_EQ(estimate.capacity_ah, own.battery.capacity_ah) << given_ah;
+        EXPECT_EQ(estimate.capacity_interval_ah, own.capacity.interval_ah.value()) << given_ah;
+        EXPECT_EQ(estimate.open_circuit.voltage_v, own.battery.thevenin->open_circuit.voltage_v) << given_ah;
+        EXPECT_EQ(capacity_warning(given.battery).empty(), given_ah == 2.4) << given_ah;
+        const auto estimated = estimated_by_flights(given.battery);
+        EXPECT_EQ(full_energy_wh(estimated.value_or(own.battery)), full_energy_wh(own.battery)) << given_ah;
+    }
+}
+
+TEST(Identification, ChecksTheNumberOfCells) {
+    const std::vector records{test::discharge_record(synthetic_discharge(known_pack(), {}, 1))};  // rests at 12.36 V
+    EXPECT_EQ(identify_battery(records, {2.4, 4, ""}).battery.cells, 4);
+    EXPECT_THROW(identify_battery(records, {2.4, 2, ""}), UsageError);
+    EXPECT_THROW(identify_battery(records, {2.4, 5, ""}), UsageError);
+}
+
 /// A pack that relaxes for an hour, as no RC pair of a minute does: 0.05 ohm more after 15 minutes.
 struct SlowPack {
     std::vector<DischargeRecord> records;

@@ -82,7 +82,7 @@ class MadeUpDay {
                 break;
             case 1:
             case 6:
-                if (path_ != nullptr) messages.push_back(position_at(in_air_s));
+                if (path_ != nullptr) messages.push_back(position_message(in_air_s));
                 break;
             case 5:
                 messages.push_back(
@@ -101,7 +101,7 @@ class MadeUpDay {
     }
 
   private:
-    std::string position_at(double in_air_s) {
+    std::string position_message(double in_air_s) {
         const double on_path_s = std::clamp(in_air_s - climb_s, 0.0, path_->flown().duration_s);
         const auto at = live::displacement_at(path_->plan().path, place_at(path_->flown(), on_path_s));
         const double side_m = on_path_s > 0.0 ? 20.0 : 0.0;

@@ -109,11 +109,12 @@ std::vector<std::pair<std::size_t, std::size_t>> blocks_of(const std::vector<std
 }
 
 /// The text with one block taken out of its comment. What the comments say goes instead of it is left out: of a plan
-/// and a policy the schedule, of a utility the one that stands there.
+/// and a policy the schedule, of a utility the one that stands there, of conditions and a path the airspeed.
 std::string with_block(const std::vector<std::string>& lines, const std::pair<std::size_t, std::size_t>& block) {
     const auto& first = lines[block.first];
     const bool decides = first.starts_with("#[plan]") || first.starts_with("#[policy]");
     const bool is_utility = first.starts_with("#utility");
+    const bool states_cruise = first.starts_with("#conditions") || first.starts_with("#[path]");
     std::string text;
     bool in_schedule = false;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -121,6 +122,7 @@ std::string with_block(const std::vector<std::string>& lines, const std::pair<st
         if (lines[i].starts_with("[")) in_schedule = lines[i] == "[[schedule]]";
         if (!is_taken && decides && in_schedule && !lines[i].starts_with("#")) continue;
         if (!is_taken && is_utility && lines[i].starts_with("utility")) continue;
+        if (!is_taken && states_cruise && lines[i].starts_with("airspeed_m_per_s")) continue;
         text += (is_taken ? lines[i].substr(1) : lines[i]) + "\n";
     }
     return text;

@@ -1,14 +1,21 @@
-// Any bytes as a binary log: of each framing and version, into columns and as text, whole and in pieces.
+// Any bytes as a binary log: of each framing and version, as text, whole and in pieces; and by each of some definitions
+// to the phases of every aircraft.
 
 #include "telemetry/binary_log.h"
 
+#include "base/error.h"
+#include "flight/chosen_track.h"
+#include "flight/segmentation.h"
 #include "flight/telemetry_series.h"
 #include "fuzz/fuzz_target.h"
 #include "helpers/binary_definitions.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -32,15 +39,58 @@ void decode(std::string_view bytes, const MessageDictionary& messages, Framing f
     }
 }
 
+struct Definitions {
+    MessageDictionary messages;
+    LogConfiguration configuration;
+};
+
+/// Messages of all field types, those of synthetic logs and, where they are, of pprzlink: of each, seeds hold a flight.
+std::vector<Definitions> all_definitions() {
+    std::vector<Definitions> all{
+        {flightwatt::test::binary_dictionary(),
+         parse_log_configuration(flightwatt::test::binary_protocol, "messages.xml")},
+    };
+    for (const auto* file : {"/logs/opterra_synthetic_01.log", "/../shared/pprzlink/messages.xml"}) {
+        const auto path = std::filesystem::path(std::string(FLIGHTWATT_SOURCE_DIR) + file);
+        if (std::filesystem::exists(path)) {
+            all.push_back({read_message_dictionary(path), read_log_configuration(path)});
+        } else {
+            std::fprintf(stderr, "SKIPPED: %s is not here\n", path.c_str());
+        }
+    }
+    const auto wanted = flightwatt::flight::flight_messages();
+    for (auto& definitions : all) {
+        std::erase_if(definitions.configuration.messages, [&](const auto& message) {
+            return std::ranges::find(wanted, message.first, &MessageRequest::message) == wanted.end();
+        });  // they are copied for each input
+    }
+    return all;
+}
+
+void segment(std::string_view bytes, Framing framing, const Definitions& definitions) {
+    namespace flight = flightwatt::flight;
+    const auto log = read_binary_telemetry({bytes, framing, "fuzz.LOG", "messages.xml", &definitions.messages},
+                                           definitions.configuration, flight::flight_messages());
+    for (const auto& id : flight::telemetry_senders(log)) {
+        const auto series = flight::flight_series(log, id);
+        flight::require_power(series);
+        flight::segment(series);
+    }
+}
+
 }  // namespace
 
 void flightwatt::fuzz::run(std::string_view bytes) {
-    static const auto messages = test::binary_dictionary();
-    static const auto configuration = parse_log_configuration(test::binary_protocol, "messages.xml");
-    for (const auto framing : {Framing::card, Framing::link, Framing::xbee}) decode(bytes, messages, framing);
+    static const auto definitions = all_definitions();
+    for (const auto framing : {Framing::card, Framing::link, Framing::xbee})
+        decode(bytes, definitions.front().messages, framing);
     const auto framing = binary_framing(bytes);
     if (!framing) return;
-    const auto log = read_binary_telemetry({bytes, *framing, "fuzz.LOG", "messages.xml", &messages}, configuration,
-                                           flight::flight_messages());
-    for (const auto& id : flight::telemetry_senders(log)) flight::flight_series(log, id);
+    for (const auto& each : definitions) {
+        try {
+            segment(bytes, *framing, each);
+        } catch (const InputError&) {
+            // They are another aircraft's.
+        }
+    }
 }

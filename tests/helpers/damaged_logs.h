@@ -19,10 +19,10 @@ namespace flightwatt::test {
 /// A line of telemetry: time, sender, message, fields.
 using Words = std::vector<std::string>;
 
-/// The first sample log with every line changed; a line without words is left out.
-inline std::string damaged_sample(const std::function<void(Words&)>& damage) {
+/// A sample log with every line changed; a line without words is left out.
+inline std::string damaged_sample(const std::function<void(Words&)>& damage, int number = 1) {
     std::string text;
-    for (const auto& line : lines_of(read_file(sample(1)))) {
+    for (const auto& line : lines_of(read_file(sample(number)))) {
         std::istringstream stream(line);
         Words words;
         for (std::string word; stream >> word;) words.push_back(word);

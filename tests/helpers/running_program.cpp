@@ -71,14 +71,20 @@ ProgramResult run_shell(const std::string& command, const std::filesystem::path&
 
 ::pid_t start_program(const std::string& name, const std::vector<std::string>& arguments,
                       const std::filesystem::path& folder) {
-    const auto child = ::fork();
-    if (child != 0) return child;
-    std::signal(SIGINT, SIG_DFL);  // which a background job of a shell ignores
-    const auto file = [&](const char* path) {
-        return ::open((folder / path).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const auto create = [&](const char* path) {
+        return ::open((folder / path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     };
-    ::dup2(file("stdout"), STDOUT_FILENO);
-    ::dup2(file("stderr"), STDERR_FILENO);
+    const int out = create("stdout");  // before the program starts: a test may read them at once
+    const int err = create("stderr");
+    const auto child = ::fork();
+    if (child != 0) {
+        ::close(out);
+        ::close(err);
+        return child;
+    }
+    std::signal(SIGINT, SIG_DFL);  // which a background job of a shell ignores
+    ::dup2(out, STDOUT_FILENO);
+    ::dup2(err, STDERR_FILENO);
     if (::chdir(folder.c_str()) != 0) ::_exit(98);
     const auto program = programs_dir() / name;
     std::vector<std::string> words = arguments;

@@ -42,6 +42,23 @@ TEST(LiveFlight, SaysWhatPredictSaysOfTheLogAtThatMoment) {
     }
 }
 
+TEST(LiveFlight, WarnsOfACapacityThatContradictsTheFlights) {
+    const auto log = test::sample(1);
+    auto basis = test::wing_basis();
+    basis.battery_file = "pack.toml";
+    const auto warnings_with = [&](double high_ah) {
+        basis.battery->flight_estimate =
+            std::make_shared<battery::FlightEstimate>(battery::FlightEstimate{2.0, {1.8, high_ah}});
+        LiveFlight flight(test::options_of(log), basis, nullptr);
+        test::receive_all(flight, test::messages_of(log, 100.0));
+        return flight.look().warnings;
+    };
+    EXPECT_THAT(
+        warnings_with(2.4),
+        testing::Contains(testing::StartsWith("pack.toml: battery: the capacity of 3.2 Ah contradicts the flights")));
+    EXPECT_THAT(warnings_with(3.2), testing::Not(testing::Contains(testing::HasSubstr("contradicts the flights"))));
+}
+
 /// A path of legs where the flight was every 10 s.
 std::shared_ptr<const mission::PathForecast> path_of(const std::filesystem::path& log, double from_s, double to_s) {
     const auto series = flight::read_flight(log);

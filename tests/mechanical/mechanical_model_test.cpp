@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -100,6 +102,34 @@ TEST(PhaseCurve, ResolvesTheFastestHarmonic) {
     auto wave = test::cruise_of(250.0, {0.0, 0.0, 2.0}, {0.0, 0.0, 0.0});
     EXPECT_GE(points_of_curve(wave.fourier, wave.duration_s), 12000U);
     EXPECT_NEAR(curve_rms_difference_w(flat, wave), std::numbers::sqrt2, 1e-9);
+}
+
+/// Take-offs of three flights, of which one has no weight, and a cruise without flights.
+MechanicalModel validated_model(bool prefers_curve) {
+    auto model = test::published_model();
+    model.validation = ModelValidation{prefers_curve, {}};
+    model.flights = {{"a", {}}, {"b", {}}, {"c", {}}};
+    const std::vector<PhaseContribution> parts{
+        {0.75, 28.0, 0.1, 20, 30.0}, {0.25, 29.0, 0.1, 20, 26.0}, {0.0, 27.0, 0.1, 20, 90.0}};
+    for (std::size_t i = 0; i < parts.size(); ++i) model.flights[i].phases[flight::Phase::takeoff] = parts[i];
+    model.phases[flight::Phase::takeoff].errors.emplace();
+    return model;
+}
+
+TEST(WithDefaultPower, IsEachPhasesMeanPowerUnlessTheCurveIsPreferred) {
+    const auto model = with_default_power(validated_model(false));
+    const auto& takeoff = model.phases[flight::Phase::takeoff];
+    EXPECT_DOUBLE_EQ(takeoff.fourier.a0_w, 28.0);
+    EXPECT_TRUE(takeoff.fourier.cos_w.empty() && takeoff.fourier.sin_w.empty());
+    EXPECT_FALSE(takeoff.errors) << "they were the curve's";
+    EXPECT_DOUBLE_EQ(energy_j(takeoff.fourier, 10.0), 280.0);
+    for (const auto& [flight, weight] : {std::pair(0U, 0.5), std::pair(1U, 0.5), std::pair(2U, 0.0)})
+        EXPECT_EQ(model.flights[flight].phases[flight::Phase::takeoff]->weight, weight);
+    const auto published = test::published_model();
+    EXPECT_EQ(model.phases[flight::Phase::cruise].fourier.cos_w, published.phases[flight::Phase::cruise].fourier.cos_w)
+        << "of no flight is the mean power known";
+    EXPECT_EQ(to_toml(with_default_power(validated_model(true))), to_toml(validated_model(true)));
+    EXPECT_EQ(to_toml(with_default_power(published)), to_toml(published)) << "without a validation";
 }
 
 }  // namespace

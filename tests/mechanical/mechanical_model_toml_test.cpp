@@ -114,6 +114,25 @@ TEST(MechanicalModelToml, ReadsBackWhatItWrote) {
     EXPECT_EQ(to_toml(again), text);
 }
 
+TEST(MechanicalModelToml, ReadsBackItsValidation) {
+    auto model = made_up_model();
+    for (const bool prefers_curve : {true, false}) {
+        model.validation = {prefers_curve, {{"constant_mean", 4, 55.9 / 3.0}, {"physical", 3, 2.7}}};
+        const auto text = to_toml(model);
+        const auto again = read_mechanical_model(written(text));
+        ASSERT_TRUE(again.validation);
+        EXPECT_EQ(again.validation->prefers_curve, prefers_curve);
+        ASSERT_EQ(again.validation->scores.size(), 2U);
+        EXPECT_EQ(again.validation->scores[0].mean_absolute_error_percent, 55.9 / 3.0);
+        EXPECT_EQ(again.validation->scores[1].model, "physical");
+        EXPECT_EQ(again.validation->scores[1].flights, 3U);
+        EXPECT_EQ(to_toml(again), text);
+    }
+    EXPECT_FALSE(read_mechanical_model(written(sound_text)).validation) << "files of fit and of earlier versions";
+    const auto unknown = refusal_of("[[flights]]", "[validation]\ndefault_model = \"best\"\n[[flights]]");
+    EXPECT_THAT(unknown.what(), HasSubstr("default_model = 'best', expected fourier or constant_mean"));
+}
+
 TEST(MechanicalModelToml, ReadsASoundFile) {
     const auto model = read_mechanical_model(written(sound_text));
     EXPECT_EQ(model.phases[flight::Phase::takeoff].fourier.sin_w, (std::vector<double>{3.0, 4.0}));

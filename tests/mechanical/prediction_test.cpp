@@ -6,6 +6,7 @@
 #include "helpers/made_up_flights.h"
 
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -24,6 +25,59 @@ FlightProgress flown(double seconds, double mean_w) {
     flight.until_s = 100.0 + seconds;
     flight.cruise_energy_wh = units::wh_from_joule(mean_w * seconds);
     return flight;
+}
+
+/// A cruise of these flights' mean powers and weights.
+MechanicalModel cruise_of(const std::vector<double>& means_w, const std::vector<double>& weights) {
+    MechanicalModel model;
+    auto& cruise = model.phases[flight::Phase::cruise];
+    cruise = test::published_model().phases[flight::Phase::cruise];
+    cruise.samples = 700;
+    if (means_w.size() > 1) cruise.level_spread = LevelSpread{means_w.size(), sample_sd(means_w), 1.0, 50.0};
+    for (std::size_t i = 0; i < means_w.size(); ++i) {
+        FlightContribution flight;
+        flight.phases[flight::Phase::cruise] = PhaseContribution{weights[i], 600.0, 1.0, 100, means_w[i]};
+        model.flights.push_back(flight);
+    }
+    return model;
+}
+
+TEST(MeanPower, IsKnownAsFlightsDiffer) {
+    const auto power = mean_power(cruise_of({20.0, 22.0, 27.0, 27.0}, {0.25, 0.25, 0.25, 0.25}), flight::Phase::cruise);
+    ASSERT_TRUE(power && power->interval);
+    EXPECT_DOUBLE_EQ(power->mean_w, 24.0);
+    EXPECT_EQ(power->flights, 4U);
+    EXPECT_EQ(power->samples, 700U);
+    const double half_w = 3.182446 * std::sqrt(38.0 / 3.0) / 2.0;  // by hand: t of 3, sd 3.559, of 4 flights
+    EXPECT_NEAR(power->interval->low, 24.0 - half_w, 1e-5);
+    EXPECT_NEAR(power->interval->high, 24.0 + half_w, 1e-5);
+}
+
+TEST(MeanPower, WeighsAsTheCurveDoes) {
+    const auto model = cruise_of({20.0, 28.0}, {0.75, 0.25});
+    const auto power = mean_power(model, flight::Phase::cruise);
+    ASSERT_TRUE(power && power->interval);
+    EXPECT_DOUBLE_EQ(power->mean_w, 22.0);
+    const double half_w = student_t_half_width(1.0) * std::sqrt(32.0) * std::sqrt(0.75 * 0.75 + 0.25 * 0.25);
+    EXPECT_NEAR(power->interval->high - 22.0, half_w, 1e-9);
+    EXPECT_EQ(power->interval->low, 0.0) << "a drone takes no energy back";
+    EXPECT_EQ(mean_power(cruise_of({20.0, 28.0}, {1.0, 0.0}), flight::Phase::cruise)->flights, 1U);
+    EXPECT_FALSE(mean_power(model, flight::Phase::landing));
+}
+
+TEST(MeanPower, OfOneFlightIsKnownByItsEffectiveSamples) {
+    auto model = cruise_of({25.0}, {1.0});
+    auto& cruise = model.phases[flight::Phase::cruise];
+    cruise.rms_w = 3.0;
+    EXPECT_FALSE(mean_power(model, flight::Phase::cruise)->interval) << "without an analysis of errors";
+    cruise.errors = PhaseErrors{};
+    cruise.errors->effective_samples = 36.0;
+    cruise.errors->degrees_of_freedom = 30.0;
+    const auto power = mean_power(model, flight::Phase::cruise);
+    ASSERT_TRUE(power && power->interval);
+    EXPECT_NEAR(power->interval->high - 25.0, student_t_half_width(30.0) * 0.5, 1e-9);
+    model.flights.front().phases[flight::Phase::cruise]->mean_power_w.reset();
+    EXPECT_FALSE(mean_power(model, flight::Phase::cruise));
 }
 
 TEST(Prediction, BeforeTheFlightIsTheStretchedCurvesEnergyWithStudentsInterval) {

@@ -144,6 +144,21 @@ TEST(Validation, UsesTheAirspeedWhereItWasMeasured) {
     EXPECT_GT(score_of(validated, "constant_mean", flight::Phase::cruise)->mean_absolute_error_percent.value(), 5.0);
 }
 
+/// A take-off alone has no airspeed of a cruise.
+TEST(Validation, SaysNothingByAirspeedOfAFlightWithoutOne) {
+    std::mt19937 random(1);
+    std::vector<MeasuredFlight> flights;
+    double airspeed_cubed = 2000.0;
+    for (const auto* name : {"a", "b", "c", "d"}) {
+        flights.push_back(measured(name, published_model().phases, random));
+        flights.back().samples.phases[flight::Phase::cruise]->airspeed_cubed_m3_per_s3 = airspeed_cubed += 50.0;
+    }
+    flights[0].samples.phases[flight::Phase::cruise].reset();
+    const auto validated = leave_one_out(flights);
+    EXPECT_THAT(model_names(std::span(validated).first(1)), ElementsAre("fourier", "constant_mean", "nearest_flight"));
+    EXPECT_THAT(model_names(std::span(validated).subspan(1)), testing::Contains("airspeed_cubed"));
+}
+
 /// Errors of the cruises of independent generated flights, in half widths of their 95 % intervals, rising.
 std::vector<double> errors_in_half_widths(const std::string& model, double until_s) {
     std::vector<double> errors;

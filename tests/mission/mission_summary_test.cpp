@@ -55,5 +55,18 @@ TEST(Comparison, MakesATable) {
               "3,c,-,10.000,4.000,6.000,688.0,-\n");
 }
 
+TEST(DescribePowerModel, SaysWhatIsUsedAndHowItPredicts) {
+    EXPECT_EQ(describe(mechanical::HeldOutScore{"constant_mean", 4, 18.64}),
+              "power by each phase's mean: 18.6 % off on 4 flights left out of the fit");
+    EXPECT_EQ(describe(mechanical::HeldOutScore{"fourier", 4, 15.0}),
+              "power by each phase's curve: 15.0 % off on 4 flights left out of the fit");
+    EXPECT_EQ(
+        describe(mechanical::HeldOutScore{"physical", 3, 2.7}),
+        "cruise power by the physical model: 2.7 % off on 3 flights left out of the fit, their airspeed and climb "
+        "known");
+    EXPECT_EQ(describe(mechanical::HeldOutScore{"airspeed_cubed", 3, 4.4}),
+              "cruise power by airspeed cubed: 4.4 % off on 3 flights left out of the fit, their airspeed known");
+}
+
 }  // namespace
 }  // namespace flightwatt::mission

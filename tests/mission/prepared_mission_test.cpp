@@ -2,6 +2,8 @@
 
 #include "helpers/paper_missions.h"
 
+#include <memory>
+
 #include <gtest/gtest.h>
 
 namespace flightwatt::mission {
@@ -13,6 +15,18 @@ TEST(PreparedMission, KeepsAScheduleThatIsGiven) {
     EXPECT_EQ(prepared.schedule, mission.schedule);
     EXPECT_EQ(prepared.origin, ScheduleOrigin::given);
     EXPECT_EQ(fly(prepared).simulation.summary.final_soc_percent, simulate(mission).summary.final_soc_percent);
+}
+
+TEST(PreparedMission, LandsAsTheFlightsOfItsPackIndicateToo) {
+    auto mission = test::paper_mission("computing-only");
+    EXPECT_FALSE(fly(prepare(mission)).simulation.summary.by_flights);
+    const double left_percent = *simulate(mission).summary.final_soc_percent;
+    mission.battery.flight_estimate = std::make_shared<battery::FlightEstimate>(
+        battery::FlightEstimate{2.0 * mission.battery.capacity_ah, {5.0, 8.0}});
+    const auto summary = fly(prepare(mission)).simulation.summary;
+    EXPECT_NEAR(*summary.final_soc_percent, left_percent, 1e-9);
+    ASSERT_TRUE(summary.by_flights);
+    EXPECT_NEAR(summary.by_flights->final_soc_percent.value(), 100.0 - (100.0 - left_percent) / 2.0, 1e-6);
 }
 
 TEST(PreparedMission, HasAPlanWhereNoneIsGiven) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -274,6 +275,41 @@ TEST(Simulation, DescribesItsOutcome) {
               "constant: 75.00 % left after 1 h; 25.000 Wh, 0.000 mechanical and 25.000 computing");
     EXPECT_EQ(describe(simulate(constant(25.0, 20.0)).summary),
               "constant: empty after 48 min of 1 h; 25.000 Wh, 0.000 mechanical and 25.000 computing");
+}
+
+/// `constant` on a pack of 20 Ah whose flights indicate 10 Ah, 8 to 12.
+Mission on_doubtful_pack(double power) {
+    auto mission = constant(power, 200.0);
+    mission.battery.flight_estimate =
+        std::make_shared<battery::FlightEstimate>(battery::FlightEstimate{10.0, {8.0, 12.0}});
+    return mission;
+}
+
+TEST(Simulation, LandsWithTheCapacityThatTheFlightsIndicate) {
+    auto mission = on_doubtful_pack(25.0);
+    mission.reserve_soc_percent = 80.0;
+    const auto landing = landing_by_flights(mission, mission.schedule);
+    ASSERT_TRUE(landing);
+    EXPECT_EQ(landing->capacity_ah, 10.0);
+    EXPECT_NEAR(landing->final_soc_percent.value(), 75.0, 1e-9);
+    EXPECT_FALSE(landing->fails_at_s);
+    EXPECT_FALSE(landing->keeps_reserve) << "as modelled, with 87.5 %, it does";
+    EXPECT_EQ(describe(*landing), "75.00 % with the 10 Ah that the flights indicate");
+    mission.battery.capacity_ah = 12.0;
+    EXPECT_FALSE(landing_by_flights(mission, mission.schedule)) << "the capacity is one that they allow";
+    mission.battery.flight_estimate.reset();
+    EXPECT_FALSE(landing_by_flights(mission, mission.schedule)) << "a pack of no flights";
+}
+
+TEST(Simulation, FailsWithTheCapacityThatTheFlightsIndicate) {
+    const auto mission = on_doubtful_pack(125.0);
+    EXPECT_TRUE(simulate(mission).summary.feasible);
+    const auto landing = landing_by_flights(mission, mission.schedule).value();
+    EXPECT_NEAR(landing.fails_at_s.value(), 2880.0, 1e-3);
+    EXPECT_EQ(describe(landing), "the battery fails after 48 min with the 10 Ah that the flights indicate");
+    auto summary = simulate(mission).summary;
+    summary.by_flights = landing;
+    EXPECT_NE(describe(summary).find("37.50 % left after 1 h (the battery fails after 48 min with"), std::string::npos);
 }
 
 TEST(Simulation, WritesCsv) {

@@ -62,8 +62,8 @@ TEST(PredictionLine, HasTheBestModelFirst) {
     flight.measured_wh[flight::Phase::cruise] = 10.0;
     EXPECT_EQ(
         prediction_line(std::vector{flight}),
-        "The energy of a flight that is not in the fit is off by 5.0 % (physical), 20.0 % (fourier), on average over "
-        "1 flight left out in turn");
+        "The energy of a flight that is not in the fit is off by 5.0 % (physical, airspeed known), 20.0 % (fourier), on "
+        "average over 1 flight left out in turn");
     EXPECT_EQ(prediction_line({}), "");
 }
 

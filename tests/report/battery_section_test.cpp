@@ -87,6 +87,62 @@ TEST(BatterySection, SaysWhyThereIsNone) {
     }
 }
 
+/// A mission on the pack that was identified from flights, with the capacity that was given for it.
+mission::AnyMission mission_on(const std::vector<ReportFlight>& flights, double given_ah) {
+    mission::Mission mission;
+    battery::IdentificationOptions options;
+    options.capacity_ah = given_ah;
+    options.name = "pack";
+    mission.battery = identify_for_report(flights, options, 12).identified.value().battery;
+    return mission;
+}
+
+TEST(BatterySection, IsAboutThePackOfTheMissions) {
+    const auto flights = flights_on(test::known_pack(), 2);
+    const std::vector missions{mission_on(flights, 10.0), mission_on(flights, 10.0)};
+    const auto battery = identify_for_report(flights, {}, 12, missions);
+    ASSERT_TRUE(battery.identified);
+    EXPECT_EQ(battery.identified->battery.capacity_ah, 10.0);
+    const auto html = battery_section(battery).html;
+    EXPECT_THAT(html, HasSubstr("The capacity is that of &#39;pack&#39;, which the missions fly on."));
+    EXPECT_THAT(html, HasSubstr("the capacity of 10 Ah contradicts the flights"));
+    EXPECT_THAT(html, testing::Not(HasSubstr("with --capacity")));
+    battery::IdentificationOptions other;
+    other.capacity_ah = 5.0;
+    EXPECT_THROW(identify_for_report(flights, other, 12, missions), UsageError) << "a page has one pack";
+    other.capacity_ah = 10.0;
+    EXPECT_TRUE(identify_for_report(flights, other, 12, missions).identified);
+}
+
+TEST(BatterySection, IsNotAboutPacksOfOtherFlights) {
+    const auto flights = flights_on(test::known_pack(), 2);
+    const std::vector missions{mission_on({flight_on(test::known_pack(), 7)}, 10.0)};
+    const auto battery = identify_for_report(flights, {}, 12, missions);
+    EXPECT_NE(battery.identified.value().battery.capacity_ah, 10.0);
+    EXPECT_TRUE(battery.notes.empty());
+    auto stated = std::get<mission::Mission>(mission_on(flights, 10.0));
+    stated.capacity_is_stated = true;
+    const auto by_flights = identify_for_report(flights, {}, 12, std::vector<mission::AnyMission>{stated});
+    EXPECT_NE(by_flights.identified.value().battery.capacity_ah, 10.0) << "that is the mission's alone";
+}
+
+TEST(BatterySection, SaysWhereTheMissionsFlyOnSeveralPacks) {
+    const auto flights = flights_on(test::known_pack(), 1);
+    const std::vector missions{mission_on(flights, 2.4), mission_on(flights, 10.0)};
+    const auto battery = identify_for_report(flights, {}, 12, missions);
+    EXPECT_EQ(battery.identified.value().capacity.origin, battery::CapacityOrigin::chart);
+    EXPECT_THAT(battery.notes, testing::ElementsAre(HasSubstr("packs of these flights with different capacities")));
+}
+
+TEST(BatterySection, GoesOnWhereNewFlightsDrewMoreThanThePackHas) {
+    const auto flights = flights_on(test::known_pack(), 1);
+    auto mission = std::get<mission::Mission>(mission_on(flights, 2.4));
+    mission.battery.capacity_ah = 0.1;
+    const auto battery = identify_for_report(flights, {}, 12, std::vector<mission::AnyMission>{mission});
+    EXPECT_TRUE(battery.identified);
+    EXPECT_THAT(battery.notes, testing::ElementsAre(HasSubstr("is not used: --capacity is 0.1 Ah")));
+}
+
 TEST(BatterySection, RefusesACapacityThatAFlightExceeds) {
     battery::IdentificationOptions options;
     options.capacity_ah = 0.01;

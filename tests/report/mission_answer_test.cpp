@@ -4,6 +4,8 @@
 #include "helpers/paper_missions.h"
 #include "mission/feasibility_limits.h"
 
+#include <memory>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,6 +59,38 @@ TEST(MissionAnswer, KnowsNoChanceWhereNothingSaysHowFlightsDiffer) {
     EXPECT_TRUE(to_json(simulated, answer)["probability_below_reserve"].is_null());
 }
 
+/// "computing-only", whose pack of 3.2 Ah is of flights that indicate another capacity.
+mission::Mission on_pack_of_flights(double indicated_ah) {
+    auto mission = test::paper_mission("computing-only");
+    mission.battery.flight_estimate = std::make_shared<battery::FlightEstimate>(
+        battery::FlightEstimate{indicated_ah, {0.9 * indicated_ah, 1.1 * indicated_ah}});
+    return mission;
+}
+
+TEST(MissionAnswer, WarnsOfACapacityThatContradictsTheFlights) {
+    const auto lines_of = [](double indicated_ah) {
+        const auto simulated = simulate_for_report({on_pack_of_flights(indicated_ah)}).front();
+        return card_lines(simulated, answer_for(simulated, reading_of("computing-only")));
+    };
+    EXPECT_THAT(lines_of(3.2), testing::Each(testing::Not(HasSubstr("flights indicate"))));
+    const auto lines = lines_of(6.4);
+    EXPECT_THAT(lines[0], testing::MatchesRegex("Lands with [0-9.]+ % \\([0-9]+\\.[0-9] % with the 6.4 Ah that the "
+                                                "flights indicate\\)"));
+    EXPECT_THAT(lines[1], StartsWith("Warning: the capacity of 3.2 Ah contradicts the flights, which indicate 6.4 Ah"));
+}
+
+TEST(MissionAnswer, IsNotSureOfALandingThatTheFlightsContradict) {
+    const auto simulated = simulate_for_report({on_pack_of_flights(6.4)}).front();
+    EXPECT_EQ(verdict_of(simulated), Verdict::keeps) << "with their capacity too";
+    const auto fails = simulate_for_report({on_pack_of_flights(0.8)}).front();
+    EXPECT_EQ(verdict_of(fails), Verdict::may_keep);
+    const auto answer = answer_for(fails, reading_of("computing-only"));
+    EXPECT_THAT(card_lines(fails, answer).front(), HasSubstr("(the battery fails after "));
+    const auto json = to_json(fails, answer);
+    EXPECT_EQ(json["with_capacity_of_flights"]["keeps_reserve"], false);
+    EXPECT_FALSE(to_json(flown("computing-only"), answer).contains("with_capacity_of_flights"));
+}
+
 TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
     const auto reading_with = [](double reserve_percent) -> mission::MissionOfReading {
         return [reserve_percent](const mission::MissionReading& how) {
@@ -102,6 +136,15 @@ TEST(MissionAnswer, CountsCirclesOfAPath) {
     EXPECT_EQ(answer.reach->unit, mission::ReachUnit::circles);
     EXPECT_TRUE(to_json(simulated, answer)["reach"].contains("most_circles"));
     EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("circles as modelled")));
+}
+
+TEST(MissionAnswer, SaysWhichModelIsUsedAndHowItPredicts) {
+    auto simulated = flown("computing-only");
+    const auto answer = answer_for(simulated, reading_of("computing-only"));
+    EXPECT_THAT(card_lines(simulated, answer), testing::Not(Contains(HasSubstr("left out of the fit"))));
+    simulated.mission.power_model = mechanical::HeldOutScore{"constant_mean", 4, 18.6};
+    EXPECT_THAT(card_lines(simulated, answer),
+                Contains("Power by each phase's mean: 18.6 % off on 4 flights left out of the fit"));
 }
 
 TEST(MissionAnswer, SaysWhyThereIsNone) {

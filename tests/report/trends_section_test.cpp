@@ -2,8 +2,11 @@
 
 #include "report/trends_section.h"
 
+#include "base/error.h"
+#include "base/text_table.h"
 #include "helpers/aged_flights.h"
 
+#include <cmath>
 #include <map>
 #include <random>
 #include <string>
@@ -54,17 +57,21 @@ TEST(TrendsStudy, HoldTheAgeingThatIsThere) {
         auto flights = flown(test::aged_flights(ageing, seed), power_part_a_day, seed);
         add_pack_wear(flights, 60);
         for (const auto& flight : flights) EXPECT_TRUE(flight.capacity_ah) << flight.name << " of seed " << seed;
-        double level_ah = 0.0;
-        for (const auto& flight : flights) level_ah += flight.capacity_ah.value_or(0.0) / 9.0;
-        // The capacity's level is the chart's guess; its part of that a day is what the flights tell.
-        const double fresh_ah = level_ah / (1.0 - ageing.part_a_day * ageing.days / 2.0);
+        // The capacity's level is the chart's guess: what the flights tell is the part of it a day.
+        const double mean_part = 1.0 - ageing.part_a_day * ageing.days / 2.0;
         const std::map<std::string, double> truth{{"cruise_power_w", power_part_a_day * fresh_w},
                                                   {"resistance_ohm", ageing.ohm_a_day},
-                                                  {"capacity_ah", -ageing.part_a_day * fresh_ah}};
+                                                  {"capacity_ah", -100.0 * ageing.part_a_day / mean_part}};
         const auto trends = told(trends_of(flights));
         for (const auto& [quantity, per_day] : truth) {
             ASSERT_TRUE(trends.contains(quantity)) << quantity << " of seed " << seed;
-            const auto& trend = trends.at(quantity);
+            auto trend = trends.at(quantity);
+            if (quantity == "capacity_ah") {
+                const auto relative = batch::relative_trend(trend).value();
+                trend.per_day = relative.percent_per_day;
+                trend.low_per_day = relative.low_percent_per_day;
+                trend.high_per_day = relative.high_percent_per_day;
+            }
             held[quantity] += trend.low_per_day <= per_day && per_day <= trend.high_per_day ? 1 : 0;
             found[quantity] += is_significant(trend) && trend.per_day * per_day > 0.0 ? 1 : 0;
         }
@@ -107,6 +114,45 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
     EXPECT_EQ(section->figures.front().id, "trends-1");
     EXPECT_THAT(section->figures.front().description, HasSubstr("cruise [W]: 42, +30 in 30 days"));
     EXPECT_THAT(section->html, HasSubstr("rises"));
+}
+
+/// Five flights a day apart, whose capacity falls by 2 % of the middle one's a day.
+std::vector<FlownFlight> with_capacities(bool level_is_guess) {
+    std::vector<FlownFlight> flights(5);
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+        flights[f].aircraft = "7 Wing";
+        flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
+        flights[f].capacity_ah = 5.0 - 0.1 * (static_cast<double>(f) - 2.0);
+        flights[f].capacity_level_is_guess = level_is_guess;
+    }
+    return flights;
+}
+
+TEST(Trends, OfAGuessedLevelAreInPercentOfIt) {
+    const auto guessed = trends_of(with_capacities(true));
+    EXPECT_THAT(to_text(trend_table(guessed)), HasSubstr("-60 %"));
+    EXPECT_THAT(trends_section(guessed)->figures.front().description,
+                HasSubstr("pack [Ah], level a guess: 5, -60 % in 30 days (-60 % to -60 %), falls"));
+    const auto known = trends_of(with_capacities(false));
+    EXPECT_THAT(to_text(trend_table(known)), testing::Not(HasSubstr("%")));
+    EXPECT_THAT(trends_section(known)->figures.front().description, HasSubstr("pack [Ah]: 5, -3 in 30 days"));
+}
+
+TEST(PackWear, TakesTheCapacityThatIsKnown) {
+    auto aged = test::aged_flights({0.0001, 0.001, 5}, 3);
+    auto guessed = flown(aged, 0.0, 3);
+    auto known = guessed;
+    add_pack_wear(guessed, 60);
+    constexpr double mean_ah = 2.3;
+    EXPECT_TRUE(add_pack_wear(known, 60, mean_ah).empty());
+    double logarithms = 0.0;
+    for (std::size_t f = 0; f < known.size(); ++f) {
+        EXPECT_TRUE(guessed[f].capacity_level_is_guess);
+        EXPECT_FALSE(known[f].capacity_level_is_guess);
+        logarithms += std::log(known[f].capacity_ah.value() / mean_ah);
+    }
+    EXPECT_NEAR(logarithms, 0.0, 0.01);
+    EXPECT_THROW(add_pack_wear(known, 60, 0.2), UsageError);
 }
 
 TEST(PackWear, SaysWhatIsNotKnown) {

@@ -22,6 +22,14 @@ double resistance_scatter_ohm(std::span<const std::optional<FlightResistance>> r
     return std::sqrt(sum_ohm2 / n);
 }
 
+std::optional<ResistanceScatter> resistance_scatter(std::span<const std::optional<FlightResistance>> resistances,
+                                                    double fitted_ohm) {
+    const auto flights =
+        static_cast<std::size_t>(std::ranges::count_if(resistances, [](const auto& own) { return own.has_value(); }));
+    if (flights < 2) return std::nullopt;
+    return ResistanceScatter{resistance_scatter_ohm(resistances, fitted_ohm), flights};
+}
+
 std::optional<ResistanceTrend> resistance_trend(std::span<const std::optional<FlightResistance>> in_order) {
     std::vector<double> number;
     std::vector<double> value_ohm;

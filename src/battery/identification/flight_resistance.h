@@ -22,6 +22,10 @@ struct FlightResistance {
 inline constexpr double usual_scatter_part = 0.15;
 double resistance_scatter_ohm(std::span<const std::optional<FlightResistance>> resistances, double fitted_ohm);
 
+/// That with the number of resistances; none of fewer than two.
+std::optional<ResistanceScatter> resistance_scatter(std::span<const std::optional<FlightResistance>> resistances,
+                                                    double fitted_ohm);
+
 /// How a pack's resistance goes on from flight to flight: a straight line through the flights' resistances, by least
 /// squares, with Student's t of what is left.
 struct ResistanceTrend {

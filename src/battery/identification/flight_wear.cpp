@@ -255,12 +255,12 @@ Eigen::VectorXd standard_errors(const WornProblem& problem, const Places& places
 }
 
 /// What the flight's samples under load say of current and charge alone.
-struct Load {
+struct FlightLoad {
     double charge_ah_per_ohm = 0.0;
     bool tells_resistance = false;
 };
 
-Load load_of(const FlightRows& rows, const Places& places, Eigen::Index rest_rows) {
+FlightLoad load_of(const FlightRows& rows, const Places& places, Eigen::Index rest_rows) {
     const auto under_load = rows.columns.bottomRows(rows.columns.rows() - rest_rows);
     // The reference has no derivative by its initial charge: the slope of the curve is taken from its knots.
     const Eigen::VectorXd current = under_load.col(places.common() + 2);

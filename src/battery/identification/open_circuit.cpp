@@ -15,6 +15,7 @@ namespace flightwatt::battery {
 namespace {
 
 constexpr double greatest_cell_voltage_v = 4.25;
+constexpr double greatest_high_voltage_cell_v = 4.45;
 constexpr std::array chart_soc_percent{0.0,  5.0,  10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0,
                                        55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 90.0, 95.0, 100.0};
 constexpr std::array chart_cell_v{3.27, 3.61, 3.69, 3.71, 3.73, 3.75, 3.77, 3.79, 3.80, 3.82, 3.84,
@@ -50,6 +51,38 @@ double lipo_chart_soc_percent(double cell_voltage_v) {
 
 int lipo_cells(double resting_voltage_v) {
     return static_cast<int>(std::max(1.0, std::ceil(resting_voltage_v / greatest_cell_voltage_v)));
+}
+
+void require_possible_cells(double resting_voltage_v, int cells) {
+    const double cell_v = resting_voltage_v / cells;
+    if (cell_v >= min_cell_voltage_v && cell_v <= max_cell_voltage_v) return;
+    const auto fewest = std::max(1, static_cast<int>(std::ceil(resting_voltage_v / max_cell_voltage_v)));
+    const auto most = std::max(fewest, static_cast<int>(resting_voltage_v / min_cell_voltage_v));
+    throw UsageError(fmt::format(
+        "--cells {}: the fullest flight rests at {:.3f} V, {:.3f} V a cell, and lithium cells rest at {} to {} V: "
+        "expected {} to {} cells",
+        cells, resting_voltage_v, cell_v, min_cell_voltage_v, max_cell_voltage_v, fewest, most));
+}
+
+std::string cells_warning(double resting_voltage_v, int cells, bool is_given) {
+    const double cell_v = resting_voltage_v / cells;
+    if (cell_v < chart_cell_v.front()) {
+        return fmt::format(
+            "{} cells rest at {:.2f} V each before take-off, below an empty LiPo cell ({} V): check the number with "
+            "--cells",
+            cells, cell_v, chart_cell_v.front());
+    }
+    if (cell_v > greatest_cell_voltage_v) {
+        return fmt::format(
+            "{} cells rest at {:.2f} V each, above a full LiPo cell ({:.2f} V): the chart, and the capacity by it, are "
+            "less accurate for high-voltage cells",
+            cells, cell_v, chart_cell_v.back());
+    }
+    const double one_less_v = resting_voltage_v / std::max(1, cells - 1);
+    if (is_given || cells == 1 || one_less_v > greatest_high_voltage_cell_v) return "";
+    return fmt::format(
+        "{} cells assumed, at {:.2f} V each; {} full high-voltage cells rest at {:.2f} V each: give --cells", cells,
+        cell_v, cells - 1, one_less_v);
 }
 
 std::string to_string(CapacityOrigin origin) {

@@ -24,6 +24,17 @@ double lipo_chart_soc_percent(double cell_voltage_v);
 /// How many cells a pack has that rests at this voltage, if it is charged: at most 4.25 V a cell.
 int lipo_cells(double resting_voltage_v);
 
+/// No lithium cell rests below or above these.
+inline constexpr double min_cell_voltage_v = 2.5;
+inline constexpr double max_cell_voltage_v = 4.5;
+
+/// Throws UsageError where a pack of so many cells cannot rest at this voltage.
+void require_possible_cells(double resting_voltage_v, int cells);
+
+/// What is doubtful of the number of cells, by the voltage of the fullest pack at rest: a cell below or above the LiPo
+/// chart; or, where the number was not given, full high-voltage cells (up to 4.45 V), one less. Empty if nothing is.
+std::string cells_warning(double resting_voltage_v, int cells, bool is_given);
+
 /// Where a capacity comes from.
 enum class CapacityOrigin {
     given,  ///< by the user

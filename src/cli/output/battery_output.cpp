@@ -17,6 +17,18 @@ std::string describe(const battery::Capacity& capacity) {
                               units::mv_from_v(battery::lipo_chart_uncertainty_v));
 }
 
+std::string describe_given_capacity(const battery::Battery& pack) {
+    const auto text = fmt::format("using the given capacity of {:.4g} Ah; the flights ", pack.capacity_ah);
+    if (!pack.flight_estimate) return text + "drew too little to estimate it";
+    const auto& [low, high] = pack.flight_estimate->capacity_interval_ah;
+    return text + fmt::format("indicate {:.3g} Ah ({:.3g} to {:.3g} Ah in 95 %)", pack.flight_estimate->capacity_ah,
+                              low, high);
+}
+
+std::string cells_warning(const battery::BatteryIdentification& identified) {
+    return battery::cells_warning(highest_resting_v(identified), identified.cells, identified.cells_are_given);
+}
+
 std::string describe_link(const battery::IdentifiedFlight& flight) {
     if (!flight.link) return "";
     return fmt::format(
@@ -40,8 +52,12 @@ TextTable pack_table(const battery::Battery& pack) {
                               interval ? fmt::format("{:.4g} to {:.4g}", interval->low, interval->high) : "-"});
     };
     add("capacity [Ah]", pack.capacity_ah, pack.intervals.capacity_ah);
+    if (const auto estimated = estimated_by_flights(pack))
+        add("capacity by its flights [Ah]", estimated->capacity_ah, estimated->intervals.capacity_ah);
     if (!pack.thevenin) add("voltage [V]", pack.voltage_v, pack.intervals.voltage_v);
     add("resistance [ohm]", pack.resistance_ohm, pack.intervals.resistance_ohm);
+    if (const auto& scatter = pack.intervals.resistance_scatter)
+        add("resistance between flights, sd [ohm]", scatter->sd_ohm, std::nullopt);
     if (const auto& circuit = pack.thevenin; circuit && circuit->rc_resistance_ohm > 0.0) {
         add("RC resistance [ohm]", circuit->rc_resistance_ohm, pack.intervals.rc_resistance_ohm);
         add("RC time constant [s]", circuit->rc_time_constant_s, pack.intervals.rc_time_constant_s);
@@ -57,6 +73,8 @@ TextTable parameters_table(const battery::BatteryIdentification& identified) {
                               fmt::format("{:.4g}", interval.high)});
     };
     add("resistance_ohm", identified.fit.resistance_ohm, identified.errors.resistance_ohm);
+    if (const auto& scatter = identified.battery.intervals.resistance_scatter)
+        table.rows.push_back({"resistance_sd_ohm", fmt::format("{:.4g}", scatter->sd_ohm), "-", "-"});
     if (identified.fit.rc_resistance_ohm > 0.0) {
         add("rc_resistance_ohm", identified.fit.rc_resistance_ohm, identified.errors.rc_resistance_ohm);
         add("rc_time_constant_s", identified.fit.rc_time_constant_s, identified.errors.rc_time_constant_s);
@@ -106,6 +124,8 @@ std::string provenance(const battery::BatteryIdentification& identified) {
     std::string text = "# Identified by flightwatt battery from";
     for (const auto& flight : identified.flights) text += " " + flight.flight;
     text += fmt::format(".\n# {}; {} cells.\n", describe(identified.capacity), identified.cells);
+    for (const auto& warning : {capacity_warning(identified.battery), cells_warning(identified)})
+        if (!warning.empty()) text += fmt::format("# Warning: {}.\n", warning);
     text += fmt::format("# Flights follow the open-circuit voltage down to {:.1f} % ({:.3f} Ah drawn)",
                         identified.known_down_to_percent, identified.fit.knots_ah.back());
     text += identified.known_down_to_percent > 0.0
@@ -164,8 +184,14 @@ nlohmann::ordered_json to_json(const battery::BatteryIdentification& identified,
     json["capacity_ah"] = identified.capacity.value_ah;
     json["capacity_from"] = to_string(identified.capacity.origin);
     json["capacity_interval_ah"] = interval(identified.capacity.interval_ah);
+    json["flight_estimate_ah"] = Json();
+    if (const auto& flights = identified.battery.flight_estimate)
+        json["flight_estimate_ah"] = estimate(flights->capacity_ah, flights->capacity_interval_ah);
     json["cells"] = identified.cells;
     json["resistance_ohm"] = estimate(fit.resistance_ohm, errors.resistance_ohm);
+    json["resistance_between_flights"] = Json();
+    if (const auto& scatter = identified.battery.intervals.resistance_scatter)
+        json["resistance_between_flights"] = {{"sd_ohm", scatter->sd_ohm}, {"flights", scatter->flights}};
     json["rc_resistance_ohm"] = estimate(fit.rc_resistance_ohm, errors.rc_resistance_ohm);
     json["rc_time_constant_s"] = fit.rc_resistance_ohm > 0.0
                                      ? estimate(fit.rc_time_constant_s, errors.rc_time_constant_s)

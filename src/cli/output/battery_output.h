@@ -15,6 +15,12 @@ namespace flightwatt::cli {
 /// "capacity 4.2 Ah (chart), 3.6 to 5.1 Ah in 95 % if ...".
 std::string describe(const battery::Capacity& capacity);
 
+/// "using the given capacity of 3.2 Ah; the flights indicate 5.4 Ah (2.45 to 11.5 Ah in 95 %)".
+std::string describe_given_capacity(const battery::Battery& pack);
+
+/// What is doubtful of the number of cells; empty if nothing is.
+std::string cells_warning(const battery::BatteryIdentification& identified);
+
 /// Why a flight is taken for one on the pack of another; empty if it is not.
 std::string describe_link(const battery::IdentifiedFlight& flight);
 

@@ -4,6 +4,7 @@
 #include "cli/output/json_text.h"
 #include "mechanical/model_check.h"
 #include "mechanical/model_fit.h"
+#include "mechanical/prediction.h"
 
 #include <algorithm>
 
@@ -61,6 +62,27 @@ nlohmann::ordered_json to_json(const mechanical::PhaseSpread& spread) {
             {"counted_flights", spread.counted_flights}};
 }
 
+nlohmann::ordered_json validation_json(const mechanical::ModelValidation& validation) {
+    auto scores = nlohmann::ordered_json::array();
+    for (const auto& [model, flights, error_percent] : validation.scores)
+        scores.push_back({{"model", model}, {"flights", flights}, {"mean_absolute_error_percent", error_percent}});
+    return {{"default_model", default_model(validation)}, {"scores", scores}};
+}
+
+/// "off on 4 flights left out of the fit: constant_mean 18.6 %, ...; missions use constant_mean".
+std::string describe(const mechanical::ModelValidation& validation, bool has_physical) {
+    std::string errors;
+    std::size_t flights = 0;
+    for (const auto& score : validation.scores) {
+        errors +=
+            fmt::format("{}{} {:.1f} %", errors.empty() ? "" : ", ", score.model, score.mean_absolute_error_percent);
+        if (flights > 0 && score.flights != flights) errors += fmt::format(" (on {} of them)", score.flights);
+        flights = std::max(flights, score.flights);
+    }
+    return fmt::format("off on {} flights left out of the fit: {}; missions use {}{}", flights, errors,
+                       has_physical ? "physical at a stated airspeed, else " : "", default_model(validation));
+}
+
 }  // namespace
 
 std::optional<mechanical::MechanicalModel> read_published(const StageCall& call) {
@@ -71,6 +93,21 @@ std::optional<mechanical::MechanicalModel> read_published(const StageCall& call)
 TextTable table_of(const mechanical::MechanicalModel& model,
                    const std::optional<mechanical::MechanicalModel>& published, mechanical::TableIntervals intervals) {
     return published ? table_one_beside(*published, model, intervals) : table_one(model, intervals);
+}
+
+TextTable mean_power_table(const mechanical::MechanicalModel& model) {
+    TextTable table{{"phase", "mean W", "low 95 %", "high 95 %", "flights", "samples"}, {}};
+    for (const auto phase : flight::all_phases) {
+        const auto power = mean_power(model, phase);
+        if (!power) continue;
+        const auto end = [&](double mechanical::Interval::*of) {
+            return power->interval ? fixed((*power->interval).*of, 2) : "-";
+        };
+        table.rows.push_back({std::string(to_string(phase)), fixed(power->mean_w, 2), end(&mechanical::Interval::low),
+                              end(&mechanical::Interval::high), fmt::format("{}", power->flights),
+                              fmt::format("{}", power->samples)});
+    }
+    return table;
 }
 
 std::string table_text(const TextTable& table, const std::filesystem::path& file) {
@@ -106,6 +143,10 @@ nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
                                   {"slope_w", law->slope_w},
                                   {"residual_sd_w", law->residual_sd_w.value()}};
         }
+        if (const auto power = mean_power(model, phase)) {
+            entry["mean_power_w"] = power->mean_w;
+            entry["mean_power_interval_95_w"] = power->interval ? interval_json(*power->interval) : Json();
+        }
         if (fitted.range) {
             entry["omega_duration_rad"] = {{"low", fitted.range->low_rad},
                                            {"high", fitted.range->high_rad},
@@ -120,6 +161,7 @@ nlohmann::ordered_json to_json(const mechanical::MechanicalModel& model) {
         }
         json["flights"].push_back({{"flight", flight.flight}, {"weights", weights}});
     }
+    if (model.validation) json["validation"] = validation_json(*model.validation);
     json["warnings"] = model_warnings(model);
     json["notes"] = fit_notes(model);
     return json;
@@ -137,6 +179,7 @@ void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& mod
     }
     for (const auto& warning : model_warnings(model)) warn(call, warning);
     for (const auto& text : fit_notes(model)) note(call, text);
+    if (model.validation) note(call, describe(*model.validation, model.physical.has_value()));
 }
 
 void add_errors_json(nlohmann::ordered_json& json, const mechanical::MechanicalModel& model,

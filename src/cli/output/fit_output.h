@@ -23,6 +23,9 @@ TextTable table_of(const mechanical::MechanicalModel& model,
                    const std::optional<mechanical::MechanicalModel>& published,
                    mechanical::TableIntervals intervals = mechanical::TableIntervals::absent);
 
+/// The mean power of each phase with its 95 % interval, the flights and the samples that it rests on.
+TextTable mean_power_table(const mechanical::MechanicalModel& model);
+
 /// Text, CSV, Markdown or LaTeX, by the file's ending. Throws UsageError for another ending.
 std::string table_text(const TextTable& table, const std::filesystem::path& file);
 

@@ -15,6 +15,14 @@
 namespace flightwatt::cli {
 namespace {
 
+/// Nothing where it is not known.
+void add_to_json(const std::optional<mechanical::HeldOutScore>& power_model, nlohmann::ordered_json& json) {
+    if (!power_model) return;
+    json["power_model"] = {{"model", power_model->model},
+                           {"flights", power_model->flights},
+                           {"mean_absolute_error_percent", power_model->mean_absolute_error_percent}};
+}
+
 void add_to_json(const mission::SampledFlights& flights, nlohmann::ordered_json& json) {
     json["probability_below_reserve"] = flights.probability_below_reserve;
     json["probability_below_reserve_standard_error"] = flights.probability_below_reserve_standard_error;
@@ -81,6 +89,10 @@ void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission) 
     for (const auto& warning : warnings) warn(call, fmt::format("{}: {}", mission.name, warning));
 }
 
+void note_power_model(const StageCall& call, const mission::MissionSetup& mission) {
+    if (mission.power_model) note(call, fmt::format("{}: {}", mission.name, mission::describe(*mission.power_model)));
+}
+
 nlohmann::ordered_json to_json(const mission::MissionSummary& summary) {
     nlohmann::ordered_json json;
     json["mission"] = summary.mission;
@@ -96,6 +108,7 @@ nlohmann::ordered_json to_json(const mission::MissionSummary& summary) {
     json["feasible"] = summary.feasible;
     json["reserve_soc_percent"] = summary.reserve_soc_percent;
     json["keeps_reserve"] = summary.keeps_reserve;
+    add_to_json(summary.power_model, json);
     if (summary.utility) json["utility"] = *summary.utility;
     if (const auto& decisions = summary.decisions) {
         json["decisions"] = decisions->made;
@@ -103,7 +116,15 @@ nlohmann::ordered_json to_json(const mission::MissionSummary& summary) {
         json["learned_mechanical_factor"] = decisions->mechanical_factor;
     }
     if (summary.samples) add_to_json(*summary.samples, json);
+    if (summary.by_flights) json[by_flights_key] = to_json(*summary.by_flights);
     return json;
+}
+
+nlohmann::ordered_json to_json(const mission::EstimatedLanding& landing) {
+    return {{"capacity_ah", landing.capacity_ah},
+            {"final_soc_percent", optional_json(landing.final_soc_percent)},
+            {"fails_at_s", optional_json(landing.fails_at_s)},
+            {"keeps_reserve", landing.keeps_reserve}};
 }
 
 std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked) {
@@ -133,7 +154,9 @@ nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::
     json["final_soc_percent"] = optional_json(plan.summary.final_soc_percent);
     json["reserve_soc_percent"] = mission.reserve_soc_percent;
     json["margin_percent"] = plan.margin_percent;
+    add_to_json(mission.power_model, json);
     if (plan.sources) add_sources(*plan.sources, json);
+    if (plan.summary.by_flights) json[by_flights_key] = to_json(*plan.summary.by_flights);
     return json;
 }
 

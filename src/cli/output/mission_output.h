@@ -30,6 +30,9 @@ std::vector<mission::Disturbance> read_disturb_option(const StageCall& call, con
 /// Warns of what no drone has: negative power of the model or of a profile, a battery of another unit.
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission);
 
+/// Which model says the power, where its file knows how it predicts.
+void note_power_model(const StageCall& call, const mission::MissionSetup& mission);
+
 /// If a mission that was written with another schedule has lost its comments.
 void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionText& written);
 
@@ -41,6 +44,11 @@ nlohmann::ordered_json to_json(const mission::MissionSummary& summary);
 
 /// rank,mission,schedule,... (docs/formats.md): a row a mission in their order, all columns whatever the missions are.
 std::string comparison_csv(const std::vector<mission::MissionSummary>& ranked);
+
+/// The same landing with the capacity that the flights of the pack indicate.
+nlohmann::ordered_json to_json(const mission::EstimatedLanding& landing);
+inline constexpr auto by_flights_key =
+    "with_capacity_of_flights";  ///< of that, where a mission's capacity contradicts it
 
 /// A plan; null stands for what an infeasible one does not have.
 nlohmann::ordered_json to_json(const mission::MissionPlan& plan, const mission::MissionSetup& mission);

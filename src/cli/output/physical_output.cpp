@@ -4,6 +4,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "cli/output/json_text.h"
+#include "cli/progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +90,8 @@ std::string physical_text(const mechanical::PhysicalFit& fit, const Screen& scre
                model.flights.size(), model.flights.size() == 1 ? "" : "s", model.bins, model.bin_s, model.samples,
                model.airspeed_m_per_s.low, model.airspeed_m_per_s.high, model.climb_m_per_s.low,
                model.climb_m_per_s.high) +
-           fmt::format("RMS error of stretches held back, {} in turn:\n",
+           fmt::format("RMS error of {} held back, {} in turn:\n",
+                       fit.phases_decided ? "the mean power of phases" : "stretches",
                        fit.held_back_flights ? "flights" : "fifths of the flight") +
            screen_text(trials_table(fit), screen);
 }
@@ -125,6 +127,7 @@ nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit) {
             {"airspeed_m_per_s", {{"low", model.airspeed_m_per_s.low}, {"high", model.airspeed_m_per_s.high}}},
             {"climb_m_per_s", {{"low", model.climb_m_per_s.low}, {"high", model.climb_m_per_s.high}}},
             {"mean_airspeed_m_per_s", model.mean_airspeed_m_per_s},
+            {"held_back", fit.phases_decided ? "mean power of phases" : "stretches"},
             {"trials", trials}};
 }
 
@@ -137,18 +140,26 @@ void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit)
          "no interval; give two flights or more");
 }
 
-void add_model_option(boost::program_options::options_description& options) {
+void add_model_option(boost::program_options::options_description& options, ModelKind usual) {
     options.add_options()(
-        "model", value("KIND")->default_value("fourier"),
-        "fourier: power over the time of each phase; physical: besides, power from airspeed and climb, "
-        "for aircraft on wings whose flights measured them");
+        "model", value("KIND")->default_value(usual == ModelKind::best ? "best" : "fourier"),
+        "fourier: power over the time of each phase; physical: besides, power from airspeed and climb, for aircraft on "
+        "wings whose flights measured them; best: besides, the error of each model on flights left out of the fit, by "
+        "which missions choose one, and the physical model unless the mean power predicts better");
 }
 
-bool is_physical(const StageCall& call) {
+ModelKind model_kind(const StageCall& call) {
     const auto name = call.get<std::string>("model");
-    if (name == "physical") return true;
-    if (name == "fourier") return false;
-    throw UsageError(fmt::format("--model {}: expected fourier or physical", name));
+    if (name == "physical") return ModelKind::physical;
+    if (name == "fourier") return ModelKind::fourier;
+    if (name == "best") return ModelKind::best;
+    throw UsageError(fmt::format("--model {}: expected fourier, physical or best", name));
+}
+
+void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
+                    mechanical::MechanicalModel& model) {
+    TerminalProgress fitting("fits");
+    mechanical::add_best_power(model, measured, options, fitting.shown());
 }
 
 mechanical::PhysicalFit fit_motion(const StageCall& call, std::span<const mechanical::MeasuredFlight> measured,

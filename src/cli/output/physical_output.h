@@ -28,11 +28,22 @@ nlohmann::ordered_json physical_json(const mechanical::PhysicalFit& fit);
 /// Warns of flights that are not in the model, and of what it does not know.
 void warn_of_physical(const StageCall& call, const mechanical::PhysicalFit& fit);
 
-/// --model, fourier if it is not given.
-void add_model_option(boost::program_options::options_description& options);
+/// What is fitted besides the curves.
+enum class ModelKind {
+    fourier,   ///< nothing
+    physical,  ///< the physical model, whatever it predicts
+    best       ///< what mechanical::add_best_power adds
+};
 
-/// Of --model: whether the power of the motion is fitted, beside that of time. Throws UsageError for another kind.
-bool is_physical(const StageCall& call);
+/// --model, the usual one if it is not given.
+void add_model_option(boost::program_options::options_description& options, ModelKind usual);
+
+/// Throws UsageError for another kind.
+ModelKind model_kind(const StageCall& call);
+
+/// mechanical::add_best_power, with its progress.
+void add_best_power(std::span<const mechanical::MeasuredFlight> measured, const mechanical::ModelFitOptions& options,
+                    mechanical::MechanicalModel& model);
 
 /// The physical model of the flights, put into the model too; warns of what it does not know. Throws what
 /// fit_physical_model throws.

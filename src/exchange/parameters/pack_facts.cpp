@@ -28,8 +28,8 @@ PackFacts pack_facts(const EstimatorInput& input, const std::string& reader) {
         facts.battery.thevenin->rc_resistance_ohm = 0.0;
     }
     const double full_v = open_circuit_voltage_v(facts.battery, full_soc_percent);
-    facts.cells =
-        input.cells_in_series.value_or(static_cast<int>(std::max(1.0, std::ceil(full_v / greatest_cell_voltage_v))));
+    const auto fewest = static_cast<int>(std::max(1.0, std::ceil(full_v / greatest_cell_voltage_v)));
+    facts.cells = input.cells_in_series.value_or(facts.battery.cells.value_or(fewest));
     facts.capacity_mah = facts.battery.capacity_ah / units::milli;
     facts.energy_wh = full_energy_wh(facts.battery);
     return facts;

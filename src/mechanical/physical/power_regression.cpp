@@ -36,13 +36,6 @@ double log_prior(double level_sd) {
            0.5 * (prior_degrees_of_freedom + 1.0) * std::log1p(ratio * ratio / prior_degrees_of_freedom);
 }
 
-ColumnVector column_values(const MotionBin& bin, const ColumnVector& scale) {
-    ColumnVector values(column_count);
-    for (const auto term : all_power_terms) values[static_cast<int>(term)] = bin.values[term];
-    values[throttle_column] = bin.throttle_cubed.value_or(0.0);
-    return values.cwiseQuotient(scale);
-}
-
 /// Sums of the chosen columns alone.
 struct ChosenSums {
     ColumnMatrix products;
@@ -92,6 +85,13 @@ ColumnVector column_scale() {
     ColumnVector scale(column_count);
     scale << 1000.0, 0.1, 0.1, 1.0, 1.0, 1.0, 1.0;
     return scale;
+}
+
+ColumnVector column_values(const MotionBin& bin, const ColumnVector& scale) {
+    ColumnVector values(column_count);
+    for (const auto term : all_power_terms) values[static_cast<int>(term)] = bin.values[term];
+    values[throttle_column] = bin.throttle_cubed.value_or(0.0);
+    return values.cwiseQuotient(scale);
 }
 
 MotionSums motion_sums(std::span<const MotionBin> bins, double correlation_s) {

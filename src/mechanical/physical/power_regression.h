@@ -31,6 +31,9 @@ struct MotionSums {
 /// The typical sizes of the columns, which make them alike.
 ColumnVector column_scale();
 
+/// The columns of one bin, over `scale`.
+ColumnVector column_values(const MotionBin& bin, const ColumnVector& scale);
+
 /// Sums over bins whose drift is correlated by exp(-lag / correlation_s); 0: not at all.
 MotionSums motion_sums(std::span<const MotionBin> bins, double correlation_s);
 

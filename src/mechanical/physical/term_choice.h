@@ -12,9 +12,10 @@ struct TermChoice {
     std::vector<PowerTerm> terms;  ///< in the order of all_power_terms; empty where none is determined
     std::vector<TermTrial> trials;
     std::size_t folds = 0;
+    bool phases_decided = false;  ///< not the bins
 };
 
-/// Which terms predict bins that were held back (see fit_physical_model). `flights` have bins; `regression` is theirs.
+/// Which terms predict what was held back (see fit_physical_model). `flights` have bins; `regression` is theirs.
 TermChoice choose_terms(std::span<const FlightMotion> flights, const MotionRegression& regression);
 
 /// Whether physics lets these coefficients be, in the order of `terms`.

@@ -90,8 +90,7 @@ void apply_airspeed(const TomlTable& root, MissionSetup& mission) {
     if (!mission.mechanical) refuse("airspeed_m_per_s has no meaning with mechanical = \"none\"", "leave it out");
     if (root.has("conditions"))
         refuse("airspeed_m_per_s and conditions both state the level of the cruise", "give one");
-    const auto* law = airspeed_law_of(mission.mechanical->phases[Phase::cruise]);
-    if (law == nullptr && mission.mechanical->physical) {
+    if (mission.mechanical->physical) {
         const auto physical = *mission.mechanical->physical;
         const double power = power_w(physical, {airspeed});
         if (power > furthest_power_ratio * power_w(physical, {physical.airspeed_m_per_s.high}) ||
@@ -104,6 +103,7 @@ void apply_airspeed(const TomlTable& root, MissionSetup& mission) {
         apply_physical(airspeed, physical, mission);
         return;
     }
+    const auto* law = airspeed_law_of(mission.mechanical->phases[Phase::cruise]);
     if (law == nullptr) {
         refuse(fmt::format("the cruise of the mechanical model '{}' does not know airspeed", mission.mechanical->name),
                "fit it to two flights or more that measured their airspeed (AIRSPEED or AIR_DATA in their logs)");

@@ -8,6 +8,9 @@
 #include "mission/file/schedule_toml.h"
 #include "mission/mission_file.h"
 
+#include <algorithm>
+#include <string>
+
 #include <fmt/format.h>
 
 namespace flightwatt::mission {
@@ -20,7 +23,24 @@ constexpr double longest_phase_s = 1e7;  // a third of a year: beyond, it is a m
 
 std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root) {
     if (root.string("mechanical") == "none") return std::nullopt;
-    return mechanical::read_mechanical_model(file_of(root, "mechanical"));
+    return with_default_power(mechanical::read_mechanical_model(file_of(root, "mechanical")));
+}
+
+/// The model that says the power, where its file knows how it predicts flights; of a mission with an airspeed, or a
+/// path, that of the cruise.
+void find_power_model(const TomlTable& root, MissionSetup& mission) {
+    if (!mission.mechanical || !mission.mechanical->validation || root.has("conditions")) return;
+    const auto& validation = *mission.mechanical->validation;
+    const bool knows_airspeed = root.has("airspeed_m_per_s") || root.has("path");
+    const std::string model(!knows_airspeed                ? default_model(validation)
+                            : mission.mechanical->physical ? "physical"
+                                                           : "airspeed_cubed");
+    const auto score = std::ranges::find(validation.scores, model, &mechanical::HeldOutScore::model);
+    if (score != validation.scores.end())
+        mission.power_model = *score;
+    else if (knows_airspeed)
+        mission.notes.emplace_back(
+            "its cruise power by airspeed is unproven: the model file has no error of it on flights left out");
 }
 
 mechanical::PhaseClock read_clock(const TomlTable& root, bool has_mechanical) {
@@ -211,6 +231,7 @@ AnyMission parse_mission(std::string_view text, const std::filesystem::path& pat
     if (!root.has("path")) apply_conditions(root, mission);
     read_durations(root, mission);
     read_cruise_path(root, reading, mission);
+    find_power_model(root, mission);
     if (reading.cruise_s) {
         mission.duration_s[Phase::cruise] = *reading.cruise_s;
         mission.duration_is_stated[Phase::cruise] = true;

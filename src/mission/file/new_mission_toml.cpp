@@ -49,12 +49,22 @@ name = {}
         toml_string(mission.name));
 }
 
-/// The airspeed that the model's flights had in cruise, as far as it tells [m/s].
+/// The airspeed of the model's flights in cruise [m/s]: the root of its mean cube, whose power is their mean power.
 double airspeed_of(const mechanical::MechanicalModel& model) {
     constexpr double of_a_small_wing = 13.0;
-    if (model.physical && model.physical->mean_airspeed_m_per_s > 0.0) return model.physical->mean_airspeed_m_per_s;
-    const auto& law = model.phases[flight::Phase::cruise].airspeed_law;
-    return law && law->mean > 0.0 ? std::cbrt(law->mean) : of_a_small_wing;
+    if (const auto& law = model.phases[flight::Phase::cruise].airspeed_law) return std::cbrt(law->mean);
+    const auto& physical = model.physical;
+    return physical && physical->mean_airspeed_m_per_s > 0.0 ? physical->mean_airspeed_m_per_s : of_a_small_wing;
+}
+
+/// Stated where the physical model makes the cruise's power of it.
+std::string cruise_airspeed(const NewMission& mission) {
+    const auto& physical = mission.model.physical;
+    const bool is_stated = physical && physical->mean_airspeed_m_per_s > 0.0;
+    return fmt::format(
+        "# Airspeed of the cruise [m/s]{}.\n{}airspeed_m_per_s = {:.1f}\n",
+        is_stated ? ": its power is that of [physical] in the model" : ", of a model whose flights measured it",
+        is_stated ? "" : "#", airspeed_of(mission.model));
 }
 
 std::string aircraft(const NewMission& mission) {
@@ -71,17 +81,16 @@ mechanical = {}
 # The curve of a phase that lasts longer or shorter than the model's: "stretch" it, or "absolute": it runs on in its own
 # seconds.
 #phase_clock = "absolute"
-# Airspeed of the cruise [m/s], of a model whose flights measured it.
-#airspeed_m_per_s = {:.1f}
-
+{}
 )",
-        toml_string(mission.mechanical), durations, airspeed_of(mission.model));
+        toml_string(mission.mechanical), durations, cruise_airspeed(mission));
 }
 
-/// Of LiPo cells, by the voltage of a full pack, or by the paper's constant one.
+/// As the battery says; else of LiPo cells, by the voltage of a full pack, or by the paper's constant one.
 int cells_of(const battery::Battery& pack) {
     constexpr double full_v = 4.2;
     constexpr double usual_v = 3.7;
+    if (pack.cells) return *pack.cells;
     const double cells =
         pack.thevenin ? pack.thevenin->open_circuit.voltage_v.back() / full_v : pack.voltage_v / usual_v;
     return std::max(1, static_cast<int>(std::lround(cells)));
@@ -127,7 +136,8 @@ constexpr std::array<Condition, mechanical::covariate_count> conditions_of_missi
 
 std::string conditions(const NewMission& mission) {
     std::string text =
-        "# What the level of the cruise follows, of a model that was fitted with --level-covariate: its one.\n";
+        "# What the level of the cruise follows, of a model that was fitted with --level-covariate: its one\n"
+        "# (instead of airspeed_m_per_s).\n";
     const auto& law = mission.model.phases[flight::Phase::cruise].level_law;
     for (const auto& condition : conditions_of_missions) {
         const bool is_the_models = law && law->covariate == condition.covariate;
@@ -265,9 +275,9 @@ std::string uncertainty(const NewMission& mission) {
 std::string path(const NewMission& mission) {
     const auto airspeed = fmt::format("{:.1f}", airspeed_of(mission.model));
     return fmt::format(
-        R"(# Where the cruise flies, instead of for how long (duration_s and conditions then say nothing of the cruise). The
-# model needs [physical] (`flightwatt fit --model physical`); one without it flies level paths, if its flights measured
-# their airspeed. `flightwatt path` shows the legs. Places in metres east and north of the origin:
+        R"(# Where the cruise flies (instead of airspeed_m_per_s; duration_s and conditions then say nothing of the cruise). The
+# model needs [physical], from `flightwatt batch` or `fit --model physical`; one without it flies level paths, if its
+# flights measured their airspeed. `flightwatt path` shows the legs. Places in metres east and north of the origin:
 #[path]
 #airspeed_m_per_s = {0}
 #altitude_m = 90              # as the cruise begins

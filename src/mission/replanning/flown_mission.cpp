@@ -35,6 +35,7 @@ MissionSetup known_mission(const MissionSetup& stated, const mechanical::Mechani
     known.mechanical = model;
     known.cruise_level.reset();
     known.cruise_path.reset();
+    known.power_model.reset();
     for (const auto phase : all_phases) {
         if (stated.duration_s[phase] == 0.0) continue;
         if (flown_s) {

@@ -38,6 +38,16 @@ double moved_logarithm(double value, const std::optional<battery::Interval>& int
     return value * std::exp(z * sd);
 }
 
+/// The resistance of a flight to come: each quantile is as far off as those of the flights' mean and of how a flight
+/// differs from it together. Not below 0.
+double moved_resistance_ohm(double mean_ohm, const battery::BatteryIntervals& intervals, double z) {
+    const double of_mean_ohm = moved(mean_ohm, intervals.resistance_ohm, z, 0.0);
+    const auto& scatter = intervals.resistance_scatter;
+    if (!scatter) return of_mean_ohm;
+    const double of_flight_ohm = scatter->sd_ohm * student_of_normal(z, static_cast<double>(scatter->flights));
+    return std::max(0.0, mean_ohm + std::copysign(std::hypot(of_mean_ohm - mean_ohm, of_flight_ohm), z));
+}
+
 /// Numbers of one flight: Steele, Lea and Flood's SplitMix64 (OOPSLA 2014), which is begun in no time.
 class FlightNumbers {
   public:
@@ -154,7 +164,7 @@ void move_battery(const battery::BatteryIntervals& intervals, Normals& normal, b
     battery.capacity_ah =
         moved(battery.capacity_ah, intervals.capacity_ah, capacity_z, least_part * battery.capacity_ah);
     battery.voltage_v = moved(battery.voltage_v, intervals.voltage_v, voltage_z, least_part * battery.voltage_v);
-    battery.resistance_ohm = moved(battery.resistance_ohm, intervals.resistance_ohm, resistance_z, 0.0);
+    battery.resistance_ohm = moved_resistance_ohm(battery.resistance_ohm, intervals, resistance_z);
     if (!battery.thevenin) return;
     auto& circuit = *battery.thevenin;
     circuit.rc_resistance_ohm = moved(circuit.rc_resistance_ohm, intervals.rc_resistance_ohm, rc_resistance_z, 0.0);
@@ -266,6 +276,7 @@ MissionSetup without_evidence(MissionSetup mission) {
     if (mission.mechanical) {
         mission.mechanical->flights.clear();
         mission.mechanical->physical.reset();
+        mission.mechanical->validation.reset();
         for (const auto phase : all_phases) {
             const auto& model = mission.mechanical->phases[phase];
             mechanical::PhaseModel curve;

@@ -164,6 +164,17 @@ void find_capacity(const MissionSetup& mission, FlightSpreads& spreads) {
     note_source(spreads, interval.has_value(), "battery capacity", basis);
 }
 
+void find_resistance(const battery::BatteryIntervals& intervals, FlightSpreads& spreads) {
+    std::string basis = "the battery's file has no interval";
+    if (const auto& scatter = intervals.resistance_scatter)
+        basis = fmt::format("sd {:.4g} ohm, of {} flights, {}, {}", scatter->sd_ohm, scatter->flights,
+                            student_words(static_cast<double>(scatter->flights)),
+                            intervals.resistance_ohm ? "with the interval of their mean" : "their mean as if known");
+    else if (intervals.resistance_ohm)
+        basis = "the battery's interval; not how flights differ";
+    note_source(spreads, intervals.resistance_scatter || intervals.resistance_ohm, "battery resistance", basis);
+}
+
 void find_battery(const MissionSetup& mission, FlightSpreads& spreads) {
     const auto& battery = mission.battery;
     const auto& intervals = spreads.battery = battery.intervals;
@@ -181,7 +192,7 @@ void find_battery(const MissionSetup& mission, FlightSpreads& spreads) {
     } else {
         find("battery voltage", intervals.voltage_v.has_value());
     }
-    find("battery resistance", intervals.resistance_ohm.has_value());
+    find_resistance(intervals, spreads);
 }
 
 }  // namespace

@@ -27,6 +27,15 @@ TEST(FlightResistance, ScattersByMoreThanItsErrors) {
     EXPECT_NEAR(wide, std::sqrt((0.015 * 0.015 + 2.0 * (4e-4 - 1e-6)) / 3.0), 1e-9);
 }
 
+TEST(FlightResistance, DiffersOfTwoFlightsOrMore) {
+    const std::vector<std::optional<FlightResistance>> two{resistance(0.08), std::nullopt, resistance(0.12)};
+    const auto scatter = resistance_scatter(two, 0.1);
+    ASSERT_TRUE(scatter);
+    EXPECT_EQ(scatter->flights, 2U);
+    EXPECT_EQ(scatter->sd_ohm, resistance_scatter_ohm(two, 0.1));
+    EXPECT_FALSE(resistance_scatter(std::vector{resistance(0.08), std::optional<FlightResistance>()}, 0.1));
+}
+
 TEST(FlightResistance, HasATrendFromThreeFlightsOn) {
     EXPECT_FALSE(resistance_trend(std::vector{resistance(0.08), std::optional<FlightResistance>(), resistance(0.09)}));
     const auto rising = resistance_trend(

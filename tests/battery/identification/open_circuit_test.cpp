@@ -53,6 +53,41 @@ TEST(LipoCells, AreAsManyAsTheRestingVoltageNeeds) {
     EXPECT_EQ(lipo_cells(0.0), 1);
 }
 
+TEST(LipoCells, AreRejectedWhereTheVoltageExcludesThem) {
+    EXPECT_NO_THROW(require_possible_cells(13.5, 3)) << "4.5 V a cell";
+    EXPECT_NO_THROW(require_possible_cells(12.5, 5)) << "2.5 V a cell";
+    EXPECT_THROW(require_possible_cells(13.51, 3), UsageError);
+    EXPECT_THROW(require_possible_cells(12.49, 5), UsageError);
+    try {
+        require_possible_cells(12.498, 2);
+        FAIL() << "two cells of 6.25 V were accepted";
+    } catch (const UsageError& error) {
+        EXPECT_STREQ(
+            error.what(),
+            "--cells 2: the fullest flight rests at 12.498 V, 6.249 V a cell, and lithium cells rest at 2.5 to 4.5 "
+            "V: expected 3 to 4 cells");
+    }
+}
+
+TEST(LipoCells, AreDoubtfulOutsideOfTheChart) {
+    EXPECT_EQ(cells_warning(12.6, 3, false), "");
+    EXPECT_EQ(cells_warning(3.0 * 3.27, 3, true), "");
+    EXPECT_NE(cells_warning(3.0 * 3.269, 3, true).find("below an empty LiPo cell (3.27 V)"), std::string::npos);
+    EXPECT_EQ(cells_warning(6.0 * 4.25, 6, true), "");
+    EXPECT_NE(cells_warning(6.0 * 4.251, 6, true).find("above a full LiPo cell (4.20 V)"), std::string::npos);
+}
+
+TEST(LipoCells, MayBeOneLessOfHighVoltage) {
+    const double full_v = 6.0 * 4.35;  // six cells that a guess takes for seven
+    ASSERT_EQ(lipo_cells(full_v), 7);
+    EXPECT_EQ(cells_warning(full_v, 7, false),
+              "7 cells assumed, at 3.73 V each; 6 full high-voltage cells rest at 4.35 V each: give --cells");
+    EXPECT_EQ(cells_warning(full_v, 7, true), "") << "seven were given";
+    EXPECT_NE(cells_warning(6.0 * 4.449, 7, false), "");
+    EXPECT_EQ(cells_warning(6.0 * 4.451, 7, false), "") << "more than a full cell of any chemistry";
+    EXPECT_EQ(cells_warning(4.1, 1, false), "");
+}
+
 TEST(OpenCircuit, TakesTheMedianOfWhatIsProbable) {
     const std::vector<ChargeScale> posterior{{1.0, 0.0, 0.2}, {2.0, 0.0, 0.5}, {3.0, 0.0, 0.3}};
     const auto capacity = capacity_of(1.0, posterior, std::nullopt);

@@ -30,8 +30,9 @@ class BatteryOutput : public testing::Test {
 
 TEST_F(BatteryOutput, HasARowAParameterAndAFlight) {
     const auto parameters = parameters_table(identified_);
-    ASSERT_EQ(parameters.rows.size(), 3U);
+    ASSERT_EQ(parameters.rows.size(), 4U);
     EXPECT_EQ(parameters.rows[0][0], "resistance_ohm");
+    EXPECT_EQ(parameters.rows[1][0], "resistance_sd_ohm");
     EXPECT_LT(std::stod(parameters.rows[0][2]), std::stod(parameters.rows[0][3])) << "low and high";
     const auto flights = flights_table(identified_, checks_);
     ASSERT_EQ(flights.rows.size(), 2U);
@@ -70,7 +71,7 @@ TEST_F(BatteryOutput, SaysWhetherTheResistanceGoesOn) {
 
 TEST_F(BatteryOutput, HasNoRowOfAnAbsentRcPair) {
     identified_.fit.rc_resistance_ohm = 0.0;
-    EXPECT_EQ(parameters_table(identified_).rows.size(), 1U);
+    EXPECT_EQ(parameters_table(identified_).rows.size(), 2U) << "the resistance and how flights differ";
     EXPECT_TRUE(to_json(identified_, checks_)["rc_time_constant_s"]["value"].is_null());
 }
 
@@ -80,6 +81,32 @@ TEST_F(BatteryOutput, IsNullInJsonWhereNothingIsKnown) {
     EXPECT_TRUE(json["capacity_interval_ah"].is_null()) << "it was given";
     EXPECT_EQ(json["flights"].size(), 2U);
     EXPECT_EQ(json["left_out"][1]["flight"], "synthetic_2");
+}
+
+TEST_F(BatteryOutput, ComparesAGivenCapacity) {
+    auto& pack = identified_.battery;
+    const auto as_given = describe_given_capacity(pack);
+    EXPECT_THAT(as_given, testing::AllOf(HasSubstr("using the given capacity of 2.4 Ah; the flights indicate "),
+                                         HasSubstr(" Ah in 95 %)")));
+    EXPECT_THAT(provenance(identified_), testing::Not(HasSubstr("Warning")));
+    EXPECT_EQ(to_json(identified_, checks_)["flight_estimate_ah"]["value"], pack.flight_estimate->capacity_ah);
+    EXPECT_THAT(pack_table(pack).rows,
+                testing::Not(testing::Contains(testing::Contains("capacity by its flights [Ah]"))));
+    pack.capacity_ah = 50.0;
+    EXPECT_THAT(provenance(identified_), HasSubstr("\n# Warning: the capacity of 50 Ah contradicts the flights"));
+    EXPECT_THAT(pack_table(pack).rows, testing::Contains(testing::Contains("capacity by its flights [Ah]")));
+    pack.flight_estimate.reset();
+    EXPECT_EQ(describe_given_capacity(pack),
+              "using the given capacity of 50 Ah; the flights drew too little to estimate it");
+    EXPECT_TRUE(to_json(identified_, checks_)["flight_estimate_ah"].is_null());
+}
+
+TEST_F(BatteryOutput, WarnsOfAVoltageThatCellsDoNotHave) {
+    EXPECT_EQ(cells_warning(identified_), "");
+    identified_.cells = 4;
+    EXPECT_THAT(cells_warning(identified_),
+                HasSubstr("4 cells rest at 3.09 V each before take-off, below an empty LiPo cell"));
+    EXPECT_THAT(provenance(identified_), HasSubstr("\n# Warning: 4 cells rest"));
 }
 
 TEST_F(BatteryOutput, NamesTheFlightsAtTheHeadOfItsFile) {

@@ -53,10 +53,25 @@ TEST(MissionJson, HoldsTheSummaryWithNullForNever) {
     EXPECT_TRUE(json["depleted_at_s"].is_null());
     EXPECT_TRUE(json["cut_off_at_s"].is_null());
     EXPECT_FALSE(json.contains("samples"));
+    EXPECT_FALSE(json.contains("power_model")) << "its file does not tell how it predicts";
+    summary.power_model = mechanical::HeldOutScore{"physical", 4, 2.7};
+    EXPECT_EQ(to_json(summary)["power_model"],
+              nlohmann::ordered_json({{"model", "physical"}, {"flights", 4}, {"mean_absolute_error_percent", 2.7}}));
     summary.depleted_at_s = 600.0;
     summary.final_soc_percent.reset();
     EXPECT_EQ(to_json(summary)["depleted_at_s"], 600.0);
     EXPECT_TRUE(to_json(summary)["final_soc_percent"].is_null());
+}
+
+TEST(MissionJson, HoldsTheLandingThatTheFlightsIndicate) {
+    auto summary = simulate(test::paper_mission("phased")).summary;
+    EXPECT_FALSE(to_json(summary).contains(by_flights_key));
+    summary.by_flights = mission::EstimatedLanding{2.05, 59.7, std::nullopt, true};
+    const auto json = to_json(summary)[by_flights_key];
+    EXPECT_EQ(json["capacity_ah"], 2.05);
+    EXPECT_EQ(json["final_soc_percent"], 59.7);
+    EXPECT_TRUE(json["fails_at_s"].is_null());
+    EXPECT_EQ(json["keeps_reserve"], true);
 }
 
 TEST(MissionJson, HoldsTheChancesOfSampledFlights) {

@@ -109,6 +109,45 @@ TEST(ConditionsToml, SetsTheCruiseLevelByTheAirspeed) {
     EXPECT_NE(refusal("law.toml", "13\nconditions = { height_m = 100 }").find("give one"), std::string::npos);
 }
 
+/// Of a model file that knows how its models predict: which one says the power.
+TEST(ConditionsToml, NamesTheModelThatSaysThePowerAndItsError) {
+    const auto folder = folder_with_opterra();
+    auto model = mechanical::read_mechanical_model(folder / "opterra.toml");
+    auto& cruise = model.phases[flight::Phase::cruise];
+    cruise.airspeed_law = mechanical::LevelLaw{
+        mechanical::Covariate::airspeed_cubed, 3, 2197.0, 400.0, 1728.0, 2744.0, 27.0, 27.0 * 400.0 / 2197.0, 1.5};
+    model.flights = {{"a", {}}, {"b", {}}};
+    for (auto& flight : model.flights)
+        flight.phases[flight::Phase::cruise] = mechanical::PhaseContribution{0.5, 600.0, 0.1, 500, 25.0};
+    model.validation = {false, {{"constant_mean", 4, 18.6}, {"fourier", 4, 15.0}, {"physical", 3, 2.7}}};
+    const auto read = [&](const std::string& lines) {
+        write_text(folder / "model.toml", mechanical::to_toml(model));
+        return scheduled(on_model("model.toml", lines), folder / "m.toml");
+    };
+    const auto cruise_w = [](const Mission& mission) {
+        const auto& of = mission.mechanical->phases[flight::Phase::cruise];
+        return energy_j(of.fourier, of.duration_s) / of.duration_s;
+    };
+    EXPECT_EQ(read("").power_model.value().model, "constant_mean");
+    EXPECT_DOUBLE_EQ(cruise_w(read("")), 25.0);
+    model.validation->prefers_curve = true;
+    EXPECT_EQ(read("").power_model.value().mean_absolute_error_percent, 15.0);
+    EXPECT_NE(cruise_w(read("")), 25.0);
+    // The law of airspeed has no error there: its use is a warning.
+    EXPECT_FALSE(read("airspeed_m_per_s = 13").power_model);
+    EXPECT_NE(read("airspeed_m_per_s = 13").notes.front().find("is unproven"), std::string::npos);
+    model.physical = test::made_up_wing();
+    model.physical->bins = 100;
+    model.physical->bin_s = 30.0;
+    const auto physical = read("airspeed_m_per_s = 12");
+    EXPECT_EQ(physical.power_model.value().model, "physical");
+    EXPECT_NEAR(cruise_w(physical), 0.01 * 1728.0, 1e-9) << "the law of airspeed says another power";
+    EXPECT_TRUE(physical.notes.empty());
+    model.validation.reset();
+    EXPECT_FALSE(read("airspeed_m_per_s = 12").power_model) << "nothing is known of its error";
+    EXPECT_TRUE(read("airspeed_m_per_s = 12").notes.empty());
+}
+
 TEST(ConditionsToml, RefusesConditionsThatNothingSupports) {
     const auto folder = folder_with_law();
     const auto refusal = [&](const std::string& model, const std::string& conditions) {

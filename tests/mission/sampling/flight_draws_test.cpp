@@ -1,12 +1,16 @@
 #include "mission/sampling/flight_draws.h"
 
 #include "base/statistics.h"
+#include "battery/identification.h"
 #include "helpers/paper_missions.h"
 #include "helpers/steady_mission.h"
 #include "mission/sampling/student.h"
 #include "mission/simulation/least_power.h"
 
 #include <cmath>
+#include <optional>
+#include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -120,6 +124,75 @@ TEST(FlightDraws, TakeWhatTheModelsKnow) {
     }
     EXPECT_NEAR(capacity_below / flights, 0.025, 0.01) << "each side of the interval has 2.5 %";
     EXPECT_NEAR(std::sqrt(power_square_sum / flights), 0.5, 0.025);
+}
+
+/// How often the resistances of a file's draws hold those of flights to come, in the middle 95 %: `flights` of a pack
+/// whose flights differ by a normal `sd_part`; their own resistances are known.
+double share_of_flights_to_come(std::size_t flights, double sd_part) {
+    constexpr std::size_t phase_numbers = 6;
+    constexpr std::size_t of_resistance = phase_numbers + 2;  // after capacity and voltage
+    constexpr int packs = 400;
+    constexpr double mean_ohm = 0.1;
+    std::mt19937 random(7);
+    std::normal_distribution<double> own(mean_ohm, sd_part * mean_ohm);
+    int held = 0;
+    for (int pack = 0; pack < packs; ++pack) {
+        std::vector<std::optional<battery::FlightResistance>> known;
+        std::vector<double> known_ohm;
+        for (std::size_t f = 0; f < flights; ++f) {
+            known_ohm.push_back(own(random));
+            known.push_back(battery::FlightResistance{known_ohm.back(), 0.0, 10.0, {}});
+        }
+        auto mission = test::paper_mission("phased");
+        auto& battery = mission.battery;
+        battery.resistance_ohm = mean(known_ohm);
+        const double half_ohm = normal_half_width() * sample_sd(known_ohm) / std::sqrt(static_cast<double>(flights));
+        battery.intervals.resistance_ohm = {battery.resistance_ohm - half_ohm, battery.resistance_ohm + half_ohm};
+        battery.intervals.resistance_scatter = resistance_scatter(known, battery.resistance_ohm);
+        const auto spreads = find_spreads(mission);
+        std::vector<double> normals(count_normals(mission), 0.0);
+        const auto quantile_ohm = [&](double z) {
+            normals[of_resistance] = z;
+            return flight_of(mission, spreads, normals).battery.resistance_ohm;
+        };
+        const double to_come_ohm = own(random);
+        held += quantile_ohm(-1.96) <= to_come_ohm && to_come_ohm <= quantile_ohm(1.96) ? 1 : 0;
+    }
+    return static_cast<double>(held) / packs;
+}
+
+// 400 packs: 95 % +- 1.1 points. By the interval of the mean alone it were 30 to 57 %.
+TEST(FlightDraws, HoldTheResistancesOfFlightsToCome) {
+    for (const std::size_t flights : {2U, 4U, 12U})
+        for (const double sd_part : {0.05, 0.15, 0.3})
+            EXPECT_GE(share_of_flights_to_come(flights, sd_part), 0.90)
+                << flights << " flights that differ by " << sd_part;
+    EXPECT_LE(share_of_flights_to_come(12, 0.15), 0.98);
+}
+
+TEST(FlightDraws, DrawTheResistanceOfFilesOfBeforeByItsInterval) {
+    auto mission = test::paper_mission("phased");
+    constexpr std::size_t of_resistance = 8;
+    const double ohm = mission.battery.resistance_ohm;
+    mission.battery.intervals.resistance_ohm = battery::Interval{0.8 * ohm, 1.1 * ohm};
+    const auto drawn_ohm = [&](double z) {
+        std::vector<double> normals(count_normals(mission), 0.0);
+        normals[of_resistance] = z;
+        return flight_of(mission, find_spreads(mission), normals).battery.resistance_ohm;
+    };
+    EXPECT_NEAR(drawn_ohm(-1.96), 0.8 * ohm, 1e-12);
+    EXPECT_NEAR(drawn_ohm(1.96), 1.1 * ohm, 1e-12);
+    EXPECT_NE(
+        describe(find_spreads(mission).sources).find("battery resistance (the battery's interval; not how flights"),
+        std::string::npos);
+    mission.battery.intervals.resistance_scatter = battery::ResistanceScatter{0.0, 4};
+    EXPECT_NEAR(drawn_ohm(1.96), 1.1 * ohm, 1e-12) << "flights that do not differ";
+    mission.battery.intervals.resistance_scatter = battery::ResistanceScatter{ohm, 4};
+    EXPECT_EQ(drawn_ohm(0.0), ohm);
+    EXPECT_EQ(drawn_ohm(-3.0), 0.0);
+    EXPECT_NEAR(drawn_ohm(1.96), ohm * (1.0 + std::hypot(0.1, 2.776)), 0.01 * ohm);
+    EXPECT_NE(describe(find_spreads(mission).sources).find("of 4 flights, Student t with 4 degrees of freedom"),
+              std::string::npos);
 }
 
 TEST(FlightDraws, LeaveAloneWhatTheMissionStates) {

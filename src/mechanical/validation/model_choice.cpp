@@ -1,0 +1,109 @@
+// Which of the models of a file a mission uses, by flights that were left out of the fit.
+
+#include "base/error.h"
+#include "mechanical/physical_fit.h"
+#include "mechanical/validation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+constexpr auto mean_model = "constant_mean";
+constexpr auto curve = "fourier";
+constexpr auto physical = "physical";
+constexpr std::array models_of_motion{physical, "airspeed_cubed"};  // they know how the flight was flown
+
+/// The flights that the model predicts as a whole.
+std::vector<ValidatedFlight> predicted_by(std::span<const ValidatedFlight> flights, const std::string& model) {
+    std::vector<ValidatedFlight> predicted;
+    std::ranges::copy_if(flights, std::back_inserter(predicted),
+                         [&](const auto& flight) { return predicted_energy(flight, model, std::nullopt).has_value(); });
+    return predicted;
+}
+
+/// Of the whole flights; std::nullopt without an error in percent.
+std::optional<HeldOutScore> held_out_score(std::span<const ValidatedFlight> flights, const std::string& model) {
+    const auto score = score_of(flights, model, std::nullopt);
+    if (!score || !score->mean_absolute_error_percent) return std::nullopt;
+    return HeldOutScore{model, score->flights, *score->mean_absolute_error_percent};
+}
+
+double error_wh(const ValidatedFlight& flight, const std::string& model) {
+    const auto energy = predicted_energy(flight, model, std::nullopt).value();
+    return std::abs(energy.estimate.energy_wh - energy.measured_wh);
+}
+
+bool is_curve_better(std::span<const ValidatedFlight> flights, const HeldOutScore& of_curve,
+                     const HeldOutScore& of_mean) {
+    if (of_curve.mean_absolute_error_percent > (1.0 - least_gain_of_curve) * of_mean.mean_absolute_error_percent)
+        return false;
+    const auto nearer = std::ranges::count_if(
+        flights, [](const auto& flight) { return error_wh(flight, curve) < error_wh(flight, mean_model); });
+    return 2 * static_cast<std::size_t>(nearer) > flights.size();
+}
+
+/// Evenly from all, the first among them.
+std::vector<MeasuredFlight> validated_flights(std::span<const MeasuredFlight> flights) {
+    const auto count = std::min(flights.size(), most_validation_folds);
+    std::vector<MeasuredFlight> chosen;
+    chosen.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) chosen.push_back(flights[i * flights.size() / count]);
+    return chosen;
+}
+
+}  // namespace
+
+std::vector<std::string> remove_rejected(std::vector<ValidatedFlight>& flights) {
+    std::vector<std::string> reasons;
+    for (const std::string model : models_of_motion) {
+        const auto predicted = predicted_by(flights, model);
+        const auto own = held_out_score(predicted, model);
+        const auto of_mean = held_out_score(predicted, mean_model);
+        if (!own || !of_mean || own->mean_absolute_error_percent <= of_mean->mean_absolute_error_percent) continue;
+        reasons.push_back(fmt::format("{} is rejected: {:.1f} % off on {} flights left out, the mean power {:.1f} %",
+                                      model, own->mean_absolute_error_percent, own->flights,
+                                      of_mean->mean_absolute_error_percent));
+        for (auto& flight : flights)
+            std::erase_if(flight.predictions, [&](const auto& prediction) { return prediction.model == model; });
+    }
+    return reasons;
+}
+
+std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights) {
+    remove_rejected(flights);
+    const auto of_mean = held_out_score(flights, mean_model);
+    const auto of_curve = held_out_score(flights, curve);
+    if (!of_mean || !of_curve) return std::nullopt;
+    std::erase_if(flights, [](const auto& flight) { return !predicted_energy(flight, curve, std::nullopt); });
+    ModelValidation validation{is_curve_better(flights, *of_curve, *of_mean), {*of_mean, *of_curve}};
+    for (const std::string model : models_of_motion)
+        if (auto score = held_out_score(predicted_by(flights, model), model))
+            validation.scores.push_back(*std::move(score));
+    return validation;
+}
+
+void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
+                    const std::function<void(std::size_t, std::size_t)>& progress) {
+    if (flights.size() < 2 || options.weights.weighting == Weighting::by_hand) return;
+    try {
+        auto plain = options;
+        plain.level_covariate.reset();
+        model.validation = validation_of(leave_one_out(validated_flights(flights), plain, {}, progress));
+        const auto is_physical = [](const auto& score) { return score.model == physical; };
+        if (!model.validation || std::ranges::none_of(model.validation->scores, is_physical)) return;
+        std::vector<FlightMotion> motions(flights.size());
+        std::ranges::transform(flights, motions.begin(), &MeasuredFlight::motion);
+        model.physical = fit_physical_model(motions).model;
+    } catch (const NoAnswerError&) {  // the curves are the model then
+        model.validation.reset();
+    }
+}
+
+}  // namespace flightwatt::mechanical

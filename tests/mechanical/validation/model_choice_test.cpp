@@ -1,0 +1,193 @@
+// Which of the models a mission uses: remove_rejected, validation_of and add_best_power.
+
+#include "helpers/generated_flights.h"
+#include "helpers/generated_motion.h"
+#include "mechanical/validation.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::mechanical {
+namespace {
+
+using flight::Phase;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// A cruise of 100 Wh with these errors in Wh, and so in percent.
+ValidatedFlight flight_of(const std::vector<std::pair<std::string, double>>& errors_wh) {
+    ValidatedFlight flight;
+    flight.measured_wh[Phase::cruise] = 100.0;
+    for (const auto& [model, error_wh] : errors_wh) {
+        FlightPrediction prediction{model, {}};
+        prediction.phases[Phase::cruise] = EnergyEstimate{100.0 + error_wh};
+        flight.predictions.push_back(prediction);
+    }
+    return flight;
+}
+
+std::vector<std::string> models_of(const ModelValidation& validation) {
+    std::vector<std::string> models;
+    for (const auto& score : validation.scores) models.push_back(score.model);
+    return models;
+}
+
+TEST(RemoveRejected, RemovesWhatIsFurtherOffThanTheMeanPower) {
+    std::vector flights{flight_of({{"constant_mean", 10.0}, {"airspeed_cubed", 102.0}, {"physical", -10.0}}),
+                        flight_of({{"constant_mean", -8.0}, {"airspeed_cubed", 30.0}, {"physical", 8.0}})};
+    EXPECT_THAT(remove_rejected(flights),
+                ElementsAre("airspeed_cubed is rejected: 66.0 % off on 2 flights left out, the mean power 9.0 %"));
+    EXPECT_THAT(model_names(flights), ElementsAre("constant_mean", "physical")) << "as far off is kept";
+    EXPECT_THAT(remove_rejected(flights), IsEmpty());
+}
+
+TEST(RemoveRejected, ComparesOnTheFlightsThatAModelPredicts) {
+    std::vector flights{flight_of({{"constant_mean", 10.0}, {"physical", 9.0}}),
+                        flight_of({{"constant_mean", 1.0}})};  // without an airspeed
+    EXPECT_THAT(remove_rejected(flights), IsEmpty());
+    flights = {flight_of({{"constant_mean", 8.0}, {"physical", 9.0}}), flight_of({{"constant_mean", 50.0}})};
+    EXPECT_THAT(remove_rejected(flights), ElementsAre(StartsWith("physical is rejected: 9.0 % off on 1 flights")));
+}
+
+TEST(RemoveRejected, KeepsBaselines) {
+    std::vector flights{flight_of({{"constant_mean", 1.0}, {"nearest_flight", 40.0}, {"fourier", 2.0}})};
+    EXPECT_THAT(remove_rejected(flights), IsEmpty());
+}
+
+TEST(ValidationOf, PrefersTheCurveOnlyWhereItIsBetterByFivePercentAndInMostFlights) {
+    const auto prefers_curve = [](const std::vector<std::pair<double, double>>& mean_and_curve_wh) {
+        std::vector<ValidatedFlight> flights;
+        for (const auto& [mean_wh, curve_wh] : mean_and_curve_wh)
+            flights.push_back(flight_of({{"fourier", curve_wh}, {"constant_mean", mean_wh}}));
+        const auto validation = validation_of(flights).value();
+        EXPECT_EQ(default_model(validation), validation.prefers_curve ? "fourier" : "constant_mean");
+        return validation.prefers_curve;
+    };
+    EXPECT_TRUE(prefers_curve({{10.0, 9.4}, {10.0, 9.4}}));
+    EXPECT_FALSE(prefers_curve({{10.0, 9.6}, {10.0, 9.6}}));
+    EXPECT_TRUE(prefers_curve({{10.0, 5.0}, {10.0, 9.0}, {10.0, 10.5}}));
+    EXPECT_FALSE(prefers_curve({{10.0, 1.0}, {10.0, 10.5}, {10.0, 10.5}}));
+    EXPECT_FALSE(prefers_curve({{10.0, 1.0}, {10.0, 10.5}})) << "half is not most";
+}
+
+TEST(ValidationOf, HasTheScoresOfWhatMissionsCanUse) {
+    const auto validation = validation_of({flight_of({{"fourier", 3.0},
+                                                      {"constant_mean", 4.0},
+                                                      {"nearest_flight", 1.0},
+                                                      {"airspeed_cubed", 30.0},
+                                                      {"physical", 2.0}}),
+                                           flight_of({{"fourier", 5.0}, {"constant_mean", -6.0}})})
+                                .value();
+    EXPECT_THAT(models_of(validation), ElementsAre("constant_mean", "fourier", "physical"));
+    EXPECT_EQ(validation.scores[0].flights, 2U);
+    EXPECT_NEAR(validation.scores[0].mean_absolute_error_percent, 5.0, 1e-12);
+    EXPECT_EQ(validation.scores[2].flights, 1U);
+    EXPECT_NEAR(validation.scores[2].mean_absolute_error_percent, 2.0, 1e-12);
+    EXPECT_FALSE(validation_of({flight_of({{"fourier", 3.0}})})) << "nothing to compare with";
+}
+
+/// Constant power, in fits that take no time.
+std::vector<MeasuredFlight> steady_flights(std::size_t count) {
+    std::mt19937 random(2);
+    std::vector<MeasuredFlight> flights;
+    for (std::size_t i = 0; i < count; ++i) {
+        auto truth = test::published_model().phases;
+        for (auto& phase : truth.values) phase.fourier = {0.01, 20.0 + 0.1 * static_cast<double>((7 * i) % 11), {}, {}};
+        flights.push_back(test::measured("flight" + std::to_string(i), truth, random));
+    }
+    return flights;
+}
+
+ModelFitOptions of_order(int order) {
+    ModelFitOptions options;
+    options.phases.order = order;
+    return options;
+}
+
+TEST(AddBestPower, ValidatesAtMostFortyFlights) {
+    for (const auto& [given, used] : {std::pair(40U, 40U), std::pair(95U, 40U), std::pair(2U, 2U)}) {
+        MechanicalModel model;
+        add_best_power(model, steady_flights(given), of_order(0));
+        ASSERT_TRUE(model.validation);
+        EXPECT_EQ(model.validation->scores.front().flights, used);
+        EXPECT_FALSE(model.validation->prefers_curve) << "they are the same";
+        EXPECT_FALSE(model.physical) << "no airspeed was measured";
+    }
+}
+
+TEST(AddBestPower, AddsNothingToOneFlightOrToWeightsByHand) {
+    MechanicalModel model;
+    add_best_power(model, steady_flights(1), of_order(0));
+    EXPECT_FALSE(model.validation);
+    auto options = of_order(0);
+    options.weights.weighting = Weighting::by_hand;
+    add_best_power(model, steady_flights(3), options);
+    EXPECT_FALSE(model.validation);
+}
+
+/// Flights that fly as their motion: energies and samples are its bins'.
+std::vector<MeasuredFlight> flights_of(const std::vector<FlightMotion>& motions) {
+    std::vector<MeasuredFlight> flights;
+    for (const auto& motion : motions) {
+        MeasuredFlight flight;
+        flight.motion = motion;
+        flight.samples.flight = motion.flight;
+        for (const auto phase : flight::all_phases) {
+            PhaseSamples samples{motion.flight, 0.0, {}, {}};
+            double energy_j = 0.0;
+            for (const auto& bin : motion.bins) {
+                if (bin.phase != phase) continue;
+                for (double time_s = 1.0; time_s < bin.duration_s; time_s += 2.0) {
+                    samples.tau.push_back(samples.duration_s + time_s);
+                    samples.power_w.push_back(bin.power_w);
+                }
+                samples.duration_s += bin.duration_s;
+                energy_j += bin.power_w * bin.duration_s;
+            }
+            for (auto& tau : samples.tau) tau /= samples.duration_s;
+            flight.energy_wh[phase] = units::wh_from_joule(energy_j);
+            flight.samples.phases[phase] = samples;
+        }
+        flights.push_back(std::move(flight));
+    }
+    return flights;
+}
+
+TEST(AddBestPower, AddsThePhysicalModelWherePowerFollowsTheMotion) {
+    const auto flights = flights_of(test::made_up_motions(6, 40, {}, 3));
+    MechanicalModel model;
+    add_best_power(model, flights, of_order(0));
+    ASSERT_TRUE(model.validation);
+    EXPECT_THAT(models_of(*model.validation), testing::Contains("physical"));
+    ASSERT_TRUE(model.physical);
+    EXPECT_EQ(model.physical->flights.size(), 6U);
+    EXPECT_TRUE(model.physical->level_sd);
+}
+
+/// Motion whose power is not that of the flight.
+TEST(AddBestPower, LeavesOutAPhysicalModelThatPredictsWorseThanTheMeanPower) {
+    auto flights = flights_of(test::made_up_motions(6, 40, {}, 3));
+    double power_w = 25.0;
+    for (auto& flight : flights) {
+        for (const auto phase : flight::all_phases) {
+            auto& samples = *flight.samples.phases[phase];
+            std::ranges::fill(samples.power_w, power_w);
+            flight.energy_wh[phase] = units::wh_from_joule(power_w * samples.duration_s);
+        }
+        power_w += 0.01;
+    }
+    MechanicalModel model;
+    add_best_power(model, flights, of_order(0));
+    ASSERT_TRUE(model.validation);
+    EXPECT_THAT(models_of(*model.validation), ElementsAre("constant_mean", "fourier"));
+    EXPECT_FALSE(model.physical);
+}
+
+}  // namespace
+}  // namespace flightwatt::mechanical
